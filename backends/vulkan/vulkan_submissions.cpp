@@ -1,0 +1,139 @@
+#include "backends/vulkan/vulkan_submissions.hpp"
+#include <algorithm>
+
+namespace wadi::vulkan {
+
+Status Submissions::open() {
+    auto input = allocate(c_, sizeof(StepInput), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, Place::device, "step input");
+    if (!input) return input.status();
+    input_ = std::move(*input);
+    auto pool = vk_struct<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
+    pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
+    pool.queueFamilyIndex = c_.queue_family;
+    if (Status s = c_.check(c_.vk.vkCreateCommandPool(c_.device, &pool, nullptr, &pool_), "vkCreateCommandPool"); !s) return s;
+    std::array<VkCommandBuffer, 2 * ring> commands{};
+    auto info = vk_struct<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
+    info.commandPool = pool_;
+    info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+    info.commandBufferCount = 2 * ring;
+    const VkResult r = c_.vk.vkAllocateCommandBuffers(c_.device, &info, commands.data());
+    if (Status s = c_.check(r, "vkAllocateCommandBuffers"); !s) return s;
+    for (std::uint32_t n = 0; n < ring; ++n) {
+        slots_[n].input = commands[2 * n];
+        slots_[n].own = commands[2 * n + 1];
+    }
+    if (c_.timeline) {
+        auto type = vk_struct<VkSemaphoreTypeCreateInfo>(VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO);
+        type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
+        auto semaphore = vk_struct<VkSemaphoreCreateInfo>(VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO);
+        semaphore.pNext = &type;
+        return c_.check(c_.vk.vkCreateSemaphore(c_.device, &semaphore, nullptr, &timeline_), "vkCreateSemaphore");
+    }
+    for (Slot& slot : slots_) {
+        const auto fence = vk_struct<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
+        if (Status s = c_.check(c_.vk.vkCreateFence(c_.device, &fence, nullptr, &slot.fence), "vkCreateFence"); !s) return s;
+    }
+    return ok_status();
+}
+
+Submissions::~Submissions() {
+    if (timeline_ != VK_NULL_HANDLE) c_.vk.vkDestroySemaphore(c_.device, timeline_, nullptr);
+    for (const Slot& slot : slots_) {
+        if (slot.fence != VK_NULL_HANDLE) c_.vk.vkDestroyFence(c_.device, slot.fence, nullptr);
+    }
+    if (pool_ != VK_NULL_HANDLE) c_.vk.vkDestroyCommandPool(c_.device, pool_, nullptr);
+    release(c_, input_);
+}
+
+Result<std::uint32_t> Submissions::acquire() {
+    const std::uint32_t slot = slot_of(last_ + 1);
+    if (Status s = wait({slots_[slot].ticket}); !s) return s;
+    return slot;
+}
+
+// Also the boundary between submissions: all earlier work is done and seen before anything of this one starts.
+Status Submissions::record_input(const Slot& slot, const StepInput& input) {
+    auto info = vk_struct<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
+    info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+    if (Status s = c_.check(c_.vk.vkBeginCommandBuffer(slot.input, &info), "vkBeginCommandBuffer"); !s) return s;
+    const Kinds all{true, true};
+    record_barrier(c_, slot.input, all, all);
+    c_.vk.vkCmdUpdateBuffer(slot.input, input_.buffer, 0, sizeof(input), &input);
+    record_barrier(c_, slot.input, {false, true}, {true, false});
+    return c_.check(c_.vk.vkEndCommandBuffer(slot.input), "vkEndCommandBuffer");
+}
+
+Result<compute::Ticket> Submissions::submit(std::uint32_t index, const StepInput& input, VkCommandBuffer commands,
+                                            compute::Program program) {
+    Slot& slot = slots_[index];
+    if (Status s = record_input(slot, input); !s) return s;
+    const std::uint64_t ticket = last_ + 1;
+    const VkCommandBuffer both[] = {slot.input, commands};
+    auto value = vk_struct<VkTimelineSemaphoreSubmitInfo>(VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO);
+    value.signalSemaphoreValueCount = 1;
+    value.pSignalSemaphoreValues = &ticket;
+    auto info = vk_struct<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
+    info.commandBufferCount = 2;
+    info.pCommandBuffers = both;
+    if (c_.timeline) {
+        info.pNext = &value;
+        info.signalSemaphoreCount = 1;
+        info.pSignalSemaphores = &timeline_;
+    } else if (Status s = c_.check(c_.vk.vkResetFences(c_.device, 1, &slot.fence), "vkResetFences"); !s) {
+        return s;
+    }
+    if (Status s = c_.check(c_.vk.vkQueueSubmit(c_.queue, 1, &info, slot.fence), "vkQueueSubmit"); !s) return s;
+    ++c_.counters.submits;
+    last_ = ticket;
+    slot.ticket = ticket;
+    slot.program = program;
+    return compute::Ticket{ticket};
+}
+
+Result<bool> Submissions::finished(compute::Ticket ticket) {
+    if (ticket.value > last_) {
+        return error(Code::bad_argument,
+                     "ticket " + std::to_string(ticket.value) + " was never given out; the newest is " + std::to_string(last_));
+    }
+    if (ticket.value <= finished_) return true;
+    if (c_.timeline) {
+        std::uint64_t value = 0;
+        const VkResult r = c_.vk.vkGetSemaphoreCounterValueKHR(c_.device, timeline_, &value);
+        if (Status s = c_.check(r, "vkGetSemaphoreCounterValueKHR"); !s) return s;
+        // Drivers may report the largest value once the device is lost.
+        if (value > last_) return c_.check(VK_ERROR_DEVICE_LOST, "vkGetSemaphoreCounterValueKHR");
+        finished_ = std::max(finished_, value);
+    } else {
+        const VkResult r = c_.vk.vkGetFenceStatus(c_.device, slots_[slot_of(ticket.value)].fence);
+        if (r == VK_NOT_READY) return false;
+        if (Status s = c_.check(r, "vkGetFenceStatus"); !s) return s;
+        finished_ = ticket.value;
+    }
+    return ticket.value <= finished_;
+}
+
+Status Submissions::wait(compute::Ticket ticket) {
+    auto done = finished(ticket);
+    if (!done) return done.status();
+    if (*done) return ok_status();
+    VkResult r = VK_SUCCESS;
+    if (c_.timeline) {
+        auto info = vk_struct<VkSemaphoreWaitInfo>(VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO);
+        info.semaphoreCount = 1;
+        info.pSemaphores = &timeline_;
+        info.pValues = &ticket.value;
+        r = c_.vk.vkWaitSemaphoresKHR(c_.device, &info, UINT64_MAX);
+    } else {
+        r = c_.vk.vkWaitForFences(c_.device, 1, &slots_[slot_of(ticket.value)].fence, VK_TRUE, UINT64_MAX);
+    }
+    if (Status s = c_.check(r, "waiting for a submission"); !s) return s;
+    finished_ = std::max(finished_, ticket.value);
+    return ok_status();
+}
+
+compute::Program Submissions::program_of(compute::Ticket ticket) const {
+    const Slot& slot = slots_[slot_of(ticket.value)];
+    return ticket.value != 0 && slot.ticket == ticket.value ? slot.program : compute::Program{};
+}
+
+} // namespace wadi::vulkan

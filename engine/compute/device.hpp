@@ -1,0 +1,135 @@
+// The compute interface that every backend implements, and the only thing the engine knows of a device.
+// How to add a backend: backends/README.md.
+#pragma once
+#include "engine/compute/params.hpp"
+#include "engine/compute/program.hpp"
+#include "engine/compute/status.hpp"
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace wadi::compute {
+
+enum class DeviceKind : std::uint8_t { cpu, integrated_gpu, discrete_gpu, virtual_gpu, software_gpu };
+
+/// Filled once when a device is opened.
+struct Capabilities {
+    std::string backend;              // "cpu", "vulkan", "cuda"
+    std::string name;                 // as the driver names it
+    std::string driver;               // driver name and version, or the instruction set for the CPU
+    DeviceKind kind = DeviceKind::cpu;
+    std::uint64_t memory_bytes = 0;   // of the largest device-local heap; 0 = unknown
+    std::uint64_t largest_buffer_bytes = 0; // of one buffer bound to a stage
+    bool exact_float = false;         // measured: + - * / sqrt agree with the CPU in every bit
+    bool timestamps = false;
+};
+
+struct DeviceOptions {
+    int threads = 0;                  // CPU backend: worker threads, 0 = all cores
+    std::string instruction_set;      // CPU backend: "" = best, "avx2", "base"
+    bool validate = false;            // Vulkan: validation and synchronization validation layers
+    bool full_barriers = false;       // a barrier before every operation
+    bool no_replay = false;           // record anew for each submit
+    /// Messages from drivers and validation layers; level 0 = error, 1 = warning, 2 = information.
+    std::function<void(int level, const std::string& message)> log;
+};
+
+/// Reads WADI_VALIDATE, WADI_FULL_BARRIERS and WADI_NO_REPLAY into options that the caller left off.
+void apply_environment(DeviceOptions& options);
+
+struct BufferDesc {
+    std::uint64_t bytes = 0;
+    std::string label;                // for errors
+};
+
+/// Threads per group along i and j (GPU backends; the CPU ignores it). 0 = the backend's choice for the stage.
+struct GroupSize {
+    int x = 0, y = 0;
+};
+
+struct Timing {
+    std::string label;
+    double milliseconds = 0;
+};
+
+/// Counts since the device was opened; tests assert that none of them moves per step.
+struct DeviceCounters {
+    std::uint64_t allocations = 0;        // buffers created
+    std::uint64_t descriptor_writes = 0;
+    std::uint64_t recordings = 0;         // command buffers or graphs recorded
+    std::uint64_t submits = 0;
+    std::uint64_t validation_messages = 0; // warnings and errors from validation layers
+};
+
+/// Names a submission; tickets of one device finish in order.
+struct Ticket {
+    std::uint64_t value = 0;
+};
+
+/// A device runs programs. Calls come from one thread at a time. No exception leaves any call.
+/// After device_lost every call that needs the device returns device_lost.
+class Device {
+  public:
+    virtual ~Device() = default;
+
+    virtual const Capabilities& capabilities() const = 0;
+    virtual DeviceCounters counters() const = 0;
+
+    /// A linear buffer, filled with zeros. Errors: bad_argument (0 bytes, or above largest_buffer_bytes), out_of_memory.
+    virtual Result<Buffer> create_buffer(const BufferDesc& desc) = 0;
+    /// Frees a buffer; programs that use it must not be submitted again. Null is ignored. Waits for work in flight.
+    virtual void destroy_buffer(Buffer buffer) = 0;
+    /// Copies host bytes into a buffer, ordered after all earlier and before all later submissions. May wait.
+    virtual Status write(Buffer buffer, std::uint64_t offset, std::span<const std::byte> bytes) = 0;
+    /// Copies a buffer to the host once all earlier submissions have finished. Waits.
+    virtual Status read(Buffer buffer, std::uint64_t offset, std::span<std::byte> bytes) = 0;
+
+    /// A stage specialised for a mask. Only the stage's tested_effects of `effects` matter; equal requests share one pipeline.
+    virtual Result<Pipeline> create_pipeline(int stage, std::uint32_t effects, GroupSize group) = 0;
+
+    /// Records a program once, with its parameters frozen in. Errors: those of validate(), out_of_memory.
+    virtual Result<Program> compile(const ProgramBuilder& builder, const WorldParams& params) = 0;
+    /// Frees a program. Null is ignored. Waits for work in flight.
+    virtual void destroy_program(Program program) = 0;
+
+    /// Replays a program with this step's input. Returns at once unless the ring of submissions in flight is full.
+    virtual Result<Ticket> submit(Program program, const StepInput& input) = 0;
+    virtual bool finished(Ticket ticket) = 0;
+    virtual Status wait(Ticket ticket) = 0;
+    /// Time between consecutive timestamps of a finished submission that contained any; empty if there were none or
+    /// the ticket is older than the ring.
+    virtual Result<std::vector<Timing>> timings(Ticket ticket) = 0;
+
+    /// Makes every later call return device_lost, as a real fault would: for tests of the host's reaction.
+    virtual void inject_device_lost() = 0;
+};
+
+/// One device that a backend can open.
+struct DeviceInfo {
+    std::string backend;
+    int index = 0;                    // within its backend
+    std::string name;
+    DeviceKind kind = DeviceKind::cpu;
+    std::uint64_t memory_bytes = 0;
+};
+
+/// One backend of this build. `enumerate` never fails the program: no loader or driver is an empty list and a reason.
+struct Backend {
+    const char* name;
+    std::vector<DeviceInfo> (*enumerate)(std::string& why_none);
+    Result<std::unique_ptr<Device>> (*open)(int index, const DeviceOptions& options);
+};
+
+/// All backends of this build, the CPU first. Defined in a file that CMake writes: engine code names no backend.
+std::span<const Backend> backends();
+
+/// Opens `name` ("auto", "cpu", "vulkan", "cuda"), device `index` (-1 = the backend's best).
+/// auto: a real GPU first, else the CPU; a software GPU only when asked for by name.
+/// Errors: not_found, listing what there is.
+Result<std::unique_ptr<Device>> open_device(const std::string& name, int index, DeviceOptions options);
+
+} // namespace wadi::compute

@@ -1,0 +1,121 @@
+#include "engine/compute/hazards.hpp"
+#include <algorithm>
+#include <map>
+
+namespace wadi::compute {
+
+namespace {
+
+bool exists(const StageBinding& binding, std::uint32_t effects) { return (effects & binding.condition) == binding.condition; }
+
+struct Touched {
+    bool read = false, written = false;
+};
+
+} // namespace
+
+std::vector<BufferUse> buffer_uses(const Op& op) {
+    std::vector<BufferUse> uses;
+    if (const auto* dispatch = std::get_if<Dispatch>(&op)) {
+        for (const auto& binding : stage_table()[static_cast<std::size_t>(dispatch->stage)].bindings) {
+            if (!exists(binding, dispatch->effects)) continue;
+            uses.push_back({dispatch->slots[static_cast<std::size_t>(binding.slot)], binding.access != Access::out, binding.access != Access::in});
+        }
+    } else if (const auto* copy = std::get_if<Copy>(&op)) {
+        uses.push_back({copy->from, true, false});
+        uses.push_back({copy->to, false, true});
+    } else if (const auto* fill = std::get_if<Fill>(&op)) {
+        uses.push_back({fill->buffer, false, true});
+    }
+    return uses;
+}
+
+std::vector<bool> plan_barriers(const std::vector<Op>& ops) {
+    std::vector<bool> barrier_before(ops.size(), false);
+    std::map<std::uint32_t, Touched> since_barrier;
+    for (std::size_t n = 0; n < ops.size(); ++n) {
+        const auto uses = buffer_uses(ops[n]);
+        const bool conflict = std::any_of(uses.begin(), uses.end(), [&](const BufferUse& use) {
+            const auto found = since_barrier.find(use.buffer.id);
+            return found != since_barrier.end() && (found->second.written || (use.writes && found->second.read));
+        });
+        if (conflict) {
+            barrier_before[n] = true;
+            since_barrier.clear();
+        }
+        for (const auto& use : uses) {
+            auto& touched = since_barrier[use.buffer.id];
+            touched.read |= use.reads;
+            touched.written |= use.writes;
+        }
+    }
+    return barrier_before;
+}
+
+std::vector<std::vector<int>> plan_dependencies(const std::vector<Op>& ops) {
+    struct History {
+        int writer = -1;
+        std::vector<int> readers;
+    };
+    std::map<std::uint32_t, History> history;
+    std::vector<std::vector<int>> edges(ops.size());
+    for (std::size_t n = 0; n < ops.size(); ++n) {
+        const auto uses = buffer_uses(ops[n]);
+        auto& waits = edges[n];
+        for (const auto& use : uses) {
+            const auto& past = history[use.buffer.id];
+            if (use.writes && !past.readers.empty()) {
+                waits.insert(waits.end(), past.readers.begin(), past.readers.end());
+            } else if (past.writer >= 0) {
+                waits.push_back(past.writer);
+            }
+        }
+        std::sort(waits.begin(), waits.end());
+        waits.erase(std::unique(waits.begin(), waits.end()), waits.end());
+        for (const auto& use : uses) {
+            auto& past = history[use.buffer.id];
+            if (use.writes) {
+                past.writer = static_cast<int>(n);
+                past.readers.clear();
+            } else {
+                past.readers.push_back(static_cast<int>(n));
+            }
+        }
+    }
+    return edges;
+}
+
+Status validate(const ProgramBuilder& builder) {
+    const auto fail = [&](const std::string& what) { return error(Code::bad_argument, "program '" + builder.label() + "': " + what); };
+    for (const auto& op : builder.ops()) {
+        if (const auto* copy = std::get_if<Copy>(&op)) {
+            if (copy->from.id == 0 || copy->to.id == 0) return fail("copy from or to a null buffer");
+            if (copy->from == copy->to) return fail("copy within one buffer");
+        } else if (const auto* fill = std::get_if<Fill>(&op)) {
+            if (fill->buffer.id == 0) return fail("fill of a null buffer");
+        } else if (const auto* d = std::get_if<Dispatch>(&op)) {
+            if (d->stage < 0 || static_cast<std::size_t>(d->stage) >= stage_table().size()) return fail("'" + d->label + "': no such stage");
+            const auto& stage = stage_table()[static_cast<std::size_t>(d->stage)];
+            const std::string where = "'" + d->label + "' (" + std::string(stage.name) + ")";
+            if (d->pipeline.id == 0) return fail(where + ": null pipeline");
+            if (d->slots.size() != stage.bindings.size()) {
+                return fail(where + ": " + std::to_string(d->slots.size()) + " slots, the stage has " + std::to_string(stage.bindings.size()));
+            }
+            std::map<std::uint32_t, Touched> touched;
+            for (const auto& binding : stage.bindings) {
+                if (!exists(binding, d->effects)) continue;
+                const auto buffer = d->slots[static_cast<std::size_t>(binding.slot)];
+                const std::string name(binding.name);
+                if (buffer.id == 0) return fail(where + ": no buffer for " + name);
+                const bool writes = binding.access != Access::in;
+                auto& seen = touched[buffer.id];
+                if (seen.written || (writes && seen.read)) return fail(where + ": the buffer of " + name + " is bound twice and written");
+                seen.read |= !writes;
+                seen.written |= writes;
+            }
+        }
+    }
+    return ok_status();
+}
+
+} // namespace wadi::compute

@@ -1,0 +1,32 @@
+// The parameter blocks of the stages as the host sees them, and the field layout they describe.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+namespace wadi {
+struct alignas(16) vec4 {
+    float x, y, z, w;
+};
+#include "shaders/step_params.h"
+#include "shaders/effects.h"
+
+static_assert(sizeof(WorldParams) <= 512, "WorldParams must stay within 512 bytes");
+static_assert(sizeof(WorldParams) % 4 == 0 && alignof(WorldParams) == 4);
+static_assert(sizeof(StepInput) <= 1024, "StepInput must stay within 1 KiB");
+static_assert(offsetof(StepInput, source) == 16 && offsetof(StepInput, side) == 16 + 16 * MAX_SOURCES);
+
+/// The layout every field shares: GHOST ghost cells around, one more column and row for the last faces.
+/// u[i,j] is the west face and v[i,j] the south face of cell (i,j).
+struct FieldLayout {
+    int nx = 0;
+    int ny = 0;
+    int pitch() const { return (nx + 1 + 2 * GHOST + 31) / 32 * 32; }
+    int rows() const { return ny + 1 + 2 * GHOST; }
+    std::size_t size() const { return static_cast<std::size_t>(pitch()) * static_cast<std::size_t>(rows()); }
+    std::size_t index(int i, int j) const {
+        return static_cast<std::size_t>(j + GHOST) * static_cast<std::size_t>(pitch()) + static_cast<std::size_t>(i + GHOST);
+    }
+    int strips() const { return (ny + 1 + STRIP - 1) / STRIP; }
+    int rim() const { return 2 * (nx + ny); }
+};
+} // namespace wadi

@@ -1,0 +1,61 @@
+// A Program as plain data: an ordered list of dispatches, copies, fills and timestamps, before any device sees it.
+#pragma once
+#include "engine/compute/params.hpp"
+#include "engine/compute/stage_table.hpp"
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace wadi::compute {
+
+/// Typed handles; id 0 is null.
+struct Buffer {
+    std::uint32_t id = 0;
+    friend bool operator==(Buffer, Buffer) = default;
+};
+struct Pipeline {
+    std::uint32_t id = 0;
+};
+struct Program {
+    std::uint32_t id = 0;
+};
+
+struct Dispatch {
+    Pipeline pipeline;
+    int stage = -1;               // index into stage_table()
+    std::uint32_t effects = 0;    // the world's mask: decides which conditional bindings exist
+    std::vector<Buffer> slots;    // one per binding of the stage, in slot order; null where the condition is off
+    Range2 range{};               // what the kernel covers
+    std::string label;            // for errors and profiles
+};
+struct Copy {
+    Buffer from, to;
+    std::uint64_t from_offset = 0, to_offset = 0, bytes = 0;
+};
+struct Fill {
+    Buffer buffer;
+    std::uint32_t word = 0;       // written to every 4 bytes
+};
+struct Timestamp {
+    std::string label;            // names what ran since the previous timestamp
+};
+using Op = std::variant<Dispatch, Copy, Fill, Timestamp>;
+
+/// Collects operations in order. Nothing is checked against a device until Device::compile.
+class ProgramBuilder {
+  public:
+    explicit ProgramBuilder(std::string label) : label_(std::move(label)) {}
+    void dispatch(Dispatch d) { ops_.emplace_back(std::move(d)); }
+    void copy(Copy c) { ops_.emplace_back(c); }
+    void fill(Fill f) { ops_.emplace_back(f); }
+    void timestamp(std::string label) { ops_.emplace_back(Timestamp{std::move(label)}); }
+    const std::vector<Op>& ops() const { return ops_; }
+    const std::string& label() const { return label_; }
+
+  private:
+    std::string label_;
+    std::vector<Op> ops_;
+};
+
+} // namespace wadi::compute

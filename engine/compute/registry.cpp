@@ -1,0 +1,59 @@
+// Opening a device by name: the only place that chooses between backends.
+#include "engine/compute/device.hpp"
+#include <cstdlib>
+
+namespace wadi::compute {
+
+namespace {
+
+bool environment_switch(const char* name) {
+    const char* value = std::getenv(name);
+    return value != nullptr && *value != '\0' && *value != '0';
+}
+
+std::string known_backends() {
+    std::string names = "auto";
+    for (const auto& backend : backends()) names += std::string(", ") + backend.name;
+    return names;
+}
+
+bool real_gpu(DeviceKind kind) {
+    return kind == DeviceKind::discrete_gpu || kind == DeviceKind::integrated_gpu || kind == DeviceKind::virtual_gpu;
+}
+
+} // namespace
+
+void apply_environment(DeviceOptions& options) {
+    options.validate |= environment_switch("WADI_VALIDATE");
+    options.full_barriers |= environment_switch("WADI_FULL_BARRIERS");
+    options.no_replay |= environment_switch("WADI_NO_REPLAY");
+}
+
+Result<std::unique_ptr<Device>> open_device(const std::string& wanted, int index, DeviceOptions options) {
+    apply_environment(options);
+    std::string name = wanted;
+    const char* forced = std::getenv("WADI_BACKEND");
+    if (name == "auto" && forced != nullptr && *forced != '\0') name = forced;
+    std::string why;
+    if (name == "auto") {
+        for (const auto& backend : backends()) {
+            for (const auto& info : backend.enumerate(why)) {
+                if (real_gpu(info.kind)) return backend.open(info.index, options);
+            }
+        }
+        name = "cpu";
+    }
+    for (const auto& backend : backends()) {
+        if (name != backend.name) continue;
+        const auto devices = backend.enumerate(why);
+        if (devices.empty()) return error(Code::not_found, "backend " + name + " has no device: " + why);
+        const int chosen = index < 0 ? devices.front().index : index;
+        if (chosen >= static_cast<int>(devices.size())) {
+            return error(Code::not_found, "backend " + name + " has no device " + std::to_string(index) + ", only 0 ... " + std::to_string(devices.size() - 1));
+        }
+        return backend.open(chosen, options);
+    }
+    return error(Code::not_found, "no backend '" + name + "' in this build; known: " + known_backends());
+}
+
+} // namespace wadi::compute

@@ -1,0 +1,24 @@
+#include "engine/compute/stage_table.hpp"
+
+namespace wadi::compute {
+
+int find_stage(std::string_view name) {
+    const auto table = stage_table();
+    for (std::size_t n = 0; n < table.size(); ++n) {
+        if (table[n].name == name) return static_cast<int>(n);
+    }
+    return -1;
+}
+
+Range2 extent_range(Extent extent, const WorldParams& p) {
+    switch (extent) {
+    case Extent::cells: return {0, 0, p.nx, p.ny};
+    case Extent::faces: return {0, 0, p.nx + 1, p.ny + 1};
+    case Extent::rim: return {0, 0, 2 * (p.nx + p.ny), 1};
+    case Extent::strips: return {0, 0, p.nx + 1, p.strips};
+    case Extent::source_box: return {p.source_i0, p.source_s0, p.source_i1, p.source_s1};
+    }
+    return {};
+}
+
+} // namespace wadi::compute

@@ -1,0 +1,119 @@
+#include "engine/effects.hpp"
+#include <algorithm>
+#include <array>
+
+namespace wadi {
+
+namespace {
+
+constexpr std::array<Effect, 11> table = {{
+    {EFFECT_WATER, "water", 0, "water that flows over the ground"},
+    {EFFECT_SAND, "sand", 0, "sand that flows, with Coulomb friction on the ground"},
+    {EFFECT_MIXTURE, "mixture", EFFECT_WATER | EFFECT_SAND, "a second water layer inside the sand with its own velocity"},
+    {EFFECT_DIFFUSION, "diffusion", EFFECT_MIXTURE, "water spreads inside sand"},
+    {EFFECT_DRAG, "drag", EFFECT_WATER | EFFECT_SAND, "momentum exchange between water and sand"},
+    {EFFECT_ELASTOPLASTIC, "elastoplastic", EFFECT_SAND, "sand holds its shape: strain, stress and yield"},
+    {EFFECT_COHESION, "cohesion", EFFECT_ELASTOPLASTIC | EFFECT_WATER, "cohesion follows the saturation of the sand"},
+    {EFFECT_SOURCES, "sources", 0, "points, discs and boxes that add or take water or sand"},
+    {EFFECT_RAIN, "rain", EFFECT_WATER, "rain and evaporation"},
+    {EFFECT_OPEN_SIDES, "open_sides", 0, "sides with discharge, level or outflow"},
+    {EFFECT_BED_FRICTION, "bed_friction", EFFECT_WATER, "Manning-like friction of pure water on its bed"},
+}};
+
+bool ever_above_zero(const TimeSeries& series) {
+    return std::any_of(series.samples.begin(), series.samples.end(), [](const auto& s) { return s.second > 0; });
+}
+
+bool any_above_zero(const std::vector<float>& field) {
+    return std::any_of(field.begin(), field.end(), [](float x) { return x > 0.0F; });
+}
+
+struct Wanted {
+    bool on;
+    std::string reason;
+};
+
+Wanted wanted(const Effect& effect, std::uint32_t mask, const Settings& s, const InitialFields& f) {
+    const auto& m = s.material;
+    switch (effect.bit) {
+    case EFFECT_WATER: {
+        if (any_above_zero(f.water)) return {true, "the level holds water"};
+        for (const auto& source : s.sources) {
+            if (source.material == SourceMaterial::water && ever_above_zero(source.rate)) return {true, "a source adds water"};
+        }
+        if (ever_above_zero(s.rain)) return {true, "it rains"};
+        for (const auto& side : s.sides) {
+            if (side.kind == SideKind::discharge || side.kind == SideKind::level) return {true, "water enters through a side"};
+        }
+        return {false, "no water in the level, its sources or its sides"};
+    }
+    case EFFECT_SAND: {
+        if (any_above_zero(f.sand)) return {true, "the level holds sand"};
+        for (const auto& source : s.sources) {
+            if (source.material == SourceMaterial::sand && ever_above_zero(source.rate)) return {true, "a source adds sand"};
+        }
+        return {false, "no sand in the level or its sources"};
+    }
+    case EFFECT_MIXTURE: return {(mask & effect.needs) == effect.needs, "water and sand can meet"};
+    case EFFECT_DIFFUSION: return {m.diffusion_rate > 0, m.diffusion_rate > 0 ? "diffusion_rate is above 0" : "diffusion_rate is 0"};
+    case EFFECT_DRAG: return {m.exchange_rate > 0, m.exchange_rate > 0 ? "exchange_rate is above 0" : "exchange_rate is 0"};
+    case EFFECT_ELASTOPLASTIC: return {m.young_modulus > 0, m.young_modulus > 0 ? "young_modulus is above 0" : "young_modulus is 0"};
+    case EFFECT_COHESION: return {true, "sand can get wet"};
+    case EFFECT_SOURCES: return {!s.sources.empty(), s.sources.empty() ? "no sources" : std::to_string(s.sources.size()) + " sources"};
+    case EFFECT_RAIN: {
+        const bool on = ever_above_zero(s.rain) || ever_above_zero(s.evaporation);
+        return {on, on ? "rain or evaporation is above 0" : "no rain, no evaporation"};
+    }
+    case EFFECT_OPEN_SIDES: {
+        const bool on = std::any_of(s.sides.begin(), s.sides.end(), [](const Side& side) { return side.kind != SideKind::wall; });
+        return {on, on ? "a side is open" : "all sides are walls"};
+    }
+    default: return {m.bed_friction > 0, m.bed_friction > 0 ? "bed_friction is above 0" : "bed_friction is 0"};
+    }
+}
+
+std::string names_of(std::uint32_t bits) {
+    std::string names;
+    for (const auto& effect : table) {
+        if ((bits & effect.bit) != 0) names += (names.empty() ? "" : ", ") + std::string(effect.name);
+    }
+    return names;
+}
+
+} // namespace
+
+std::span<const Effect> effect_table() { return table; }
+
+bool is_legal(std::uint32_t mask) {
+    return std::all_of(table.begin(), table.end(), [&](const Effect& e) { return (mask & e.bit) == 0 || (mask & e.needs) == e.needs; });
+}
+
+Result<EffectChoice> effects_required(const Settings& settings, const InitialFields& fields) {
+    for (const auto& [name, force] : settings.effects) {
+        if (std::none_of(table.begin(), table.end(), [&](const Effect& e) { return name == e.name; })) {
+            return error(Code::bad_argument, "effects." + name + ": no such effect; known: " + names_of(~0u));
+        }
+    }
+    EffectChoice choice;
+    for (const auto& effect : table) {
+        Force force = Force::automatic;
+        for (const auto& [name, wish] : settings.effects) {
+            if (name == effect.name) force = wish;
+        }
+        const std::uint32_t lacking = effect.needs & ~choice.mask;
+        auto want = wanted(effect, choice.mask, settings, fields);
+        if (force == Force::on) {
+            if (lacking != 0) return error(Code::bad_argument, std::string("effects.") + effect.name + ": on, but it needs " + names_of(lacking));
+            want = {true, "forced on by the level"};
+        } else if (force == Force::off) {
+            want = {false, "forced off by the level"};
+        } else if (lacking != 0) {
+            want = {false, "needs " + names_of(lacking)};
+        }
+        if (want.on) choice.mask |= effect.bit;
+        choice.reasons.push_back(want.reason);
+    }
+    return choice;
+}
+
+} // namespace wadi

@@ -1,0 +1,34 @@
+// Effects: what a scene calls for, and nothing else. One table says what each bit is, what it needs and why it is on.
+#pragma once
+#include "engine/compute/params.hpp"
+#include "engine/include/wadi/settings.hpp"
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace wadi {
+
+struct Effect {
+    std::uint32_t bit;
+    const char* name;      // as level files write it
+    std::uint32_t needs;   // bits that must be on as well
+    const char* meaning;   // one sentence
+};
+
+/// All effects, dependencies first.
+std::span<const Effect> effect_table();
+
+struct EffectChoice {
+    std::uint32_t mask = 0;
+    std::vector<std::string> reasons; // one per effect of the table: why it is on or off
+};
+
+/// The mask that settings and fields call for, with what the level forces. Errors: an unknown name, or an effect forced on
+/// whose needs are off.
+Result<EffectChoice> effects_required(const Settings& settings, const InitialFields& fields);
+
+/// True when every effect in the mask has what it needs.
+bool is_legal(std::uint32_t mask);
+
+} // namespace wadi

@@ -1,0 +1,99 @@
+#include "engine/image/map.hpp"
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+
+namespace wadi {
+namespace {
+
+std::string lower_case_ending(const std::string& path) {
+    std::string ending = std::filesystem::path(path).extension().string();
+    for (char& c : ending)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return ending;
+}
+
+/// The two neighbouring samples of a cell centre and the weight of the second.
+struct Tap {
+    std::size_t low = 0;
+    std::size_t high = 0;
+    double weight = 0;
+};
+
+std::vector<Tap> taps(int source, int target) {
+    std::vector<Tap> result(static_cast<std::size_t>(target));
+    for (int i = 0; i < target; ++i) {
+        const double position = std::clamp((i + 0.5) * source / target - 0.5, 0.0, source - 1.0);
+        const double low = std::floor(position);
+        Tap& tap = result[static_cast<std::size_t>(i)];
+        tap.low = static_cast<std::size_t>(low);
+        tap.high = std::min(tap.low + 1, static_cast<std::size_t>(source - 1));
+        tap.weight = position - low;
+    }
+    return result;
+}
+
+} // namespace
+
+Status check_map_size(std::int64_t nx, std::int64_t ny, const std::string& name) {
+    if (nx >= 1 && ny >= 1 && nx <= MAP_LIMIT && ny <= MAP_LIMIT) return ok_status();
+    return error(Code::bad_file, name + ": a map of " + std::to_string(nx) + " x " + std::to_string(ny) +
+                                     " is outside 1 ... " + std::to_string(MAP_LIMIT) + " on each side");
+}
+
+Result<std::vector<std::uint8_t>> read_file_bytes(const std::string& path, std::uint64_t limit) {
+    std::error_code failure;
+    const auto kind = std::filesystem::status(path, failure).type();
+    if (kind == std::filesystem::file_type::not_found) return error(Code::not_found, path + ": no such file");
+    if (kind != std::filesystem::file_type::regular) return error(Code::bad_file, path + ": not a regular file");
+    const std::uintmax_t size = std::filesystem::file_size(path, failure);
+    if (failure) return error(Code::bad_file, path + ": " + failure.message());
+    if (size > limit)
+        return error(Code::bad_file, path + ": " + std::to_string(size) + " bytes is more than the largest accepted file, " +
+                                         std::to_string(limit) + " bytes");
+    std::ifstream file(path, std::ios::binary);
+    if (!file) return error(Code::bad_file, path + ": cannot be opened for reading");
+    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size));
+    file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+    if (static_cast<std::uintmax_t>(file.gcount()) != size)
+        return error(Code::bad_file, path + ": reading stopped after " + std::to_string(file.gcount()) + " of " +
+                                         std::to_string(size) + " bytes");
+    return bytes;
+}
+
+Result<Map> read_map(const std::string& path, std::optional<std::pair<int, int>> size) {
+    const std::string ending = lower_case_ending(path);
+    const bool raw = ending == ".r16" || ending == ".raw";
+    if (!raw && ending != ".png" && ending != ".npy")
+        return error(Code::bad_file, path + ": maps end in .png, .r16, .raw or .npy");
+    if (!raw && size) return error(Code::bad_argument, path + ": only .r16 and .raw maps are given a size");
+    // The largest map as float64, and some room for a header.
+    const std::uint64_t limit = std::uint64_t{MAP_LIMIT} * MAP_LIMIT * 8 + 65536;
+    auto bytes = read_file_bytes(path, limit);
+    if (!bytes) return bytes.status();
+    if (raw) return decode_r16(*bytes, path, size);
+    return ending == ".png" ? decode_png(*bytes, path) : decode_npy(*bytes, path);
+}
+
+std::vector<float> resample(const Map& map, int nx, int ny) {
+    if (map.nx == nx && map.ny == ny) return map.values;
+    const std::vector<Tap> columns = taps(map.nx, nx);
+    const std::vector<Tap> rows = taps(map.ny, ny);
+    std::vector<float> result;
+    result.reserve(columns.size() * rows.size());
+    for (const Tap& row : rows) {
+        const std::size_t south = row.low * static_cast<std::size_t>(map.nx);
+        const std::size_t north = row.high * static_cast<std::size_t>(map.nx);
+        const auto along = [&](std::size_t start, const Tap& column) {
+            return static_cast<double>(map.values[start + column.low]) * (1 - column.weight) +
+                   static_cast<double>(map.values[start + column.high]) * column.weight;
+        };
+        for (const Tap& column : columns)
+            result.push_back(static_cast<float>(along(south, column) * (1 - row.weight) + along(north, column) * row.weight));
+    }
+    return result;
+}
+
+} // namespace wadi

@@ -1,0 +1,44 @@
+// Height maps read from files: PNG, RAW r16 and NPY. Row 0 is the south side, as in every field of the engine.
+#pragma once
+#include "engine/compute/status.hpp"
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace wadi {
+
+/// Largest width and height of a map [cells]: the largest grid.
+inline constexpr int MAP_LIMIT = 16384;
+
+struct Map {
+    int nx = 0;
+    int ny = 0;
+    bool integer = false;      // values are grey 0 ... 1; otherwise as stored (NPY)
+    std::vector<float> values; // row-major nx * ny, row 0 in the south
+};
+
+/// Reads a map by the ending of its name: .png, .r16 (or .raw) and .npy. `size` (nx, ny) is what an r16 file holds, square
+/// when absent; for the other formats it must be absent. Errors: not_found, bad_file, bad_argument; the message names the
+/// file.
+Result<Map> read_map(const std::string& path, std::optional<std::pair<int, int>> size);
+
+/// The same from bytes already read; `name` is used in messages.
+/// PNG with 8 or 16 bits: grey, or the luma of a colour image; alpha is ignored. The file's first row is the north.
+Result<Map> decode_png(const std::vector<std::uint8_t>& bytes, const std::string& name);
+/// Little-endian 16-bit samples without a header. The file's first row is the north.
+Result<Map> decode_r16(const std::vector<std::uint8_t>& bytes, const std::string& name, std::optional<std::pair<int, int>> size);
+/// NumPy format 1 and 2, little-endian float32 or float64, C order, shape (ny, nx). The file's first row is the south.
+Result<Map> decode_npy(const std::vector<std::uint8_t>& bytes, const std::string& name);
+
+/// Bilinear samples at the cell centres of an nx * ny grid over the same rectangle; an exact copy when the sizes are equal.
+std::vector<float> resample(const Map& map, int nx, int ny);
+
+/// The whole of a regular file of at most `limit` bytes.
+Result<std::vector<std::uint8_t>> read_file_bytes(const std::string& path, std::uint64_t limit);
+
+/// ok, or why a map of this size is not accepted.
+Status check_map_size(std::int64_t nx, std::int64_t ny, const std::string& name);
+
+} // namespace wadi

@@ -1,0 +1,118 @@
+#include "engine/image/map.hpp"
+#include <algorithm>
+#include <array>
+#include <climits>
+#include <cstddef>
+#include <memory>
+
+#define STB_IMAGE_IMPLEMENTATION
+#define STB_IMAGE_STATIC
+#define STBI_ONLY_PNG
+#define STBI_NO_STDIO
+#define STBI_NO_HDR
+#define STBI_NO_LINEAR
+#define STBI_MAX_DIMENSIONS 16384
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#endif
+#include <stb/stb_image.h>
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif
+
+namespace wadi {
+namespace {
+
+constexpr std::size_t SIGNATURE_BYTES = 8;
+constexpr std::array<std::uint8_t, SIGNATURE_BYTES> SIGNATURE = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+// Deflate expands by at most this factor (PNG specification, second edition, annex; zlib technical notes).
+constexpr std::uint64_t DEFLATE_LIMIT = 1032;
+
+std::uint32_t big_endian(const std::uint8_t* at) {
+    return (std::uint32_t{at[0]} << 24) | (std::uint32_t{at[1]} << 16) | (std::uint32_t{at[2]} << 8) | at[3];
+}
+
+std::uint32_t crc32(const std::uint8_t* data, std::size_t size) {
+    static const std::array<std::uint32_t, 256> table = [] {
+        std::array<std::uint32_t, 256> t{};
+        for (std::uint32_t n = 0; n < 256; ++n) {
+            std::uint32_t c = n;
+            for (int bit = 0; bit < 8; ++bit)
+                c = (c & 1u) != 0 ? 0xedb88320u ^ (c >> 1) : c >> 1;
+            t[n] = c;
+        }
+        return t;
+    }();
+    std::uint32_t crc = 0xffffffffu;
+    for (std::size_t i = 0; i < size; ++i)
+        crc = table[(crc ^ data[i]) & 0xffu] ^ (crc >> 8);
+    return crc ^ 0xffffffffu;
+}
+
+/// stb_image checks neither chunk checksums nor that the file ends where it should: a damaged map would load.
+Status check_chunks(const std::vector<std::uint8_t>& bytes, const std::string& name) {
+    constexpr std::size_t overhead = 12; // length, type and checksum
+    std::size_t at = SIGNATURE_BYTES;
+    for (;;) {
+        if (bytes.size() - at < overhead) return error(Code::bad_file, name + ": truncated at byte " + std::to_string(at));
+        const std::size_t length = big_endian(&bytes[at]);
+        if (length > bytes.size() - at - overhead)
+            return error(Code::bad_file, name + ": truncated inside the chunk at byte " + std::to_string(at));
+        if (crc32(&bytes[at + 4], length + 4) != big_endian(&bytes[at + 8 + length]))
+            return error(Code::bad_file, name + ": damaged, wrong checksum of the chunk at byte " + std::to_string(at));
+        if (std::string(&bytes[at + 4], &bytes[at + 8]) == "IEND") return ok_status();
+        at += overhead + length;
+    }
+}
+
+template <class Sample> std::vector<float> to_grey(const Sample* samples, int nx, int ny, float white) {
+    std::vector<float> grey;
+    const auto width = static_cast<std::size_t>(nx);
+    grey.reserve(width * static_cast<std::size_t>(ny));
+    for (auto row = static_cast<std::size_t>(ny); row-- > 0;)
+        for (std::size_t i = 0; i < width; ++i)
+            grey.push_back(static_cast<float>(samples[row * width + i]) / white);
+    return grey;
+}
+
+} // namespace
+
+Result<Map> decode_png(const std::vector<std::uint8_t>& bytes, const std::string& name) {
+    const std::size_t ihdr_end = SIGNATURE_BYTES + 25;
+    if (bytes.size() < ihdr_end || bytes.size() > INT_MAX ||
+        !std::equal(SIGNATURE.begin(), SIGNATURE.end(), bytes.begin()))
+        return error(Code::bad_file, name + ": not a PNG file");
+    if (Status status = check_chunks(bytes, name); !status) return status;
+    const std::int64_t width = big_endian(&bytes[16]);
+    const std::int64_t height = big_endian(&bytes[20]);
+    if (Status status = check_map_size(width, height, name); !status) return status;
+    // The header alone decides how much the decoder allocates: the data must be able to fill it.
+    const std::uint64_t bits = bytes[24];
+    if (static_cast<std::uint64_t>(width * height) * bits / 8 > DEFLATE_LIMIT * bytes.size())
+        return error(Code::bad_file, name + ": " + std::to_string(bytes.size()) + " bytes cannot hold the " +
+                                         std::to_string(width) + " x " + std::to_string(height) + " pixels of its header");
+    const auto size = static_cast<int>(bytes.size());
+    int nx = 0;
+    int ny = 0;
+    int channels = 0;
+    Map map;
+    map.integer = true;
+    const auto refuse = [&] { return error(Code::bad_file, name + ": PNG cannot be decoded: " + stbi_failure_reason()); };
+    if (stbi_is_16_bit_from_memory(bytes.data(), size) != 0) {
+        const std::unique_ptr<stbi_us, void (*)(void*)> samples(
+            stbi_load_16_from_memory(bytes.data(), size, &nx, &ny, &channels, 1), stbi_image_free);
+        if (!samples) return refuse();
+        map.values = to_grey(samples.get(), nx, ny, 65535.0f);
+    } else {
+        const std::unique_ptr<stbi_uc, void (*)(void*)> samples(
+            stbi_load_from_memory(bytes.data(), size, &nx, &ny, &channels, 1), stbi_image_free);
+        if (!samples) return refuse();
+        map.values = to_grey(samples.get(), nx, ny, 255.0f);
+    }
+    map.nx = nx;
+    map.ny = ny;
+    return map;
+}
+
+} // namespace wadi

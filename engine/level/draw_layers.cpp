@@ -1,0 +1,130 @@
+#include "engine/image/map.hpp"
+#include "engine/level/layers.hpp"
+#include "engine/level/text.hpp"
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+
+namespace wadi {
+namespace {
+
+std::size_t cell_count(const Frame& frame) { return static_cast<std::size_t>(frame.nx) * static_cast<std::size_t>(frame.ny); }
+
+double value_at(const std::vector<float>& field, std::size_t cell) {
+    return field.empty() ? 0 : static_cast<double>(field[cell]);
+}
+
+double combined(double current, double value, Combine combine) {
+    switch (combine) {
+    case Combine::add: return current + value;
+    case Combine::set: return value;
+    case Combine::max: return std::max(current, value);
+    case Combine::min: return std::min(current, value);
+    case Combine::subtract: return current - value;
+    }
+    return current;
+}
+
+double rounded(double height, double quantum) { return quantum > 0 ? std::round(height / quantum) * quantum : height; }
+
+Result<std::vector<float>> load_heights(const Layer& layer, const Frame& frame, const std::string& folder) {
+    const MapSource& source = *layer.map;
+    auto map = read_map((std::filesystem::path(folder) / source.file).string(), source.size);
+    if (!map) return error(map.status().code, layer.path + ".file: " + map.status().message);
+    if (source.grey_range && !map->integer)
+        return error(Code::bad_file, layer.path + ": min and max are for integer maps (PNG, r16); " + source.file +
+                                         " holds heights, use scale and offset");
+    if (map->integer && !source.grey_range && !source.scale_given)
+        return error(Code::bad_file, layer.path + ": " + source.file + " holds grey values; give min and max, the heights of " +
+                                         "black and white in metres");
+    std::vector<float> values = resample(*map, frame.nx, frame.ny);
+    const double scale = source.grey_range ? source.max - source.min : source.scale;
+    const double offset = source.grey_range ? source.min : source.offset;
+    for (std::size_t cell = 0; cell < values.size(); ++cell) {
+        const double height = static_cast<double>(values[cell]) * scale + offset;
+        if (!(std::fabs(height) <= HEIGHT_MOST))
+            return error(Code::bad_file, outside_text(layer.path + ": height", height, -HEIGHT_MOST, HEIGHT_MOST) + " in cell (" +
+                                             std::to_string(cell % static_cast<std::size_t>(frame.nx)) + ", " +
+                                             std::to_string(cell / static_cast<std::size_t>(frame.nx)) + ")");
+        values[cell] = static_cast<float>(height);
+    }
+    return values;
+}
+
+/// What a layer says about one cell: nothing outside its shape.
+struct Sample {
+    bool inside = false;
+    double value = 0;
+};
+
+Sample sample_layer(const Layer& layer, double relative, double ground, double sand) {
+    if (std::isinf(relative)) return {};
+    if (layer.amount == Amount::wet) return {true, layer.top * sand};
+    double value = layer.top + relative;
+    if (layer.amount == Amount::surface) value = std::max(value - ground, 0.0);
+    // Beyond the line where a sloping side meets the ground, the shape is over.
+    if (has_sloping_sides(layer.shape) && relative < 0 && value <= 0) return {};
+    return {true, value};
+}
+
+} // namespace
+
+Result<std::vector<float>> draw_layers(const std::vector<Layer>& layers, LayerTarget target, const Frame& frame,
+                                       const std::string& folder, const std::vector<float>& terrain,
+                                       const std::vector<float>& sand, std::vector<std::string>& warnings) {
+    std::vector<float> field(layers.empty() ? 0 : cell_count(frame), 0.0f);
+    for (const Layer& layer : layers) {
+        std::vector<float> heights;
+        if (layer.map) {
+            auto loaded = load_heights(layer, frame, folder);
+            if (!loaded) return loaded.status();
+            heights = std::move(*loaded);
+        }
+        bool changed = false;
+        std::size_t cell = 0;
+        for (int j = 0; j < frame.ny; ++j) {
+            const double y = (j + 0.5) * frame.dx / frame.stretch_y;
+            for (int i = 0; i < frame.nx; ++i, ++cell) {
+                const double current = static_cast<double>(field[cell]);
+                if (layer.only_present && !(current > 0)) continue;
+                const double sand_here = value_at(sand, cell);
+                const double ground = value_at(terrain, cell) + sand_here;
+                const double relative =
+                    layer.map ? static_cast<double>(heights[cell]) : relative_height(layer.shape, (i + 0.5) * frame.dx, y);
+                const Sample sample = sample_layer(layer, relative, ground, sand_here);
+                if (!sample.inside) continue;
+                double next = combined(current, sample.value, layer.combine);
+                if (target != LayerTarget::terrain) next = std::max(next, 0.0);
+                field[cell] = static_cast<float>(rounded(next, frame.quantum));
+                changed = changed || field[cell] != static_cast<float>(current);
+            }
+        }
+        const bool flat_zero = layer.amount == Amount::height && !layer.map && layer.top == 0;
+        if (!changed && !flat_zero)
+            warnings.push_back(layer.path +
+                               ": changes no cell; it lies outside the grid, between cell centres, below the ground or under "
+                               "what is already there");
+    }
+    return field;
+}
+
+void draw_velocities(const std::vector<VelocityRegion>& regions, bool of_sand, const Frame& frame, std::vector<float>& x,
+                     std::vector<float>& y) {
+    for (const VelocityRegion& region : regions) {
+        if (region.of_sand != of_sand) continue;
+        x.resize(cell_count(frame), 0.0f);
+        y.resize(cell_count(frame), 0.0f);
+        std::size_t cell = 0;
+        for (int j = 0; j < frame.ny; ++j)
+            for (int i = 0; i < frame.nx; ++i, ++cell) {
+                const double relative =
+                    relative_height(region.shape, (i + 0.5) * frame.dx, (j + 0.5) * frame.dx / frame.stretch_y);
+                if (std::isinf(relative)) continue;
+                x[cell] = static_cast<float>(region.velocity[0]);
+                y[cell] = static_cast<float>(region.velocity[1]);
+            }
+    }
+}
+
+} // namespace wadi

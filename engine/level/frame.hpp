@@ -1,0 +1,12 @@
+// What a caller's overrides do to the settings and to the grid that a level is drawn on.
+#pragma once
+#include "engine/level/layers.hpp"
+#include "engine/level/level.hpp"
+
+namespace wadi {
+
+/// Changes grid, time step and method; moves sources and openings of sides with the stretch in y (discs keep their radius).
+/// The frame is the grid to draw on. Errors: bad_argument.
+Result<Frame> apply_overrides(const LevelOverrides& overrides, Settings& settings);
+
+} // namespace wadi

@@ -1,0 +1,173 @@
+#include "engine/level/json_reader.hpp"
+#include "engine/level/text.hpp"
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <set>
+
+namespace wadi {
+namespace {
+
+std::string position_text(const std::string& text, std::size_t byte) {
+    const std::size_t end = std::min(byte == 0 ? 0 : byte - 1, text.size());
+    std::size_t line = 1;
+    std::size_t column = 1;
+    for (std::size_t n = 0; n < end; ++n) {
+        if (text[n] == '\n') {
+            ++line;
+            column = 1;
+        } else {
+            ++column;
+        }
+    }
+    return "line " + std::to_string(line) + ", column " + std::to_string(column);
+}
+
+/// nlohmann's message without its own prefix "[json.exception...] parse error at line 1, column 2: ".
+std::string reason_of(const std::string& what) {
+    const std::size_t syntax = what.find("syntax error");
+    if (syntax != std::string::npos) return what.substr(syntax);
+    const std::size_t bracket = what.find("] ");
+    return bracket == std::string::npos ? what : what.substr(bracket + 2);
+}
+
+void refuse(Status& status, std::string message) {
+    if (status) status = error(Code::bad_file, std::move(message));
+}
+
+} // namespace
+
+Result<Json> parse_json(const std::string& text) {
+    std::vector<std::set<std::string>> objects;
+    std::string repeated;
+    const auto note_keys = [&](int, Json::parse_event_t event, Json& value) {
+        if (event == Json::parse_event_t::object_start) objects.emplace_back();
+        if (event == Json::parse_event_t::object_end) objects.pop_back();
+        if (event == Json::parse_event_t::key && !objects.back().insert(value.get<std::string>()).second && repeated.empty())
+            repeated = value.get<std::string>();
+        return true;
+    };
+    try {
+        Json json = Json::parse(text, note_keys, true, true);
+        if (!repeated.empty()) return error(Code::bad_file, "the key \"" + repeated + "\" is given twice in one object");
+        return json;
+    } catch (const Json::parse_error& failure) {
+        return error(Code::bad_file, position_text(text, failure.byte) + ": " + reason_of(failure.what()));
+    } catch (const Json::exception& failure) {
+        return error(Code::bad_file, reason_of(failure.what()));
+    }
+}
+
+std::string json_text(const Json& value) {
+    constexpr std::size_t longest = 40;
+    std::string text = value.dump();
+    if (text.size() > longest) text = text.substr(0, longest) + " ...";
+    return text;
+}
+
+double read_number(const Json& value, const std::string& path, double least, double most, Status& status) {
+    if (!value.is_number()) {
+        refuse(status, path + ": expected a number, found " + json_text(value));
+        return 0;
+    }
+    const double number = value.get<double>();
+    if (!(number >= least && number <= most)) refuse(status, outside_text(path, number, least, most));
+    return number;
+}
+
+std::array<double, 2> read_pair(const Json& value, const std::string& path, double least, double most, Status& status) {
+    if (!value.is_array() || value.size() != 2) {
+        refuse(status, path + ": expected two numbers [x, y], found " + json_text(value));
+        return {0, 0};
+    }
+    return {read_number(value[0], path + "[0]", least, most, status), read_number(value[1], path + "[1]", least, most, status)};
+}
+
+std::vector<const Json*> read_array(const Json& value, const std::string& path, std::size_t most, Status& status) {
+    std::vector<const Json*> elements;
+    if (!value.is_array())
+        refuse(status, path + ": expected a list [...], found " + json_text(value));
+    else if (value.size() > most)
+        refuse(status, path + ": " + std::to_string(value.size()) + " elements are more than " + std::to_string(most));
+    else
+        for (const Json& element : value)
+            elements.push_back(&element);
+    return elements;
+}
+
+ObjectReader::ObjectReader(const Json& value, std::string path, Status& status) : path_(std::move(path)), status_(&status) {
+    if (value.is_object())
+        object_ = &value;
+    else
+        refuse(status, (path_.empty() ? std::string("the level") : path_) + ": expected an object {...}, found " + json_text(value));
+}
+
+const Json* ObjectReader::find(const char* key) {
+    if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.emplace_back(key);
+    if (object_ == nullptr) return nullptr;
+    const auto at = object_->find(key);
+    return at == object_->end() ? nullptr : &*at;
+}
+
+const Json* ObjectReader::require(const char* key) {
+    const Json* value = find(key);
+    if (value == nullptr && missing_.empty()) missing_ = key;
+    return value;
+}
+
+std::string ObjectReader::path_of(const std::string& key) const { return path_.empty() ? key : path_ + "." + key; }
+
+void ObjectReader::fail(const std::string& key, const std::string& message) {
+    refuse(*status_, (key.empty() ? path_ : path_of(key)) + ": " + message);
+}
+
+void ObjectReader::number(const char* key, double& out, double least, double most) {
+    if (const Json* value = find(key)) out = read_number(*value, path_of(key), least, most, *status_);
+}
+
+void ObjectReader::whole_number(const char* key, int& out, int least, int most) {
+    const Json* value = find(key);
+    if (value == nullptr) return;
+    const double number = read_number(*value, path_of(key), least, most, *status_);
+    if (failed()) return;
+    if (number != std::floor(number)) return fail(key, number_text(number) + " is not a whole number");
+    out = static_cast<int>(number);
+}
+
+void ObjectReader::boolean(const char* key, bool& out) {
+    const Json* value = find(key);
+    if (value == nullptr) return;
+    if (!value->is_boolean()) return fail(key, "expected true or false, found " + json_text(*value));
+    out = value->get<bool>();
+}
+
+void ObjectReader::string(const char* key, std::string& out) {
+    const Json* value = find(key);
+    if (value == nullptr) return;
+    if (!value->is_string()) return fail(key, "expected a text, found " + json_text(*value));
+    out = value->get<std::string>();
+}
+
+void ObjectReader::pair(const char* key, std::array<double, 2>& out, double least, double most) {
+    if (const Json* value = find(key)) out = read_pair(*value, path_of(key), least, most, *status_);
+}
+
+void ObjectReader::choice(const char* key, const std::vector<std::string>& names, int& index) {
+    std::string name;
+    string(key, name);
+    if (failed() || object_ == nullptr || !object_->contains(key)) return;
+    const auto at = std::find(names.begin(), names.end(), name);
+    if (at == names.end()) return fail(key, "\"" + name + "\" is not known" + suggestion(name, names));
+    index = static_cast<int>(at - names.begin());
+}
+
+void ObjectReader::finish() {
+    if (failed() || object_ == nullptr) return;
+    for (const auto& [key, value] : object_->items())
+        if (std::find(known_.begin(), known_.end(), key) == known_.end())
+            return fail(key, "unknown key" + suggestion(key, known_));
+    if (!missing_.empty()) fail(missing_, "missing");
+}
+
+} // namespace wadi

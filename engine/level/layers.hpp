@@ -1,0 +1,76 @@
+// The layers of a level's terrain, sand and water: maps and shapes combined in order into fields.
+#pragma once
+#include "engine/compute/status.hpp"
+#include "engine/level/json_reader.hpp"
+#include "engine/level/shapes.hpp"
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace wadi {
+
+inline constexpr std::size_t LAYERS_MOST = 256; // per field
+inline constexpr double HEIGHT_MOST = 1e6;      // [m]
+inline constexpr double POSITION_MOST = 1e9;    // [m]
+
+/// The grid that fields are drawn on. A point of the grid at y is the level's own point at y / stretch_y.
+struct Frame {
+    int nx = 0;
+    int ny = 0;
+    double dx = 0;        // [m]
+    double stretch_y = 1;
+    double quantum = 0;   // fields are rounded to multiples of it, so that lakes are flat to the bit; 0 = not rounded [m]
+};
+
+enum class LayerTarget { terrain, sand, water };
+enum class Combine { add, set, max, min, subtract };
+enum class Amount {
+    height,  // depth, or elevation of terrain [m]
+    surface, // absolute elevation: filled up from the ground below [m]
+    wet,     // water as a share of the sand's depth
+};
+
+struct MapSource {
+    std::string file;
+    std::optional<std::pair<int, int>> size; // of an r16 map
+    bool grey_range = false;                 // grey 0 ... 1 becomes min ... max; otherwise value * scale + offset
+    double min = 0;
+    double max = 1;
+    bool scale_given = false;
+    double scale = 1;
+    double offset = 0;
+};
+
+struct Layer {
+    std::string path;             // as messages name it: sand[2]
+    std::optional<MapSource> map; // otherwise the shape counts
+    Shape shape;
+    Amount amount = Amount::height;
+    double top = 0;               // height, surface or wet
+    Combine combine = Combine::add;
+    bool only_present = false;    // only cells where the field is above zero
+};
+
+/// A region that starts with a velocity.
+struct VelocityRegion {
+    std::string path;
+    bool of_sand = false;
+    Shape shape;
+    Point velocity = {0, 0}; // [m/s]
+};
+
+std::vector<Layer> read_layers(const Json& value, const std::string& path, LayerTarget target, Status& status);
+std::vector<VelocityRegion> read_velocities(const Json& value, const std::string& path, Status& status);
+
+/// Draws the layers. `terrain` and `sand` are the fields below, empty = zero. Maps are relative to `folder`. A layer that
+/// changes no cell is worth a warning. The result is empty when there are no layers.
+Result<std::vector<float>> draw_layers(const std::vector<Layer>& layers, LayerTarget target, const Frame& frame,
+                                       const std::string& folder, const std::vector<float>& terrain,
+                                       const std::vector<float>& sand, std::vector<std::string>& warnings);
+
+/// Draws the velocities of water or of sand into x and y; both stay empty when no region sets any.
+void draw_velocities(const std::vector<VelocityRegion>& regions, bool of_sand, const Frame& frame, std::vector<float>& x,
+                     std::vector<float>& y);
+
+} // namespace wadi

@@ -1,0 +1,100 @@
+#include "engine/level/level.hpp"
+#include "engine/image/map.hpp"
+#include "engine/level/frame.hpp"
+#include "engine/level/settings_reader.hpp"
+#include <filesystem>
+#include <new>
+
+namespace wadi {
+namespace {
+
+constexpr int FORMAT_VERSION = 1;
+constexpr std::uint64_t LEVEL_BYTES_MOST = 16u << 20;
+constexpr double DURATION_MOST = 1e9; // [s]
+
+struct Layers {
+    std::vector<Layer> terrain;
+    std::vector<Layer> sand;
+    std::vector<Layer> water;
+    std::vector<VelocityRegion> velocities;
+};
+
+void read_version(ObjectReader& root) {
+    int version = 0;
+    root.require("format_version");
+    root.whole_number("format_version", version, 1, 1000000);
+    if (version > FORMAT_VERSION)
+        root.fail("format_version", std::to_string(version) + " is newer than this build reads, " + std::to_string(FORMAT_VERSION));
+}
+
+Status read_root(const Json& json, const std::string& folder, Level& level, Layers& layers) {
+    Status status;
+    ObjectReader root(json, "", status);
+    read_version(root);
+    std::string schema; // editors use it
+    root.string("$schema", schema);
+    root.require("name");
+    root.string("name", level.name);
+    root.string("description", level.description);
+    root.number("duration", level.duration, 0, DURATION_MOST);
+    read_settings(root, folder, level.settings);
+    if (const Json* list = root.find("terrain")) layers.terrain = read_layers(*list, "terrain", LayerTarget::terrain, status);
+    if (const Json* list = root.find("sand")) layers.sand = read_layers(*list, "sand", LayerTarget::sand, status);
+    if (const Json* list = root.find("water")) layers.water = read_layers(*list, "water", LayerTarget::water, status);
+    if (const Json* list = root.find("velocities")) layers.velocities = read_velocities(*list, "velocities", status);
+    root.finish();
+    return status;
+}
+
+Status draw(const Layers& layers, const Frame& frame, const std::string& folder, Level& level) {
+    InitialFields& fields = level.fields;
+    const auto into = [&](std::vector<float>& field, const std::vector<Layer>& list, LayerTarget target) {
+        auto drawn = draw_layers(list, target, frame, folder, fields.terrain, fields.sand, level.warnings);
+        if (drawn) field = std::move(*drawn);
+        return drawn.status();
+    };
+    if (Status status = into(fields.terrain, layers.terrain, LayerTarget::terrain); !status) return status;
+    if (Status status = into(fields.sand, layers.sand, LayerTarget::sand); !status) return status;
+    if (Status status = into(fields.water, layers.water, LayerTarget::water); !status) return status;
+    draw_velocities(layers.velocities, false, frame, fields.velocity_x, fields.velocity_y);
+    draw_velocities(layers.velocities, true, frame, fields.sand_velocity_x, fields.sand_velocity_y);
+    return ok_status();
+}
+
+Result<Level> parse(const std::string& text, const std::string& folder, const LevelOverrides& overrides) {
+    auto json = parse_json(text);
+    if (!json) return json.status();
+    Level level;
+    Layers layers;
+    if (Status status = read_root(*json, folder, level, layers); !status) return status;
+    if (Status status = validate(level.settings); !status) return error(Code::bad_file, status.message);
+    auto frame = apply_overrides(overrides, level.settings);
+    if (!frame) return frame.status();
+    if (Status status = validate(level.settings); !status) return error(Code::bad_argument, status.message);
+    if (Status status = draw(layers, *frame, folder, level); !status) return status;
+    if (Status status = validate(level.fields, level.settings); !status) return error(Code::bad_file, status.message);
+    for (std::string& warning : level_warnings(level.settings, level.fields))
+        level.warnings.push_back(std::move(warning));
+    return level;
+}
+
+} // namespace
+
+Result<Level> parse_level(const std::string& text, const std::string& folder, const LevelOverrides& overrides) {
+    try {
+        return parse(text, folder, overrides);
+    } catch (const std::bad_alloc&) {
+        return error(Code::out_of_memory, "the level does not fit into memory");
+    }
+}
+
+Result<Level> load_level(const std::string& path, const LevelOverrides& overrides) {
+    auto bytes = read_file_bytes(path, LEVEL_BYTES_MOST);
+    if (!bytes) return bytes.status();
+    const std::string text(bytes->begin(), bytes->end());
+    auto level = parse_level(text, std::filesystem::path(path).parent_path().string(), overrides);
+    if (!level && level.status().code != Code::bad_argument) return error(level.status().code, path + ": " + level.status().message);
+    return level;
+}
+
+} // namespace wadi

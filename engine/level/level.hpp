@@ -1,0 +1,45 @@
+// Level files: JSON plus maps, or a terrain map alone. docs: samples/levels/README.md; schema: samples/levels/level.schema.json.
+#pragma once
+#include "engine/include/wadi/settings.hpp"
+#include "engine/compute/status.hpp"
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace wadi {
+
+/// A level ready to run: settings, fields and what the file says beside them.
+struct Level {
+    std::string name;
+    std::string description;
+    Settings settings;
+    InitialFields fields;
+    double duration = 10;               // [s] a recorder runs by default
+    std::vector<std::string> warnings;  // advice with numbers, not errors
+};
+
+/// What a caller may override before maps are sampled and shapes drawn.
+struct LevelOverrides {
+    /// New grid size. Keeps the x extent and square cells: dx = extent/nx, maps and shapes stretch in y when the aspect
+    /// changes, dt scales with dx unless given.
+    std::optional<std::pair<int, int>> size;
+    std::optional<double> dt;           // [s]
+    std::optional<std::string> method;  // name of a method preset
+};
+
+/// Reads a level file. Errors: not_found, bad_file (position or field, nearest known key, allowed range).
+Result<Level> load_level(const std::string& path, const LevelOverrides& overrides);
+
+/// The same from text; map paths are relative to `folder`.
+Result<Level> parse_level(const std::string& text, const std::string& folder, const LevelOverrides& overrides);
+
+/// A level from a terrain map alone (PNG, r16, NPY): the map's size unless overridden, cell size 1 m, heights scaled so that
+/// the range is `height_range` [m] for integer maps and as stored for NPY, with a water source at the highest point's
+/// neighbourhood and outflow on the sides.
+Result<Level> level_from_terrain(const std::string& map_path, const LevelOverrides& overrides);
+
+/// Advice with numbers: waves slower than they should be for this dx and dt, cohesion too weak to hold a wall, columns near
+/// the declared largest height, and the like (NUMERICS.md section 4).
+std::vector<std::string> level_warnings(const Settings& settings, const InitialFields& fields);
+
+} // namespace wadi

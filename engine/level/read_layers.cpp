@@ -1,0 +1,213 @@
+#include "engine/image/map.hpp"
+#include "engine/level/layers.hpp"
+#include "engine/level/setting_fields.hpp"
+#include <cstddef>
+
+namespace wadi {
+namespace {
+
+constexpr double SIDE_SLOPE_LEAST = 1e-3, SIDE_SLOPE_MOST = 1e3;
+constexpr std::size_t POINTS_MOST = 256;
+constexpr int OCTAVES_MOST = 12;
+const std::vector<std::string> SHAPE_NAMES = {"plane", "box", "cylinder", "cone", "ridge", "noise"};
+const std::vector<std::string> REGION_NAMES = {"plane", "box", "cylinder"};
+
+/// Reads exactly one of height, surface and wet, as far as the target and the shape have them.
+void read_amount(ObjectReader& reader, LayerTarget target, Layer& layer) {
+    const bool cone = layer.shape.kind == ShapeKind::cone;
+    int given = 0;
+    const auto read = [&](const char* key, Amount amount, double least, double most) {
+        const Json* value = reader.find(key);
+        if (value == nullptr) return;
+        ++given;
+        layer.amount = amount;
+        layer.top = read_number(*value, reader.path_of(key), least, most, reader.status());
+    };
+    std::string names = "\"height\"";
+    read("height", Amount::height, -HEIGHT_MOST, HEIGHT_MOST);
+    if (target != LayerTarget::terrain) {
+        names += " or \"surface\"";
+        read("surface", Amount::surface, -HEIGHT_MOST, HEIGHT_MOST);
+    }
+    if (target == LayerTarget::water && !cone) {
+        names += " or \"wet\"";
+        read("wet", Amount::wet, 0, 1);
+    }
+    if (given > 1) reader.fail("", "give only one of " + names);
+    if (given == 0) reader.require(target == LayerTarget::water ? "surface" : "height");
+}
+
+void require_pair(ObjectReader& reader, const char* key, Point& out) {
+    if (reader.require(key) != nullptr) reader.pair(key, out, -POSITION_MOST, POSITION_MOST);
+}
+
+void require_number(ObjectReader& reader, const char* key, double& out, double least, double most) {
+    if (reader.require(key) != nullptr) reader.number(key, out, least, most);
+}
+
+/// The outline of a box, cylinder or ridge.
+void read_outline(ObjectReader& reader, Shape& shape) {
+    if (shape.kind == ShapeKind::box) {
+        require_pair(reader, "from", shape.from);
+        require_pair(reader, "to", shape.to);
+        for (std::size_t axis = 0; axis < 2; ++axis)
+            if (reader.find("from") != nullptr && reader.find("to") != nullptr && !(shape.to[axis] > shape.from[axis]))
+                reader.fail("to[" + std::to_string(axis) + "]", "must be greater than from[" + std::to_string(axis) + "]");
+    }
+    if (shape.kind == ShapeKind::cylinder || shape.kind == ShapeKind::cone) require_pair(reader, "center", shape.center);
+    if (shape.kind == ShapeKind::cylinder) require_number(reader, "radius", shape.radius, 1e-6, POSITION_MOST);
+    if (shape.kind != ShapeKind::ridge) return;
+    require_number(reader, "width", shape.width, 1e-6, POSITION_MOST);
+    const Json* points = reader.require("points");
+    if (points == nullptr) return;
+    const std::string path = reader.path_of("points");
+    const auto elements = read_array(*points, path, POINTS_MOST, reader.status());
+    for (std::size_t n = 0; n < elements.size(); ++n)
+        shape.points.push_back(read_pair(*elements[n], path + "[" + std::to_string(n) + "]", -POSITION_MOST, POSITION_MOST,
+                                         reader.status()));
+    if (elements.size() < 2) reader.fail("points", "a ridge needs at least two points");
+}
+
+/// Sides of a solid. A cone is all side: its slope is given, or follows from height and foot radius.
+void read_sides(ObjectReader& reader, Layer& layer) {
+    Shape& shape = layer.shape;
+    const bool cone = shape.kind == ShapeKind::cone;
+    const bool radius_allowed = cone && layer.amount == Amount::height;
+    const bool radius_given = radius_allowed && reader.find("radius") != nullptr;
+    if (radius_given) {
+        double radius = 1;
+        reader.number("radius", radius, 1e-6, POSITION_MOST);
+        shape.side_slope = layer.top / radius;
+        if (reader.find("side_slope") != nullptr) reader.fail("", "give only one of \"radius\" or \"side_slope\"");
+    } else {
+        if (cone) reader.require(radius_allowed ? "radius" : "side_slope");
+        reader.number("side_slope", shape.side_slope, SIDE_SLOPE_LEAST, SIDE_SLOPE_MOST);
+    }
+    if (has_sloping_sides(shape) && layer.amount == Amount::height && !(layer.top > 0))
+        reader.fail("height", "must be above 0 where the sides slope; to dig, combine with \"subtract\"");
+}
+
+void read_noise(ObjectReader& reader, Shape& shape) {
+    require_number(reader, "amplitude", shape.amplitude, 0, HEIGHT_MOST);
+    require_number(reader, "wavelength", shape.wavelength, 1e-3, POSITION_MOST);
+    reader.whole_number("octaves", shape.octaves, 1, OCTAVES_MOST);
+    int seed = 0;
+    reader.whole_number("seed", seed, 0, 2147483647);
+    shape.seed = static_cast<std::uint32_t>(seed);
+}
+
+void read_shape(ObjectReader& reader, LayerTarget target, Layer& layer) {
+    int kind = 0;
+    reader.choice("shape", SHAPE_NAMES, kind);
+    layer.shape.kind = static_cast<ShapeKind>(kind);
+    if (reader.failed()) return;
+    if (layer.shape.kind == ShapeKind::noise) return read_noise(reader, layer.shape);
+    read_amount(reader, target, layer);
+    read_outline(reader, layer.shape);
+    if (layer.amount == Amount::wet) return;
+    if (layer.shape.kind == ShapeKind::plane) {
+        reader.number("slope_x", layer.shape.slope[0], -SIDE_SLOPE_MOST, SIDE_SLOPE_MOST);
+        reader.number("slope_y", layer.shape.slope[1], -SIDE_SLOPE_MOST, SIDE_SLOPE_MOST);
+    } else {
+        read_sides(reader, layer);
+    }
+}
+
+void read_map_source(ObjectReader& reader, LayerTarget target, Layer& layer) {
+    MapSource map;
+    reader.string("file", map.file);
+    if (map.file.empty()) reader.fail("file", "must name a map");
+    const bool range = reader.find("min") != nullptr || reader.find("max") != nullptr;
+    const bool linear = reader.find("scale") != nullptr || reader.find("offset") != nullptr;
+    if (range && linear) reader.fail("", "give either min and max, or scale and offset");
+    map.grey_range = range;
+    if (range) {
+        reader.require("max");
+        reader.number("min", map.min, -HEIGHT_MOST, HEIGHT_MOST);
+        reader.number("max", map.max, -HEIGHT_MOST, HEIGHT_MOST);
+    }
+    map.scale_given = reader.find("scale") != nullptr;
+    reader.number("scale", map.scale, -HEIGHT_MOST, HEIGHT_MOST);
+    reader.number("offset", map.offset, -HEIGHT_MOST, HEIGHT_MOST);
+    if (reader.find("size") != nullptr) {
+        Point size = {1, 1};
+        reader.pair("size", size, 1, MAP_LIMIT);
+        map.size = {static_cast<int>(size[0]), static_cast<int>(size[1])};
+        if (size[0] != map.size->first || size[1] != map.size->second) reader.fail("size", "must be whole numbers");
+    }
+    bool absolute = false;
+    if (target != LayerTarget::terrain) reader.boolean("absolute", absolute);
+    if (absolute) layer.amount = Amount::surface;
+    layer.map = map;
+}
+
+void read_combine(ObjectReader& reader, LayerTarget target, Layer& layer) {
+    static const std::vector<std::string> all = {"add", "set", "max", "min", "subtract"};
+    static const std::vector<std::string> filling = {"set", "max", "min"};
+    if (layer.amount == Amount::height) {
+        int combine = static_cast<int>(Combine::add);
+        reader.choice("combine", all, combine);
+        layer.combine = static_cast<Combine>(combine);
+    } else {
+        int combine = 1;
+        reader.choice("combine", filling, combine);
+        const Combine meaning[] = {Combine::set, Combine::max, Combine::min};
+        layer.combine = meaning[combine];
+    }
+    if (target == LayerTarget::terrain) return;
+    int where = 0;
+    reader.choice("where", {"everywhere", "present"}, where);
+    layer.only_present = where == 1;
+}
+
+} // namespace
+
+std::vector<Layer> read_layers(const Json& value, const std::string& path, LayerTarget target, Status& status) {
+    std::vector<Layer> layers;
+    const auto elements = read_array(value, path, LAYERS_MOST, status);
+    for (std::size_t n = 0; n < elements.size() && status; ++n) {
+        Layer layer;
+        layer.path = path + "[" + std::to_string(n) + "]";
+        ObjectReader reader(*elements[n], layer.path, status);
+        if (!status) break;
+        const bool has_file = elements[n]->contains("file");
+        if (has_file == elements[n]->contains("shape")) {
+            reader.fail("", "needs either a \"shape\" or the \"file\" of a map");
+            break;
+        }
+        if (has_file)
+            read_map_source(reader, target, layer);
+        else
+            read_shape(reader, target, layer);
+        if (status) read_combine(reader, target, layer);
+        reader.finish();
+        layers.push_back(std::move(layer));
+    }
+    return layers;
+}
+
+std::vector<VelocityRegion> read_velocities(const Json& value, const std::string& path, Status& status) {
+    std::vector<VelocityRegion> regions;
+    const auto elements = read_array(value, path, LAYERS_MOST, status);
+    for (std::size_t n = 0; n < elements.size() && status; ++n) {
+        VelocityRegion region;
+        region.path = path + "[" + std::to_string(n) + "]";
+        ObjectReader reader(*elements[n], region.path, status);
+        int of = 0;
+        reader.require("of");
+        reader.choice("of", {"water", "sand"}, of);
+        region.of_sand = of == 1;
+        int kind = 0;
+        reader.require("shape");
+        reader.choice("shape", REGION_NAMES, kind);
+        region.shape.kind = static_cast<ShapeKind>(kind); // REGION_NAMES begin like SHAPE_NAMES
+        if (status) read_outline(reader, region.shape);
+        reader.require("velocity");
+        reader.pair("velocity", region.velocity, -SPEED_MOST, SPEED_MOST);
+        reader.finish();
+        regions.push_back(std::move(region));
+    }
+    return regions;
+}
+
+} // namespace wadi

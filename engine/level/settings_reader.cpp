@@ -1,0 +1,137 @@
+#include "engine/level/settings_reader.hpp"
+#include "engine/level/setting_fields.hpp"
+#include <cstddef>
+#include <limits>
+
+namespace wadi {
+namespace {
+
+constexpr double ANY = std::numeric_limits<double>::max(); // the range is checked by validate()
+constexpr std::size_t SOURCES_READ = 1000;                 // more than a world holds; validate() names the limit
+
+template <class Owner, std::size_t COUNT>
+void read_fields(ObjectReader& reader, Owner& owner, const SettingField<Owner, double> (&fields)[COUNT]) {
+    for (const auto& field : fields)
+        reader.number(field.name, owner.*field.member, field.least, field.most);
+}
+
+void read_grid(const Json& value, Grid& grid, Status& status) {
+    ObjectReader reader(value, "grid", status);
+    for (const char* key : {"nx", "ny", "dx"})
+        reader.require(key);
+    reader.whole_number("nx", grid.nx, 1, GRID_MOST);
+    reader.whole_number("ny", grid.ny, 1, GRID_MOST);
+    reader.number("dx", grid.dx, DX_LEAST, DX_MOST);
+    reader.finish();
+}
+
+void read_material(const Json& value, Material& material, Status& status) {
+    ObjectReader reader(value, "material", status);
+    read_fields(reader, material, MATERIAL_FIELDS);
+    if (const Json* saturation = reader.find("saturation")) {
+        const auto elements = read_array(*saturation, "material.saturation", 3, status);
+        if (elements.size() != 3) reader.fail("saturation", "expected three numbers [phi1, phi2, phi3]");
+        for (std::size_t n = 0; n < elements.size(); ++n)
+            material.saturation[n] =
+                read_number(*elements[n], "material.saturation[" + std::to_string(n) + "]", 0, 1, status);
+    }
+    reader.finish();
+}
+
+void read_method(const Json& value, Method& method, Status& status) {
+    ObjectReader reader(value, "method", status);
+    reader.string("name", method.name);
+    reader.boolean("outflow_limiter", method.outflow_limiter);
+    read_fields(reader, method, METHOD_FIELDS);
+    for (const auto& field : METHOD_COUNTS)
+        reader.whole_number(field.name, method.*field.member, field.least, field.most);
+    reader.finish();
+}
+
+void read_sides(const Json& value, const std::string& folder, std::array<Side, 4>& sides, Status& status) {
+    ObjectReader reader(value, "sides", status);
+    for (std::size_t n = 0; n < sides.size(); ++n) {
+        const Json* found = reader.find(side_names()[n].c_str());
+        if (found == nullptr || !status) continue;
+        Side& side = sides[n];
+        const std::string path = "sides." + side_names()[n];
+        ObjectReader side_reader(*found, path, status);
+        int kind = 0;
+        side_reader.require("kind");
+        side_reader.choice("kind", {"wall", "discharge", "level", "outflow"}, kind);
+        side.kind = static_cast<SideKind>(kind);
+        side_reader.number("from", side.from, 0, ANY);
+        side_reader.number("to", side.to, 0, ANY);
+        if (const Json* series = side_reader.find("value")) side.value = read_series(*series, path + ".value", folder, status);
+        side_reader.finish();
+    }
+    reader.finish();
+}
+
+Source read_source(const Json& value, const std::string& path, const std::string& folder, Status& status) {
+    Source source;
+    ObjectReader reader(value, path, status);
+    int shape = static_cast<int>(SourceShape::disc);
+    reader.require("shape");
+    reader.choice("shape", {"point", "disc", "box"}, shape);
+    source.shape = static_cast<SourceShape>(shape);
+    int material = 0;
+    reader.choice("material", {"water", "sand"}, material);
+    source.material = static_cast<SourceMaterial>(material);
+    if (source.shape == SourceShape::box) {
+        std::array<double, 2> from = {0, 0};
+        std::array<double, 2> to = {0, 0};
+        reader.require("from");
+        reader.require("to");
+        reader.pair("from", from, -ANY, ANY);
+        reader.pair("to", to, -ANY, ANY);
+        source.box = {from[0], from[1], to[0], to[1]};
+    } else {
+        reader.require("center");
+        reader.pair("center", source.center, -ANY, ANY);
+    }
+    if (source.shape == SourceShape::disc) {
+        reader.require("radius");
+        reader.number("radius", source.radius, 0, ANY);
+    }
+    if (const Json* rate = reader.require("rate")) source.rate = read_series(*rate, path + ".rate", folder, status);
+    source.set_velocity = reader.find("velocity") != nullptr;
+    reader.pair("velocity", source.velocity, -SPEED_MOST, SPEED_MOST);
+    reader.finish();
+    return source;
+}
+
+void read_effects(const Json& value, Settings& settings, Status& status) {
+    ObjectReader reader(value, "effects", status);
+    for (const std::string& name : effect_names()) {
+        if (reader.find(name.c_str()) == nullptr) continue;
+        int force = 0;
+        reader.choice(name.c_str(), {"auto", "on", "off"}, force);
+        settings.effects.emplace_back(name, static_cast<Force>(force));
+    }
+    reader.finish();
+}
+
+} // namespace
+
+void read_settings(ObjectReader& root, const std::string& folder, Settings& settings) {
+    Status& status = root.status();
+    if (const Json* grid = root.require("grid")) read_grid(*grid, settings.grid, status);
+    root.require("dt");
+    root.number("dt", settings.dt, DT_LEAST, DT_MOST);
+    root.number("gravity", settings.gravity, 0, GRAVITY_MOST);
+    if (const Json* material = root.find("material")) read_material(*material, settings.material, status);
+    if (const Json* method = root.find("method")) read_method(*method, settings.method, status);
+    if (const Json* sides = root.find("sides")) read_sides(*sides, folder, settings.sides, status);
+    if (const Json* sources = root.find("sources")) {
+        const auto elements = read_array(*sources, "sources", SOURCES_READ, status);
+        for (std::size_t n = 0; n < elements.size() && status; ++n)
+            settings.sources.push_back(read_source(*elements[n], "sources[" + std::to_string(n) + "]", folder, status));
+    }
+    if (const Json* rain = root.find("rain")) settings.rain = read_series(*rain, "rain", folder, status);
+    if (const Json* evaporation = root.find("evaporation"))
+        settings.evaporation = read_series(*evaporation, "evaporation", folder, status);
+    if (const Json* effects = root.find("effects")) read_effects(*effects, settings, status);
+}
+
+} // namespace wadi

@@ -1,0 +1,40 @@
+// The shapes that levels are drawn with: a top region, with vertical or sloping sides.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace wadi {
+
+using Point = std::array<double, 2>; // x to the east, y to the north [m], from the south-west corner of the grid
+
+enum class ShapeKind { plane, box, cylinder, cone, ridge, noise };
+
+struct Shape {
+    ShapeKind kind = ShapeKind::plane;
+    Point slope = {0, 0};              // plane: rise per metre to the east and to the north
+    Point from = {0, 0};               // box
+    Point to = {0, 0};
+    Point center = {0, 0};             // cylinder, cone
+    double radius = 0;                 // cylinder [m]
+    std::vector<Point> points;         // ridge: its crest line
+    double width = 0;                  // ridge: of the crest [m]
+    double side_slope = std::numeric_limits<double>::infinity(); // fall per metre beyond the top; infinite = vertical
+    double amplitude = 0;              // noise [m]
+    double wavelength = 1;             // noise: of the first octave [m]
+    int octaves = 1;
+    std::uint32_t seed = 0;
+};
+
+/// Height of the shape at (x, y) relative to its top [m]: 0 on top, negative on the sides, -infinity where it is not.
+/// A plane gives its rise from the south-west corner, noise a value within +-amplitude.
+double relative_height(const Shape& shape, double x, double y);
+
+/// True where the side falls away for ever, so that the shape ends where it meets the ground.
+bool has_sloping_sides(const Shape& shape);
+
+/// Value noise in -1 ... 1: the same on every machine for the same seed.
+double value_noise(double x, double y, std::uint32_t seed);
+
+} // namespace wadi

@@ -1,0 +1,99 @@
+#include "engine/image/map.hpp"
+#include "engine/level/frame.hpp"
+#include "engine/level/level.hpp"
+#include "engine/level/setting_fields.hpp"
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <new>
+
+namespace wadi {
+namespace {
+
+constexpr double CELL = 1;               // [m]
+constexpr double DT = 0.05;              // for 1 m cells: waves on 8 m of water keep their speed [s]
+constexpr double RELIEF = 0.125;         // height_range of integer maps, as a share of the longer side
+constexpr double HEADROOM = 1.5;         // largest_height over the highest terrain
+constexpr double LEAST_HEADROOM = 8;     // [m]
+constexpr double SOURCE_SHARE = 0.03;    // radius of the spring, as a share of the shorter side
+constexpr double SOURCE_LEAST_CELLS = 2; // and at least this many cells
+constexpr double SOURCE_RATE = 0.1;      // [m/s]
+constexpr double DURATION = 60;          // [s]
+
+/// Integer maps: black = 0, white = the relief, whatever range of greys the map uses. NPY: as stored.
+Status scale_heights(Map& map, const std::string& path) {
+    const auto [low, high] = std::minmax_element(map.values.begin(), map.values.end());
+    if (map.integer) {
+        const float least = *low;
+        const float range = *high > *low ? *high - *low : 1.0f;
+        const auto relief = static_cast<float>(RELIEF * CELL * std::max(map.nx, map.ny));
+        for (float& value : map.values)
+            value = (value - least) / range * relief;
+    } else if (std::max(std::fabs(*low), std::fabs(*high)) > static_cast<float>(HEIGHT_MOST / HEADROOM / 2)) {
+        return error(Code::bad_file, path + ": heights up to " + std::to_string(*high) + " m are more than a world holds");
+    }
+    return ok_status();
+}
+
+Source spring(const std::vector<float>& terrain, const Grid& grid) {
+    const auto highest = static_cast<std::size_t>(std::max_element(terrain.begin(), terrain.end()) - terrain.begin());
+    const auto width = static_cast<std::size_t>(grid.nx);
+    const double extent[2] = {grid.nx * grid.dx, grid.ny * grid.dx};
+    const double at[2] = {(static_cast<double>(highest % width) + 0.5) * grid.dx,
+                          (static_cast<double>(highest / width) + 0.5) * grid.dx};
+    Source source;
+    source.radius = std::max(SOURCE_SHARE * std::min(extent[0], extent[1]), SOURCE_LEAST_CELLS * grid.dx);
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        // Inside by its radius where the grid is wide enough: at the rim the water would leave at once.
+        const double margin = std::min(source.radius, extent[axis] / 2);
+        source.center[axis] = std::clamp(at[axis], margin, extent[axis] - margin);
+    }
+    source.rate.samples = {{0.0, SOURCE_RATE}};
+    return source;
+}
+
+Result<Level> build(const std::string& map_path, const LevelOverrides& overrides) {
+    auto map = read_map(map_path, std::nullopt);
+    if (!map) return map.status();
+    if (Status status = scale_heights(*map, map_path); !status) return status;
+
+    Level level;
+    level.name = std::filesystem::path(map_path).stem().string();
+    level.description = "Water springs from the highest place and leaves over the sides.";
+    level.duration = DURATION;
+    Settings& settings = level.settings;
+    settings.grid = {map->nx, map->ny, CELL};
+    settings.dt = DT;
+    const auto [low, high] = std::minmax_element(map->values.begin(), map->values.end());
+    const double reach = std::max(static_cast<double>(*high), -static_cast<double>(*low));
+    settings.method.largest_height = std::exp2(std::ceil(std::log2(std::max(reach * HEADROOM, reach + LEAST_HEADROOM))));
+    const double quantum = height_quantum(settings.method);
+    settings.method.rest_surface = std::max(settings.method.rest_surface, 2 * quantum);
+    settings.method.dry_threshold = std::max(settings.method.dry_threshold, quantum);
+    for (Side& side : settings.sides)
+        side.kind = SideKind::outflow;
+
+    auto frame = apply_overrides(overrides, settings);
+    if (!frame) return frame.status();
+    level.fields.terrain = resample(*map, frame->nx, frame->ny);
+    for (float& height : level.fields.terrain)
+        height = static_cast<float>(std::round(static_cast<double>(height) / quantum) * quantum);
+    settings.sources.push_back(spring(level.fields.terrain, settings.grid));
+    if (Status status = validate(settings); !status) return status;
+    if (Status status = validate(level.fields, settings); !status) return status;
+    level.warnings = level_warnings(settings, level.fields);
+    return level;
+}
+
+} // namespace
+
+Result<Level> level_from_terrain(const std::string& map_path, const LevelOverrides& overrides) {
+    try {
+        return build(map_path, overrides);
+    } catch (const std::bad_alloc&) {
+        return error(Code::out_of_memory, map_path + ": the map does not fit into memory");
+    }
+}
+
+} // namespace wadi

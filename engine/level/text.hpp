@@ -1,0 +1,20 @@
+// Words and numbers of error messages: the nearest known name, numbers as people write them.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace wadi {
+
+/// At most six significant digits: 0.045, 1e+06.
+std::string number_text(double value);
+
+/// "path: value is outside least ... most".
+std::string outside_text(const std::string& path, double value, double least, double most);
+
+/// Single-character insertions, deletions, replacements and swaps of neighbours that turn one word into the other.
+int edit_distance(const std::string& a, const std::string& b);
+
+/// ", did you mean "x"?" for the nearest of `known` if one is close, else "; known: a, b, c".
+std::string suggestion(const std::string& word, const std::vector<std::string>& known);
+
+} // namespace wadi

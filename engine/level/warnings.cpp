@@ -1,0 +1,244 @@
+// Advice on a level that loads but would not do what its author expects. Each message has the numbers and what to change.
+// Rules and constants: NUMERICS.md sections 2.4b, 2.4d, 2.7, 2.8 and 4.
+#include "engine/level/level.hpp"
+#include "engine/level/setting_fields.hpp"
+#include "engine/level/text.hpp"
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace wadi {
+namespace {
+
+constexpr double WAVE_CFL = 0.45;          // above it the gravity cap slows waves on still water (2.4b)
+constexpr double UNCAPPED_CFL = 0.70;      // above it waves without a gravity cap grow (section 5, row 7)
+constexpr double STIFFNESS_LEAST = 5;      // E in units of rho_s g h0 (section 4)
+constexpr double STIFFNESS_MOST = 15;
+constexpr double WALL_SLOPE = 1.5;         // a step steeper than this is a wall that only cohesion holds
+constexpr double WET_SHARE = 0.02;         // sand with less water than this share of its depth counts as dry
+constexpr double NEARLY_FULL = 0.9;        // of largest_height
+
+std::string meters(double value) { return number_text(std::round(value * 1000) / 1000) + " m"; }
+/// Three significant digits, rounded down: a limit that may be typed as it stands.
+std::string at_most(double value) {
+    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 2);
+    return number_text(std::floor(value / unit * (1 + 1e-12)) * unit);
+}
+std::string at_least(double value) {
+    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 2);
+    return number_text(std::ceil(value / unit * (1 - 1e-12)) * unit);
+}
+
+/// The extremes of the initial fields that the rules need.
+struct Survey {
+    double highest_column = 0;  // H + hs + W [m]
+    double deepest_water = 0;   // W [m]
+    double deepest_sand = 0;    // hs [m]
+    double dry_front = 0;       // pure water beside lower dry ground [m]
+    double wet_wall = 0;        // step of wet sand [m]
+    double wet_wall_ratio = 0;  // W / hs there
+    double steepest_wet = 0;    // slope of wet sand beyond what buoyant friction holds
+    double steepest_limit = 0;  // that limit
+    std::size_t steep_faces = 0;
+};
+
+struct Column {
+    double terrain = 0;
+    double sand = 0;
+    double water = 0;
+    double ground() const { return terrain + sand; }
+    double surface() const { return terrain + sand + std::max(water - sand, 0.0); }
+    double wetness() const { return sand > 0 ? std::min(water / sand, 1.0) : 0; }
+};
+
+/// Cohesion at a saturation before smoothing [Pa].
+double cohesion_at(const Material& m, double phi) {
+    const auto& s = m.saturation;
+    if (phi < s[0]) return m.cohesion_dry + (m.cohesion_wet - m.cohesion_dry) * phi / s[0];
+    if (phi < s[1]) return m.cohesion_wet + (m.cohesion_capillary - m.cohesion_wet) * (phi - s[0]) / (s[1] - s[0]);
+    if (phi < s[2]) return m.cohesion_capillary * (s[2] - phi) / (s[2] - s[1]);
+    return 0;
+}
+
+/// Cohesion that holds a vertical wall of this height [Pa].
+double wall_cohesion(const Settings& settings, double height) {
+    return settings.material.yield_friction * settings.material.sand_density * settings.gravity * height;
+}
+
+void survey_face(const Settings& settings, const Column& a, const Column& b, Survey& survey) {
+    const double eps = settings.method.dry_threshold;
+    for (const auto& [wet, other] : {std::pair{a, b}, std::pair{b, a}}) {
+        const double pure = wet.water - wet.sand;
+        if (pure > eps && other.water <= eps)
+            survey.dry_front = std::max(survey.dry_front, std::min(pure, wet.surface() - other.ground()));
+    }
+    const Column& high = a.ground() >= b.ground() ? a : b;
+    const Column& low = a.ground() >= b.ground() ? b : a;
+    if (high.water <= WET_SHARE * high.sand || high.sand <= eps) return;
+    const double step = std::min(high.ground() - low.ground(), high.sand);
+    const double slope = step / settings.grid.dx;
+    if (slope > WALL_SLOPE) {
+        if (step > survey.wet_wall) {
+            survey.wet_wall = step;
+            survey.wet_wall_ratio = high.wetness();
+        }
+        return;
+    }
+    const Material& m = settings.material;
+    const double limit = m.friction * (1 - m.water_density / m.sand_density * high.wetness());
+    const bool submerged = low.surface() > low.ground() + eps;
+    const bool held = cohesion_at(m, high.wetness()) >= wall_cohesion(settings, high.sand);
+    if (slope <= limit || submerged || held) return;
+    ++survey.steep_faces;
+    if (slope > survey.steepest_wet) {
+        survey.steepest_wet = slope;
+        survey.steepest_limit = limit;
+    }
+}
+
+Survey survey_fields(const Settings& settings, const InitialFields& fields) {
+    const auto nx = static_cast<std::size_t>(settings.grid.nx);
+    const auto ny = static_cast<std::size_t>(settings.grid.ny);
+    const auto column = [&](std::size_t cell) {
+        const auto part = [&](const std::vector<float>& field) { return field.empty() ? 0.0 : static_cast<double>(field[cell]); };
+        return Column{part(fields.terrain), part(fields.sand), part(fields.water)};
+    };
+    Survey survey;
+    for (std::size_t j = 0; j < ny; ++j)
+        for (std::size_t i = 0; i < nx; ++i) {
+            const Column here = column(j * nx + i);
+            survey.highest_column = std::max(survey.highest_column, here.ground() + here.water);
+            survey.deepest_water = std::max(survey.deepest_water, here.water);
+            survey.deepest_sand = std::max(survey.deepest_sand, here.sand);
+            if (i + 1 < nx) survey_face(settings, here, column(j * nx + i + 1), survey);
+            if (j + 1 < ny) survey_face(settings, here, column((j + 1) * nx + i), survey);
+        }
+    return survey;
+}
+
+bool forced_off(const Settings& settings, const char* effect) {
+    return std::any_of(settings.effects.begin(), settings.effects.end(),
+                       [&](const auto& entry) { return entry.first == effect && entry.second == Force::off; });
+}
+
+void warn_water(const Settings& s, const Survey& survey, std::vector<std::string>& warnings) {
+    const double k = s.dt / s.grid.dx;
+    const std::string grid = "dx " + number_text(s.grid.dx) + " m, dt " + number_text(s.dt) + " s: ";
+    const double celerity = std::sqrt(s.gravity * survey.deepest_water);
+    const bool capped = s.method.gravity_cap > 0;
+    const double cfl = capped ? WAVE_CFL : UNCAPPED_CFL;
+    if (k * celerity > cfl) {
+        const double depth = std::pow(cfl / k, 2) / s.gravity;
+        warnings.push_back(grid + "water deeper than " + meters(depth) +
+                           (capped ? " moves slower than it should" : " is unstable while method.gravity_cap is off") +
+                           ", and the level has " + meters(survey.deepest_water) + "; use dt <= " +
+                           at_most(cfl * s.grid.dx / celerity) + " s or dx >= " + at_least(s.dt * celerity / cfl) + " m");
+    }
+    const double front = 2 * std::sqrt(s.gravity * survey.dry_front);
+    const double clamp = s.method.velocity_clamp / k;
+    if (front > clamp)
+        warnings.push_back(grid + "water of " + meters(survey.dry_front) + " beside dry ground should run at up to " +
+                           number_text(std::round(front * 100) / 100) + " m/s but is held at velocity_clamp dx/dt = " +
+                           number_text(std::round(clamp * 100) / 100) + " m/s; use dt <= " +
+                           at_most(s.method.velocity_clamp * s.grid.dx / front) + " s or dx >= " +
+                           at_least(s.dt * front / s.method.velocity_clamp) + " m");
+    for (std::size_t n = 0; n < s.sources.size(); ++n) {
+        const Source& source = s.sources[n];
+        const double speed = std::max(std::fabs(source.velocity[0]), std::fabs(source.velocity[1]));
+        if (source.set_velocity && speed > clamp)
+            warnings.push_back("sources[" + std::to_string(n) + "].velocity: " + number_text(speed) +
+                               " m/s is more than velocity_clamp dx/dt = " + number_text(clamp) + " m/s; use dt <= " +
+                               at_most(s.method.velocity_clamp * s.grid.dx / speed) + " s");
+    }
+    const double diffusion_most = 0.2 * s.grid.dx / k;
+    if (survey.deepest_sand > 0 && s.material.diffusion_rate > diffusion_most && !forced_off(s, "diffusion"))
+        warnings.push_back("material.diffusion_rate: " + number_text(s.material.diffusion_rate) + " m2/s acts like " +
+                           number_text(diffusion_most) + " m2/s, the most that dx and dt allow (0.2 dx^2/dt)");
+}
+
+void warn_sand(const Settings& s, const Survey& survey, std::vector<std::string>& warnings) {
+    const Material& m = s.material;
+    const double weight = m.sand_density * s.gravity * survey.deepest_sand;
+    if (m.young_modulus > 0 && weight > 0 && !forced_off(s, "elastoplastic")) {
+        const double nu = m.poisson_ratio;
+        const double modulus = m.young_modulus * (1 - nu) / ((1 + nu) * (1 - 2 * nu)); // lambda + 2 mu
+        const double dts = s.dt / s.method.substeps;
+        const double most = s.method.elastic_cap * m.sand_density * std::pow(s.grid.dx / dts, 2);
+        const double scale = s.method.elastic_cap > 0 ? std::min(1.0, most / modulus) : 1;
+        const std::string range = at_least(STIFFNESS_LEAST * weight) + " ... " + at_most(STIFFNESS_MOST * weight) +
+                                  " Pa (5 ... 15 times the weight of the deepest sand, " + meters(survey.deepest_sand) + ")";
+        if (m.young_modulus < STIFFNESS_LEAST * weight || m.young_modulus > STIFFNESS_MOST * weight)
+            warnings.push_back("material.young_modulus: " + number_text(m.young_modulus) + " Pa is outside " + range + ": sand is " +
+                               (m.young_modulus < STIFFNESS_LEAST * weight ? "compressed by its own weight"
+                                                                           : "so stiff that it does not fill hollows"));
+        else if (scale * m.young_modulus < STIFFNESS_LEAST * weight)
+            warnings.push_back("material.young_modulus: " + number_text(m.young_modulus) + " Pa acts like " +
+                               at_most(scale * m.young_modulus) + " Pa at this sand step, below " + range + "; use dt <= " +
+                               at_most(s.dt * std::sqrt(scale * m.young_modulus / (STIFFNESS_LEAST * weight))) +
+                               " s or more substeps");
+    }
+    if (survey.wet_wall > 0 && !forced_off(s, "cohesion")) {
+        const double least = wall_cohesion(s, survey.wet_wall);
+        const double peak = std::max(m.cohesion_wet, m.cohesion_capillary);
+        if (survey.wet_wall_ratio < m.saturation[2] && peak < least)
+            warnings.push_back("material.cohesion_wet: a wet sand wall of " + meters(survey.wet_wall) + " needs " + at_least(least) +
+                               " Pa (yield_friction sand_density g h) and the level has " + number_text(peak) +
+                               " Pa: it will fall; raise cohesion_wet and cohesion_capillary, or lower the wall");
+    }
+    if (survey.steep_faces > 0)
+        warnings.push_back("wet sand slopes up to " + number_text(std::round(survey.steepest_wet * 1000) / 1000) + " at " +
+                           std::to_string(survey.steep_faces) + " faces, more than friction holds there, " +
+                           number_text(std::round(survey.steepest_limit * 1000) / 1000) +
+                           " (friction (1 - density ratio * saturation)): it will slump; lower the slopes or the water, or raise "
+                           "material.friction");
+}
+
+/// True when a cell centre lies inside the source; a point always has its cell.
+bool covers_a_cell(const Source& source, const Grid& grid) {
+    if (source.shape == SourceShape::point) return true;
+    const bool box = source.shape == SourceShape::box;
+    std::array<std::array<int, 2>, 2> span{}; // first and last cell along x and y
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        const double low = box ? source.box[axis] : source.center[axis] - source.radius;
+        const double high = box ? source.box[axis + 2] : source.center[axis] + source.radius;
+        const int cells = axis == 0 ? grid.nx : grid.ny;
+        span[axis] = {static_cast<int>(std::clamp(std::ceil(low / grid.dx - 0.5), 0.0, double{GRID_MOST})),
+                      static_cast<int>(std::clamp(std::floor(high / grid.dx - 0.5), -1.0, cells - 1.0))};
+        if (span[axis][0] > span[axis][1]) return false;
+    }
+    if (box) return true;
+    // The cell centre nearest to the disc's centre decides.
+    double square = 0;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        const double cells = axis == 0 ? grid.nx : grid.ny;
+        const double nearest = (std::clamp(std::floor(source.center[axis] / grid.dx), 0.0, cells - 1) + 0.5) * grid.dx;
+        square += (nearest - source.center[axis]) * (nearest - source.center[axis]);
+    }
+    return square <= source.radius * source.radius;
+}
+
+} // namespace
+
+std::vector<std::string> level_warnings(const Settings& settings, const InitialFields& fields) {
+    std::vector<std::string> warnings;
+    const Survey survey = survey_fields(settings, fields);
+    warn_water(settings, survey, warnings);
+    warn_sand(settings, survey, warnings);
+    for (std::size_t n = 0; n < settings.sources.size(); ++n)
+        if (!covers_a_cell(settings.sources[n], settings.grid))
+            warnings.push_back("sources[" + std::to_string(n) + "]: covers no cell centre, so nothing flows; make it larger than dx, " +
+                               number_text(settings.grid.dx) + " m, or use a point");
+    const Method& method = settings.method;
+    if (survey.highest_column > NEARLY_FULL * method.largest_height)
+        warnings.push_back("method.largest_height: the highest column is " + meters(survey.highest_column) + " of " +
+                           meters(method.largest_height) + "; what would rise above is refused, use " +
+                           number_text(std::exp2(std::ceil(std::log2(survey.highest_column / NEARLY_FULL)))) + " or more");
+    const double quantum = height_quantum(method);
+    if (method.rest_surface > 0 && quantum > method.rest_surface)
+        warnings.push_back("method.rest_surface: " + number_text(method.rest_surface) + " m is finer than the height quantum, " +
+                           number_text(quantum) + " m, of largest_height " + meters(method.largest_height) +
+                           ": still water may not come to rest; use " + at_least(2 * quantum) + " or more");
+    return warnings;
+}
+
+} // namespace wadi

@@ -1,0 +1,34 @@
+// What changes with every water step: sources, rain and sides over time, in whole quanta.
+#pragma once
+#include "engine/compute/params.hpp"
+#include "engine/include/wadi/settings.hpp"
+#include <vector>
+
+namespace wadi {
+
+/// Produces the StepInput of each step in turn. A rate below one quantum per step is not lost: the running total is rounded
+/// down to whole quanta and each step gets the difference.
+class StepInputs {
+  public:
+    explicit StepInputs(const Settings& settings);
+    /// The input of step `step`, which must be one more than at the last call.
+    StepInput next(int step);
+
+  private:
+    /// Running total of one rate.
+    struct Total {
+        double metres = 0, quanta = 0;
+    };
+    float advance(Total& total, double rate) const;
+    void set_sides(StepInput& input, double time) const;
+
+    const Settings settings_;
+    const double quantum_;
+    std::vector<Total> sources_;
+    Total rain_, evaporation_;
+};
+
+/// Shapes as apply_sources reads them: two vec4 per source, MAX_SOURCES of them.
+std::vector<vec4> source_shapes(const Settings& settings);
+
+} // namespace wadi

@@ -1,0 +1,180 @@
+#include "engine/step_plan.hpp"
+#include <algorithm>
+#include <set>
+#include <string_view>
+
+namespace wadi {
+
+namespace {
+
+constexpr std::string_view next_suffix = "_next";
+
+bool is_next(const std::string& name) { return name.ends_with(next_suffix); }
+
+std::string base_name(const std::string& name) { return is_next(name) ? name.substr(0, name.size() - next_suffix.size()) : name; }
+
+const std::set<std::string> state_fields = {
+    "terrain",          "sand_height",      "water_height",     "stretch_xx",       "stretch_xy",       "stretch_yy", "sand_velocity_x",
+    "sand_velocity_y",  "water_velocity_x", "water_velocity_y", "mixed_velocity_x", "mixed_velocity_y",
+};
+
+FieldRole role_of(const std::string& name) {
+    if (state_fields.contains(name)) return FieldRole::state;
+    if (name.ends_with("ledger")) return FieldRole::ledger;
+    return name == "source_shapes" ? FieldRole::shapes : FieldRole::scratch;
+}
+
+using Names = std::map<std::string, std::string>; // a stage's binding name -> the plan's field name
+
+class Builder {
+  public:
+    Builder(std::uint32_t effects, std::vector<PlanPass>& passes, bool in_substep) : effects_(effects), passes_(passes), in_substep_(in_substep) {}
+
+    bool has(std::uint32_t bits) const { return (effects_ & bits) == bits; }
+
+    void run(const char* stage, std::vector<std::string> flips = {}, const Names& names = {}) {
+        PlanPass pass;
+        pass.stage = compute::find_stage(stage);
+        pass.in_substep = in_substep_;
+        pass.flips = std::move(flips);
+        for (const auto& binding : compute::stage_table()[static_cast<std::size_t>(pass.stage)].bindings) {
+            const bool exists = (effects_ & binding.condition) == binding.condition;
+            const std::string name(binding.name);
+            const auto renamed = names.find(base_name(name));
+            const std::string field = renamed == names.end() ? name : renamed->second + (is_next(name) ? std::string(next_suffix) : "");
+            pass.fields.push_back(exists ? field : std::string());
+        }
+        passes_.push_back(std::move(pass));
+    }
+
+  private:
+    std::uint32_t effects_;
+    std::vector<PlanPass>& passes_;
+    bool in_substep_;
+};
+
+void plan_water(Builder b) {
+    if (b.has(EFFECT_SOURCES)) b.run("apply_sources");
+    if (b.has(EFFECT_RAIN)) b.run("apply_rain");
+    if (!b.has(EFFECT_WATER)) return;
+    if (b.has(EFFECT_OPEN_SIDES)) b.run("open_sides");
+    if (b.has(EFFECT_DIFFUSION)) b.run("diffuse_mixed_water");
+    b.run("limit_water_outflow");
+    b.run("compute_water_flux");
+    if (b.has(EFFECT_OPEN_SIDES)) {
+        b.run("account_sides", {}, {{"flux_x", "water_flux_x"}, {"flux_y", "water_flux_y"}, {"side_ledger", "water_side_ledger"}});
+        if (b.has(EFFECT_MIXTURE)) {
+            b.run("account_sides", {}, {{"flux_x", "mixed_flux_x"}, {"flux_y", "mixed_flux_y"}, {"side_ledger", "water_side_ledger"}});
+        }
+    }
+    b.run("integrate_water_height", {"water_height"});
+    std::vector<std::string> moved = {"water_velocity_x", "water_velocity_y"};
+    if (b.has(EFFECT_MIXTURE)) moved.insert(moved.end(), {"mixed_velocity_x", "mixed_velocity_y"});
+    b.run("integrate_water_velocity", moved);
+    if (b.has(EFFECT_COHESION)) b.run("compute_saturation");
+}
+
+void plan_sand(Builder b) {
+    if (!b.has(EFFECT_SAND)) return;
+    if (b.has(EFFECT_OPEN_SIDES)) b.run("open_sand_sides");
+    b.run("limit_sand_outflow");
+    b.run("compute_sand_flux");
+    if (b.has(EFFECT_OPEN_SIDES)) {
+        b.run("account_sides", {}, {{"flux_x", "sand_flux_x"}, {"flux_y", "sand_flux_y"}, {"side_ledger", "sand_side_ledger"}});
+    }
+    b.run("integrate_sand_height");
+    if (b.has(EFFECT_ELASTOPLASTIC)) b.run("evolve_deformation_gradient", {"stretch_xx", "stretch_xy", "stretch_yy"});
+    // Touches only the water's velocities, which the sand's velocity stage does not read: here both sand heights are at hand.
+    if (b.has(EFFECT_MIXTURE)) b.run("compute_momentum_exchange");
+}
+
+// After the sand height has become current.
+void plan_sand_forces(Builder b) {
+    if (!b.has(EFFECT_SAND)) return;
+    if (b.has(EFFECT_ELASTOPLASTIC)) b.run("project_deformation_gradient");
+    b.run("integrate_sand_velocity", {"sand_velocity_x", "sand_velocity_y"});
+    std::vector<std::string> moved = {"sand_velocity_x", "sand_velocity_y"};
+    Names drag;
+    if (b.has(EFFECT_DRAG)) {
+        const std::string layer = b.has(EFFECT_MIXTURE) ? "mixed_velocity_" : "water_velocity_";
+        drag = {{"drag_velocity_x", layer + "x"}, {"drag_velocity_y", layer + "y"}};
+        moved.insert(moved.end(), {layer + "x", layer + "y"});
+    }
+    b.run("apply_friction", moved, drag);
+}
+
+// Scratch fields whose lives do not overlap share memory. A life runs from the first to the last pass that names the field;
+// what is written before the substeps and read in them lives through all of them.
+void share_scratch(StepPlan& plan) {
+    std::vector<const PlanPass*> order;
+    for (const auto& pass : plan.water_passes) order.push_back(&pass);
+    for (const auto& pass : plan.substep_passes) order.push_back(&pass);
+    struct Life {
+        PlanField* field;
+        std::size_t first, last;
+    };
+    std::vector<Life> lives;
+    for (auto& field : plan.fields) {
+        if (field.role != FieldRole::scratch) continue;
+        Life life{&field, order.size(), 0};
+        for (std::size_t n = 0; n < order.size(); ++n) {
+            if (std::find(order[n]->fields.begin(), order[n]->fields.end(), field.name) == order[n]->fields.end()) continue;
+            life.first = std::min(life.first, n);
+            life.last = std::max(life.last, n);
+        }
+        if (life.first < plan.water_passes.size() && life.last >= plan.water_passes.size()) life.last = order.size();
+        lives.push_back(life);
+    }
+    std::sort(lives.begin(), lives.end(), [](const Life& a, const Life& b) { return a.first < b.first; });
+    std::vector<std::size_t> busy_until; // per block
+    for (auto& life : lives) {
+        std::size_t block = 0;
+        while (block < busy_until.size() && busy_until[block] >= life.first) ++block;
+        if (block == busy_until.size()) busy_until.push_back(0);
+        busy_until[block] = life.last;
+        life.field->memory = static_cast<int>(block);
+    }
+    plan.scratch_blocks = static_cast<int>(busy_until.size());
+}
+
+} // namespace
+
+int StepPlan::field_buffers() const {
+    int count = scratch_blocks;
+    for (const auto& field : fields) {
+        if (field.role == FieldRole::state) count += field.ping_pong ? 2 : 1;
+    }
+    return count;
+}
+
+const PlanField* StepPlan::find(const std::string& name) const {
+    const auto found = std::find_if(fields.begin(), fields.end(), [&](const PlanField& f) { return f.name == name; });
+    return found == fields.end() ? nullptr : &*found;
+}
+
+StepPlan make_step_plan(std::uint32_t effects, int substeps) {
+    StepPlan plan;
+    plan.effects = effects;
+    plan.substeps = substeps;
+    plan_water(Builder(effects, plan.water_passes, false));
+    plan_sand(Builder(effects, plan.substep_passes, true));
+    if (!plan.substep_passes.empty()) plan.substep_passes.back().flips.push_back("sand_height");
+    plan_sand_forces(Builder(effects, plan.substep_passes, true));
+
+    plan.fields.push_back({"terrain", FieldRole::state, false, -1});
+    for (const auto* passes : {&plan.water_passes, &plan.substep_passes}) {
+        for (const auto& pass : *passes) {
+            for (const auto& name : pass.fields) {
+                if (name.empty()) continue;
+                const std::string base = base_name(name);
+                auto found = std::find_if(plan.fields.begin(), plan.fields.end(), [&](const PlanField& f) { return f.name == base; });
+                if (found == plan.fields.end()) found = plan.fields.insert(plan.fields.end(), {base, role_of(base), false, -1});
+                found->ping_pong |= is_next(name);
+            }
+        }
+    }
+    share_scratch(plan);
+    return plan;
+}
+
+} // namespace wadi

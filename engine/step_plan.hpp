@@ -1,0 +1,47 @@
+// The step plan: effects -> the ordered passes of one water step with its T sand substeps, and the buffers they need.
+// The only place that knows the order (NUMERICS 3, paper Algorithm 1).
+#pragma once
+#include "engine/compute/stage_table.hpp"
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace wadi {
+
+/// One pass. `fields` names, slot by slot, the field bound there; empty where the binding does not exist under the mask.
+/// A name that ends in "_next" is the other buffer of a ping-pong field.
+struct PlanPass {
+    int stage = -1;
+    std::vector<std::string> fields;
+    std::vector<std::string> flips;   // ping-pong fields whose new buffer becomes the current one after this pass
+    bool in_substep = false;
+};
+
+enum class FieldRole { state, scratch, ledger, shapes };
+
+struct PlanField {
+    std::string name;
+    FieldRole role = FieldRole::state;
+    bool ping_pong = false;
+    int memory = -1;                  // scratch: number of the memory block it shares with other scratch fields
+};
+
+struct StepPlan {
+    std::uint32_t effects = 0;
+    int substeps = 1;
+    std::vector<PlanPass> water_passes;    // in order; before the substeps
+    std::vector<PlanPass> substep_passes;  // run T times
+    std::vector<PlanField> fields;
+    int scratch_blocks = 0;
+
+    /// Buffers of nx * ny floats: state, ping-pong partners and shared scratch.
+    int field_buffers() const;
+    /// Bytes per cell of those.
+    double bytes_per_cell() const { return 4.0 * field_buffers(); }
+    const PlanField* find(const std::string& name) const;
+};
+
+StepPlan make_step_plan(std::uint32_t effects, int substeps);
+
+} // namespace wadi

@@ -1,0 +1,211 @@
+/* Wadi: sand, water and wet sand on a height field. The plugin's whole interface, C99.
+ *
+ * Units: metres, seconds, kilograms. Fields are row-major, nx * ny floats, x fastest; row 0 is the south side (y = 0),
+ * column 0 the west side (x = 0); heights point up.
+ * Every struct begins with struct_size: call the wadi_default_*() function, then change what you need.
+ * Every function that can fail returns a wadi_result; wadi_get_last_error() then has one line of text for this thread.
+ * No function aborts, throws or prints. A world is used by one thread at a time; different worlds are independent.
+ */
+#ifndef WADI_H
+#define WADI_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(_WIN32)
+#if defined(WADI_BUILD)
+#define WADI_API __declspec(dllexport)
+#else
+#define WADI_API __declspec(dllimport)
+#endif
+#else
+#define WADI_API __attribute__((visibility("default")))
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define WADI_ABI_VERSION 1u
+
+/** The ABI version of the library that is loaded; compare it with WADI_ABI_VERSION. */
+WADI_API uint32_t wadi_get_abi_version(void);
+
+typedef enum wadi_result {
+    WADI_OK = 0,
+    WADI_ERROR_BAD_ARGUMENT = 1,  /* a value is wrong; the message names it and its range */
+    WADI_ERROR_NOT_FOUND = 2,     /* no such file, level, backend, device or effect */
+    WADI_ERROR_BAD_FILE = 3,      /* a file is malformed; the message names the field */
+    WADI_ERROR_NOT_SUPPORTED = 4, /* this build or device cannot do it */
+    WADI_ERROR_OUT_OF_MEMORY = 5,
+    WADI_ERROR_DEVICE_LOST = 6,   /* sticky for the world; destroy it and create another */
+    WADI_ERROR_INTERNAL = 7       /* our bug: please report the message */
+} wadi_result;
+
+/** One line about the last error on this thread; never NULL, valid until the next call on this thread. */
+WADI_API const char* wadi_get_last_error(void);
+
+/** A world by index and generation; all zero is null. Copy it freely; a destroyed one is recognised and refused. */
+typedef struct wadi_world_id {
+    uint32_t index;
+    uint32_t generation;
+} wadi_world_id;
+
+typedef void (*wadi_log_callback)(void* user, int level, const char* message); /* level: 0 error, 1 warning, 2 information */
+
+/** Where and how a world runs. */
+typedef struct wadi_device_options {
+    uint32_t struct_size;
+    const char* backend;       /* "auto" (a real GPU first, else the CPU), "cpu", "vulkan", "cuda" */
+    int32_t device;            /* index from wadi_list_devices, -1 = the backend's best */
+    int32_t threads;           /* CPU backend: threads, 0 = all cores */
+    int32_t validate;          /* 1 = Vulkan validation layers; messages go to the log callback */
+    wadi_log_callback log;     /* may be NULL */
+    void* log_user;
+} wadi_device_options;
+WADI_API wadi_device_options wadi_default_device_options(void);
+
+typedef struct wadi_device_info {
+    uint32_t struct_size;
+    char backend[16];
+    int32_t index;             /* within its backend */
+    char name[256];
+    int32_t is_software;       /* 1 for the CPU and for software Vulkan devices */
+    uint64_t memory_bytes;     /* 0 = unknown */
+} wadi_device_info;
+/** Lists the devices of all backends of this build. *count: capacity in, number of devices out; infos may be NULL to ask the
+ *  number. `notes` (may be NULL) receives one line per backend without a device, saying why. */
+WADI_API wadi_result wadi_list_devices(wadi_device_info* infos, uint32_t* count, char* notes, size_t notes_size);
+
+/** Overrides for a level file; a value of 0 or NULL keeps the file's. */
+typedef struct wadi_level_overrides {
+    uint32_t struct_size;
+    int32_t nx, ny;            /* keeps the x extent and square cells, stretches maps in y, scales dt with dx */
+    double dt;                 /* [s] */
+    const char* method;        /* "robust" */
+} wadi_level_overrides;
+WADI_API wadi_level_overrides wadi_default_level_overrides(void);
+
+/** Creates a world from a level file (.json) or from a terrain map (.png, .r16, .npy).
+ *  Errors: NOT_FOUND, BAD_FILE, BAD_ARGUMENT, OUT_OF_MEMORY, NOT_SUPPORTED. */
+WADI_API wadi_result wadi_create_world_from_level(const char* path, const wadi_level_overrides* overrides,
+                                                  const wadi_device_options* options, wadi_world_id* world);
+
+/** A world from arrays: settings as the text of a level file without its "terrain", "sand", "water" and "velocity"
+ *  entries, and fields of nx * ny floats. NULL = zero everywhere. */
+typedef struct wadi_world_arrays {
+    uint32_t struct_size;
+    const char* settings_json; /* must not be NULL */
+    int32_t nx, ny;            /* of the arrays; must equal the settings' grid */
+    const float* terrain;      /* [m] */
+    const float* sand;         /* depth [m] */
+    const float* water;        /* depth [m] */
+    const float* velocity_x;   /* water, at cell centres [m/s] */
+    const float* velocity_y;
+} wadi_world_arrays;
+WADI_API wadi_world_arrays wadi_default_world_arrays(void);
+WADI_API wadi_result wadi_create_world_from_arrays(const wadi_world_arrays* arrays, const wadi_device_options* options,
+                                                   wadi_world_id* world);
+
+/** Frees a world. A null or destroyed id gives BAD_ARGUMENT and changes nothing. */
+WADI_API wadi_result wadi_destroy_world(wadi_world_id world);
+
+typedef struct wadi_world_info {
+    uint32_t struct_size;
+    char name[64];
+    int32_t nx, ny;
+    double dx;                    /* [m] */
+    double dt;                    /* water time step [s] */
+    int32_t substeps;             /* T: sand substeps per water step */
+    double duration;              /* the level's own length [s] */
+    uint32_t passes_per_water_step;   /* dispatches outside the sand substeps */
+    uint32_t passes_per_sand_substep;
+    double bytes_per_cell;        /* state, ping-pong and scratch */
+    uint64_t device_bytes;        /* everything the world holds on the device */
+    char backend[16];
+    char device_name[256];
+    int32_t exact_float;          /* 1 = the device passed the exact-float self-test */
+    uint32_t warning_count;
+} wadi_world_info;
+WADI_API wadi_world_info wadi_default_world_info(void);
+WADI_API wadi_result wadi_world_get_info(wadi_world_id world, wadi_world_info* info);
+/** Text of warning n of the level, or NULL. */
+WADI_API const char* wadi_world_get_warning(wadi_world_id world, uint32_t n);
+
+/** The plan as text: effects on and why, passes, buffers, bytes per cell. Returns the length without the final zero; writes at
+ *  most `size` bytes including it. 0 and an error for a bad world. */
+WADI_API size_t wadi_world_describe_plan(wadi_world_id world, char* text, size_t size);
+
+/** Advances by `steps` water steps of fixed dt. Returns before the device has finished; reads wait for it. */
+WADI_API wadi_result wadi_world_step(wadi_world_id world, uint32_t steps);
+
+/** Simulated time [s] and water steps so far. Either pointer may be NULL. */
+WADI_API wadi_result wadi_world_get_time(wadi_world_id world, double* seconds, uint64_t* steps);
+
+typedef enum wadi_field {
+    WADI_FIELD_TERRAIN = 0,          /* H, ground height [m] */
+    WADI_FIELD_SAND_HEIGHT = 1,      /* hs, depth of sand [m] */
+    WADI_FIELD_WATER_HEIGHT = 2,     /* W, depth of all water, pure and mixed [m] */
+    WADI_FIELD_WATER_DEPTH = 3,      /* pure water above the sand, W - min(W, hs) [m] */
+    WADI_FIELD_FREE_SURFACE = 4,     /* H + max(W, hs): what a viewer sees [m] */
+    WADI_FIELD_SATURATION = 5,       /* W/(W + hs) where there is sand, else 0 */
+    WADI_FIELD_WATER_VELOCITY_X = 6, /* pure water, cell centre [m/s] */
+    WADI_FIELD_WATER_VELOCITY_Y = 7,
+    WADI_FIELD_SAND_VELOCITY_X = 8,  /* [m/s] */
+    WADI_FIELD_SAND_VELOCITY_Y = 9,
+    WADI_FIELD_MIXED_VELOCITY_X = 10, /* water inside sand [m/s] */
+    WADI_FIELD_MIXED_VELOCITY_Y = 11,
+    WADI_FIELD_STRETCH_XX = 12,      /* left stretch V - I of the sand */
+    WADI_FIELD_STRETCH_XY = 13,
+    WADI_FIELD_STRETCH_YY = 14,
+    WADI_FIELD_COUNT = 15
+} wadi_field;
+/** Short name used by tools: "H", "hs", "W", "hw", "surface", "phi", "uw", "vw", "us", "vs", "um", "vm", "Vxx", "Vxy", "Vyy"; NULL if unknown. */
+WADI_API const char* wadi_field_name(wadi_field field);
+
+/** Reads a field as nx * ny floats; waits for the steps already asked for. A field that the world's effects lack reads as zero. */
+WADI_API wadi_result wadi_world_read_field(wadi_world_id world, wadi_field field, float* values, size_t count);
+
+/** State now: extremes, limits at work, and the ledger. */
+typedef struct wadi_world_stats {
+    uint32_t struct_size;
+    double time;                  /* [s] */
+    uint64_t steps;
+    double sand_volume;           /* [m3] now */
+    double water_volume;
+    double sand_initial;          /* [m3] at creation */
+    double water_initial;
+    double sand_in, sand_out;     /* [m3] by sources, sinks and sides since creation */
+    double water_in, water_out;
+    double refused;               /* [m3] that sources could not place below the declared largest height */
+    int64_t sand_drift_quanta;    /* now - (initial + in - out) in quanta of height x cell area; 0 = exact */
+    int64_t water_drift_quanta;
+    double quantum;               /* [m] */
+    double largest_sand;          /* [m] */
+    double largest_water;         /* [m] */
+    double largest_water_speed;   /* largest face velocity of pure and mixed water [m/s] */
+    double largest_sand_speed;    /* [m/s] */
+    double smallest_height;       /* least hs or W: never negative */
+    uint64_t not_finite;          /* values that are NaN or infinite: never any */
+    uint64_t clamped_faces;       /* faces at the velocity clamp */
+    uint64_t capped_faces;        /* faces whose gravity the next step caps */
+    uint64_t limited_cells;       /* cells whose outflow the next step limits */
+    uint64_t hash;                /* 64-bit state hash, ghosts excluded */
+} wadi_world_stats;
+WADI_API wadi_world_stats wadi_default_world_stats(void);
+WADI_API wadi_result wadi_world_get_stats(wadi_world_id world, wadi_world_stats* stats);
+
+/** 1 = every step records timestamps (a separately recorded program; off by default). */
+WADI_API wadi_result wadi_world_set_profiling(wadi_world_id world, int32_t on);
+typedef struct wadi_stage_timing {
+    char name[64];
+    double milliseconds;          /* mean per water step, all its sand substeps together */
+    uint32_t passes;              /* dispatches per water step */
+} wadi_stage_timing;
+/** Mean times since profiling was switched on. *count: capacity in, stages out; timings may be NULL to ask the number. */
+WADI_API wadi_result wadi_world_get_stage_timings(wadi_world_id world, wadi_stage_timing* timings, uint32_t* count);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,181 @@
+// wadi-recorder: runs a level without a window and records shaded pictures, fields and figures.
+#include "levels.hpp"
+#include "run.hpp"
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <wadi/wadi.h>
+
+namespace recorder {
+namespace {
+
+constexpr int MOST_CELLS = 16384; // along one axis
+
+Failure parse_size(const std::string& text, Options& options) {
+    const char* const end = text.data() + text.size();
+    int nx = 0, ny = 0;
+    const auto first = std::from_chars(text.data(), end, nx);
+    if (first.ec == std::errc{} && first.ptr != end && *first.ptr == 'x') {
+        const auto second = std::from_chars(first.ptr + 1, end, ny);
+        if (second.ec == std::errc{} && second.ptr == end && nx >= 1 && nx <= MOST_CELLS && ny >= 1 && ny <= MOST_CELLS) {
+            options.nx = nx;
+            options.ny = ny;
+            return {};
+        }
+    }
+    return {EXIT_BAD_INPUT, "--size " + text + ": want NxM in cells, 1 ... 16384 each, e.g. 200x256"};
+}
+
+std::vector<std::string> split(const std::string& text) {
+    std::vector<std::string> parts;
+    std::size_t start = 0;
+    for (std::size_t comma = text.find(','); comma != std::string::npos; comma = text.find(',', start)) {
+        parts.push_back(text.substr(start, comma - start));
+        start = comma + 1;
+    }
+    parts.push_back(text.substr(start));
+    return parts;
+}
+
+int field_by_name(const std::string& name) {
+    for (int field = 0; field < WADI_FIELD_COUNT; ++field) {
+        const char* known = wadi_field_name(static_cast<wadi_field>(field));
+        if (known != nullptr && name == known) return field;
+    }
+    return -1;
+}
+
+/// "hs,W@1.5,3": every field at every time.
+Failure parse_dump(const std::string& text, std::vector<DumpRequest>& dumps) {
+    const std::size_t sign = text.find('@');
+    if (sign == std::string::npos) return {EXIT_BAD_INPUT, "--dump " + text + ": want FIELDS@TIMES, e.g. hs,W@1.5"};
+    for (const std::string& name : split(text.substr(0, sign))) {
+        const int field = field_by_name(name);
+        if (field < 0) {
+            std::string known;
+            for (int k = 0; k < WADI_FIELD_COUNT; ++k)
+                known += std::string(k == 0 ? "" : ", ") + wadi_field_name(static_cast<wadi_field>(k));
+            return {EXIT_BAD_INPUT, "--dump " + text + ": unknown field \"" + name + "\"; the fields are " + known};
+        }
+        for (const std::string& time_text : split(text.substr(sign + 1))) {
+            double time = 0;
+            const auto parsed = std::from_chars(time_text.data(), time_text.data() + time_text.size(), time);
+            if (parsed.ec != std::errc{} || parsed.ptr != time_text.data() + time_text.size() || !std::isfinite(time) ||
+                time < 0) {
+                return {EXIT_BAD_INPUT, "--dump " + text + ": \"" + time_text + "\" is not a time in seconds, 0 or more"};
+            }
+            dumps.push_back({field, name, time_text, time});
+        }
+    }
+    return {};
+}
+
+int print_backends() {
+    char notes[2048] = "";
+    std::uint32_t count = 0;
+    wadi_result result = wadi_list_devices(nullptr, &count, notes, sizeof notes);
+    std::vector<wadi_device_info> devices(count);
+    for (wadi_device_info& device : devices) device.struct_size = sizeof device;
+    if (result == WADI_OK) result = wadi_list_devices(devices.data(), &count, notes, sizeof notes);
+    if (result != WADI_OK) {
+        std::fprintf(stderr, "wadi-recorder: %s\n", wadi_get_last_error());
+        return EXIT_BAD_INPUT;
+    }
+    devices.resize(count);
+    for (const wadi_device_info& device : devices) {
+        std::printf("%-8s %2d  %s%s", device.backend, device.index, device.name, device.is_software != 0 ? " (software)" : "");
+        if (device.memory_bytes != 0)
+            std::printf(", %.1f GiB", static_cast<double>(device.memory_bytes) / (1024.0 * 1024.0 * 1024.0));
+        std::printf("\n");
+    }
+    if (notes[0] != '\0') std::printf("%s%s", notes, notes[std::char_traits<char>::length(notes) - 1] == '\n' ? "" : "\n");
+    return EXIT_DONE;
+}
+
+int print_levels() {
+    for (const LevelEntry& level : list_levels()) std::printf("%-18s %s\n", level.name.c_str(), level.description.c_str());
+    return EXIT_DONE;
+}
+
+int fail(const std::string& message) {
+    std::fprintf(stderr, "wadi-recorder: %s\n", message.c_str());
+    return EXIT_BAD_INPUT;
+}
+
+int main_checked(int argc, char** argv) {
+    Options options;
+    std::string level, terrain, size;
+    std::vector<std::string> dumps;
+    bool list_backends = false, only_list_levels = false, no_frames = false;
+
+    CLI::App app("Records a Wadi level: shaded PNG frames, a contact sheet, fields as NPY, and a table of figures.",
+                 "wadi-recorder");
+    app.add_option("level", level, "level name (--list-levels), level file (.json) or level folder");
+    app.add_option("--terrain", terrain, "a terrain map (.png, .r16, .npy) instead of a level")->excludes("level");
+    app.add_option("--backend", options.backend, "auto, cpu, vulkan or cuda")->capture_default_str();
+    app.add_option("--device", options.device, "device number within the backend (--list-backends); -1 = best")
+        ->capture_default_str();
+    app.add_option("--threads", options.threads, "threads of the cpu backend; 0 = all cores")
+        ->check(CLI::Range(0, 1024))
+        ->capture_default_str();
+    app.add_flag("--validate", options.validate, "switch the Vulkan validation layers on");
+    app.add_option("--method", options.method, "method preset instead of the level's");
+    app.add_option("--size", size, "grid NxM instead of the level's; keeps the x extent");
+    app.add_option("--dt", options.dt, "water time step [s] instead of the level's")->check(CLI::Range(1e-7, 100.0));
+    app.add_option("--seconds", options.seconds, "simulated time [s]; default: the level's duration")
+        ->check(CLI::Range(0.0, 1e9));
+    app.add_option("--every", options.every, "time between frames [s]; default: a tenth of the recording")
+        ->check(CLI::Range(1e-7, 1e9));
+    app.add_option("--water-scale", options.water_scale, "depth drawn in deep blue [m]; default: from the first state")
+        ->check(CLI::Range(1e-6, 1e6));
+    app.add_option("--out", options.out, "folder for frames and fields; default: out/LEVEL");
+    app.add_option("--dump", dumps, "FIELDS@TIMES, e.g. hs,W,us@1.5,3: writes FIELD_TIME.npy; repeatable")
+        ->allow_extra_args(false);
+    app.add_option("--summary", options.summary, "writes the figures as JSON to this file");
+    app.add_flag("--profile", options.profile, "time every stage on the device");
+    app.add_flag("--no-frames", no_frames, "no pictures, for benchmarks");
+    app.add_flag("--print-plan", options.print_plan, "print effects, passes and buffers, and exit");
+    app.add_flag("--list-backends", list_backends, "list devices and exit");
+    app.add_flag("--list-levels", only_list_levels, "list levels and exit");
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == 0) return app.exit(error); // --help
+        return fail(std::string(error.what()) + " (--help shows the options)");
+    }
+
+    if (list_backends) return print_backends();
+    if (only_list_levels) return print_levels();
+    options.frames = !no_frames;
+    if (!size.empty()) {
+        if (Failure failure = parse_size(size, options)) return fail(failure.message);
+    }
+    for (const std::string& dump : dumps) {
+        if (Failure failure = parse_dump(dump, options.dumps)) return fail(failure.message);
+    }
+    if (!terrain.empty()) {
+        options.level_name = std::filesystem::path(terrain).stem().string();
+        options.level_file = terrain;
+    } else if (!level.empty()) {
+        const FoundLevel found = find_level(level);
+        if (!found.error.empty()) return fail(found.error);
+        options.level_name = found.name;
+        options.level_file = found.file.string();
+    } else {
+        return fail("name a level or give --terrain MAP (--list-levels shows the levels, --help the options)");
+    }
+    if (options.out.empty()) options.out = (std::filesystem::path("out") / options.level_name).string();
+    return run(options);
+}
+
+} // namespace
+} // namespace recorder
+
+int main(int argc, char** argv) {
+    try {
+        return recorder::main_checked(argc, argv);
+    } catch (const std::exception& error) { // the standard library's: out of memory, a folder that cannot be listed
+        return recorder::fail(error.what());
+    }
+}

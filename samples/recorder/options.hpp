@@ -1,0 +1,51 @@
+// What the command line asks for.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace recorder {
+
+enum ExitCode : int { EXIT_DONE = 0, EXIT_BAD_INPUT = 2, EXIT_DEVICE_FAULT = 3 };
+
+/// An error that ends the program: one line of text and the exit code. No text = no error.
+struct Failure {
+    int exit_code = EXIT_DONE;
+    std::string message;
+    explicit operator bool() const { return !message.empty(); }
+};
+
+/// One field to be written at one time.
+struct DumpRequest {
+    int field = 0; // wadi_field
+    std::string field_name;
+    std::string time_text; // as the user wrote it; part of the file's name
+    double time = 0;       // [s]
+};
+
+struct Options {
+    std::string level_name;
+    std::string level_file; // level file or terrain map
+
+    std::string backend = "auto";
+    std::int32_t device = -1;
+    std::int32_t threads = 0;
+    bool validate = false;
+
+    std::int32_t nx = 0, ny = 0; // 0 = the level's
+    double dt = 0;               // [s], 0 = the level's
+    std::string method;          // empty = the level's
+
+    double seconds = -1;    // simulated time, -1 = the level's duration
+    double every = 0;       // between frames [s], 0 = a tenth of the recording
+    double water_scale = 0; // depth drawn in deep blue [m], 0 = derived
+    bool frames = true;
+    bool profile = false;
+    bool print_plan = false;
+    std::vector<DumpRequest> dumps;
+    std::string out;
+    std::string summary; // file, empty = none
+};
+
+} // namespace recorder

@@ -1,0 +1,47 @@
+// What a run did: as a table for people and as JSON for programs.
+#pragma once
+#include "world.hpp"
+#include <string>
+#include <vector>
+
+namespace recorder {
+
+/// A count of the stats, at the last frame and its largest value over all frames.
+struct Count {
+    std::uint64_t last = 0, largest = 0;
+    void sample(std::uint64_t value) {
+        last = value;
+        largest = value > largest ? value : largest;
+    }
+};
+
+struct Report {
+    std::string level;
+    wadi_world_info info = {};
+    std::vector<std::string> warnings;
+    bool interrupted = false;
+    std::string fault;             // not empty: the device failed in mid-run
+    double wall_seconds = 0;       // everything after creation: steps, pictures, files
+    double stepping_seconds = 0;   // steps alone
+    std::uint64_t timed_steps = 0; // steps that stepping_seconds covers
+    int frames = 0;
+
+    wadi_world_stats stats = {};                                                                 // of the last successful reading
+    double largest_sand = 0, largest_water = 0, largest_water_speed = 0, largest_sand_speed = 0; // over all frames
+    double smallest_height = 0;
+    Count clamped_faces, capped_faces, limited_cells, not_finite;
+    std::vector<wadi_stage_timing> stages; // empty without profiling
+
+    void sample(const wadi_world_stats& now);
+    double ms_per_step() const;
+    std::uint64_t passes_per_step() const;
+};
+
+/// (now - (initial + in - out)) / (initial + in), 0 for no volume at all.
+double relative_drift(double initial, double in, double out, double now);
+
+std::string hash_text(std::uint64_t hash);
+std::string format_table(const Report& report);
+std::string format_summary(const Report& report);
+
+} // namespace recorder

@@ -1,0 +1,255 @@
+#include "run.hpp"
+#include "files.hpp"
+#include "frame.hpp"
+#include "platform.hpp"
+#include "progress.hpp"
+#include "report.hpp"
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+namespace recorder {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr double MOST_FRAMES = 100000;
+constexpr double CHUNK_SECONDS = 0.5; // wall time between two looks at the clock and the interrupt flag
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+int complain(const Failure& failure) {
+    std::fprintf(stderr, "wadi-recorder: %s\n", failure.message.c_str());
+    return failure.exit_code;
+}
+
+/// The water step nearest to a time.
+std::uint64_t step_at(double time, double dt) { return static_cast<std::uint64_t>(std::llround(time / dt)); }
+
+class Recording {
+  public:
+    explicit Recording(const Options& options) : options_(options) {}
+    int run();
+
+  private:
+    Failure plan();
+    Failure prepare_folder();
+    Failure record();
+    Failure advance(std::uint64_t target);
+    Failure sync();
+    Failure sample_frame(bool last);
+    Failure write_dumps();
+    Failure finish();
+
+    const Options& options_;
+    World world_;
+    Report report_;
+    wadi_world_stats stats_ = {};
+    double seconds_ = 0;
+    std::uint64_t steps_ = 0, done_ = 0;
+    std::vector<std::uint64_t> frame_steps_; // increasing, first 0, last steps_
+    std::size_t next_frame_ = 0;
+    std::uint32_t chunk_ = 1;
+    fs::path out_;
+    Scaling scaling_;
+    std::optional<Look> look_;
+    std::optional<ContactSheet> sheet_;
+    std::optional<Progress> progress_;
+    Caption caption_;
+    double metres_per_pixel_ = 0;
+};
+
+/// Times of frames, dumps and the end as step numbers.
+Failure Recording::plan() {
+    const double dt = world_.info().dt;
+    seconds_ = options_.seconds >= 0 ? options_.seconds : world_.info().duration;
+    steps_ = static_cast<std::uint64_t>(std::ceil(seconds_ / dt - 1e-6));
+    const double every = options_.every > 0 ? options_.every : std::max(seconds_ / 10, dt);
+    if (seconds_ / every > MOST_FRAMES) {
+        return {EXIT_BAD_INPUT,
+                "--every " + std::to_string(every) + " gives more than 100000 frames in " + std::to_string(seconds_) + " s"};
+    }
+    for (std::uint64_t k = 0;; ++k) {
+        const std::uint64_t step = step_at(static_cast<double>(k) * every, dt);
+        if (step >= steps_) break;
+        if (frame_steps_.empty() || step > frame_steps_.back()) frame_steps_.push_back(step);
+    }
+    frame_steps_.push_back(steps_);
+    for (const DumpRequest& dump : options_.dumps) {
+        if (step_at(dump.time, dt) > steps_) {
+            return {EXIT_BAD_INPUT, "--dump " + dump.field_name + "@" + dump.time_text + ": the recording ends at " +
+                                        std::to_string(seconds_) + " s (--seconds)"};
+        }
+    }
+    return {};
+}
+
+/// Creates the folder and removes the frames of an earlier recording, so that nobody mixes the two.
+Failure Recording::prepare_folder() {
+    std::error_code error;
+    const fs::path summary_folder = fs::absolute(options_.summary.empty() ? "." : options_.summary, error).parent_path();
+    if (!fs::is_directory(summary_folder, error)) { // said now, not after a long run
+        return {EXIT_BAD_INPUT, "--summary " + options_.summary + ": no folder " + summary_folder.string()};
+    }
+    if (!options_.frames && options_.dumps.empty()) return {};
+    fs::create_directories(out_, error);
+    if (error) return {EXIT_BAD_INPUT, "cannot create the folder " + out_.string() + ": " + error.message()};
+    if (!options_.frames) return {};
+    int removed = 0;
+    for (const fs::directory_entry& entry : fs::directory_iterator(out_, error)) {
+        const std::string name = entry.path().filename().string();
+        const bool is_frame = name.size() == 15 && name.starts_with("frame_") && name.ends_with(".png") &&
+                              std::all_of(name.begin() + 6, name.begin() + 11, [](char c) { return c >= '0' && c <= '9'; });
+        if (is_frame && fs::remove(entry.path(), error)) ++removed;
+    }
+    if (removed > 0) std::printf("removed %d frames of an earlier recording from %s\n", removed, out_.string().c_str());
+    return {};
+}
+
+/// Waits for the steps asked for.
+Failure Recording::sync() { return world_.read_stats(stats_); }
+
+Failure Recording::advance(std::uint64_t target) {
+    while (done_ < target && !interrupted()) {
+        const std::uint32_t count = static_cast<std::uint32_t>(std::min<std::uint64_t>(chunk_, target - done_));
+        const Clock::time_point start = Clock::now();
+        if (Failure failure = world_.step(count)) return failure;
+        if (Failure failure = sync()) return failure;
+        const double elapsed = seconds_since(start);
+        // The first reading waits for the steps and then reduces the state; a second one only reduces. Their difference is
+        // the steps' own time.
+        const Clock::time_point again = Clock::now();
+        if (Failure failure = sync()) return failure;
+        const double own = std::max(elapsed - seconds_since(again), 0.0);
+        report_.stepping_seconds += own;
+        report_.timed_steps += count;
+        done_ += count;
+        const double fitting = own > 0 ? count * CHUNK_SECONDS / own : 8.0 * count;
+        chunk_ = static_cast<std::uint32_t>(std::clamp(fitting, 1.0, 8.0 * std::max(count, chunk_ / 8)));
+        progress_->show(done_, stats_.time, report_.stepping_seconds);
+    }
+    return {};
+}
+
+Failure Recording::sample_frame(bool last) {
+    if (Failure failure = sync()) return failure;
+    report_.sample(stats_);
+    if (!options_.frames) return {};
+    MapFields fields;
+    if (Failure failure = world_.read_map(scaling_.reduce, fields)) return failure;
+    if (!look_) look_ = choose_look(fields, options_.water_scale);
+    const Image map = render_map(fields, *look_, scaling_);
+    const Image frame = compose_frame(map, *look_, caption_, stats_.time, metres_per_pixel_);
+    char name[32];
+    std::snprintf(name, sizeof name, "frame_%05d.png", report_.frames);
+    if (std::string error = write_file(out_ / name, encode_png(frame)); !error.empty()) return {EXIT_BAD_INPUT, error};
+    ++report_.frames;
+    sheet_->add(map, stats_.time, last);
+    return {};
+}
+
+Failure Recording::write_dumps() {
+    std::vector<float> values;
+    for (const DumpRequest& dump : options_.dumps) {
+        if (step_at(dump.time, world_.info().dt) != done_) continue;
+        if (Failure failure = world_.read_field(static_cast<wadi_field>(dump.field), values)) return failure;
+        const fs::path path = out_ / (dump.field_name + "_" + dump.time_text + ".npy");
+        const std::string error = write_file(path, encode_npy(values, world_.info().nx, world_.info().ny));
+        if (!error.empty()) return {EXIT_BAD_INPUT, error};
+        char text[128];
+        std::snprintf(text, sizeof text, "dump %s at t = %.9g s (step %llu, asked for %s s): ", dump.field_name.c_str(),
+                      stats_.time, static_cast<unsigned long long>(done_), dump.time_text.c_str());
+        progress_->note(text + path.string());
+    }
+    return {};
+}
+
+Failure Recording::record() {
+    std::vector<std::uint64_t> stops = frame_steps_;
+    for (const DumpRequest& dump : options_.dumps) stops.push_back(step_at(dump.time, world_.info().dt));
+    std::sort(stops.begin(), stops.end());
+    stops.erase(std::unique(stops.begin(), stops.end()), stops.end());
+    for (const std::uint64_t stop : stops) {
+        if (Failure failure = advance(stop)) return failure;
+        const bool ended_early = done_ < stop;
+        if (ended_early || stop == frame_steps_[next_frame_]) {
+            if (Failure failure = sample_frame(ended_early || stop == steps_)) return failure;
+            ++next_frame_;
+        }
+        if (ended_early) {
+            report_.interrupted = true;
+            return {};
+        }
+        if (Failure failure = write_dumps()) return failure;
+    }
+    return {};
+}
+
+/// What is written at the end of every recording, whole or not.
+Failure Recording::finish() {
+    if (sheet_ && !sheet_->empty()) {
+        const Image sheet = sheet_->compose(*look_, caption_, metres_per_pixel_);
+        const std::string error = write_file(out_ / "contact_sheet.png", encode_png(sheet));
+        if (!error.empty()) return {EXIT_BAD_INPUT, error};
+    }
+    if (!options_.summary.empty()) {
+        if (std::string error = write_file(options_.summary, format_summary(report_)); !error.empty())
+            return {EXIT_BAD_INPUT, error};
+    }
+    return {};
+}
+
+int Recording::run() {
+    if (Failure failure = world_.create(options_)) return complain(failure);
+    if (options_.print_plan) {
+        std::printf("%s", world_.describe_plan().c_str());
+        return EXIT_DONE;
+    }
+    const wadi_world_info& info = world_.info();
+    out_ = options_.out;
+    scaling_ = choose_scaling(info.nx, info.ny);
+    caption_ = {options_.level_name, info.nx, info.ny, info.dx, scaling_.enlarge_x == scaling_.enlarge_y};
+    metres_per_pixel_ = info.dx * scaling_.reduce / scaling_.enlarge_x;
+    if (Failure failure = plan()) return complain(failure);
+    if (Failure failure = prepare_folder()) return complain(failure);
+
+    report_.level = options_.level_name;
+    report_.info = info;
+    report_.warnings = world_.warnings();
+    for (const std::string& warning : report_.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+    std::printf("%s: %d x %d cells of %g m, %.6g s in %llu steps, on %s: %s\n", options_.level_name.c_str(), info.nx, info.ny,
+                info.dx, seconds_, static_cast<unsigned long long>(steps_), info.backend, info.device_name);
+    std::fflush(stdout);
+
+    if (options_.frames) sheet_.emplace(frame_steps_.size());
+    progress_.emplace(seconds_, steps_);
+    catch_interrupt();
+    const Clock::time_point start = Clock::now();
+    Failure failure = record();
+    if (failure && failure.exit_code == EXIT_DEVICE_FAULT) report_.fault = failure.message;
+    if (!failure && options_.profile) failure = world_.read_timings(report_.stages);
+    report_.wall_seconds = seconds_since(start);
+    progress_->finish();
+    const Failure unwritten = finish();
+
+    if (report_.stats.struct_size != 0) std::printf("\n%s", format_table(report_).c_str());
+    if (report_.frames > 0) {
+        std::printf("%d frames and contact_sheet.png are in %s%s\n", report_.frames, out_.string().c_str(),
+                    report_.interrupted ? " (interrupted)" : "");
+    }
+    if (failure) return complain(failure);
+    if (unwritten) return complain(unwritten);
+    return EXIT_DONE;
+}
+
+} // namespace
+
+int run(const Options& options) {
+    Recording recording(options);
+    return recording.run();
+}
+
+} // namespace recorder

@@ -1,0 +1,19 @@
+// Effects: the bits of the mask that decides which stages, buffers and branches exist.
+// Shared by every stage (GLSL, C++, CUDA) and by the engine: plain #defines only.
+// What each bit means to a user, and what it needs, is the table in engine/effects.cpp.
+#ifndef WADI_EFFECTS_H
+#define WADI_EFFECTS_H
+
+#define EFFECT_WATER 1u         // water that flows: heights and velocities of W
+#define EFFECT_SAND 2u          // sand that flows: heights, velocities, Coulomb friction
+#define EFFECT_MIXTURE 4u       // the second water layer: water inside sand has its own velocity
+#define EFFECT_DIFFUSION 8u     // diffusion of mixed water
+#define EFFECT_DRAG 16u         // momentum exchange between mixed water and sand
+#define EFFECT_ELASTOPLASTIC 32u // deformation gradient, stress and yield of the sand
+#define EFFECT_COHESION 64u     // cohesion that depends on saturation
+#define EFFECT_SOURCES 128u     // point, disc and strip sources and sinks
+#define EFFECT_RAIN 256u        // rain and evaporation
+#define EFFECT_OPEN_SIDES 512u  // sides that are not walls
+#define EFFECT_BED_FRICTION 1024u // Manning-like friction of pure water on its bed
+
+#endif

@@ -1,0 +1,37 @@
+// Joint implicit momentum exchange (drag) between water and sand and Coulomb friction of sand on the ground: one closed
+// form, so that sand at rest does not drag the water of a lake at rest (NUMERICS 2.8; paper 3.3.1, 3.4.2, 4.2.3, 4.2.4).
+#ifndef PHYSICS_DRAG
+#define PHYSICS_DRAG
+#include "../physics/scalar.glsl"
+
+// Coupling kappa of two layers, and the sand's share r = h_m/(rho_s h_s) of it.
+FN float drag_coupling(float mixed_height, float sand_height, float water_density, float sand_density, float kd, float dry) {
+    float r = divide_or_zero(mixed_height, sand_density * sand_height);
+    float kappa = r * wdiv(water_density * kd, water_density + kd);
+    return mixed_height > dry ? kappa : 0.0f;
+}
+
+// Coupling when one velocity stands for all water (single-layer water): momenta m = rho_w W and rho_s h_s, exchange kd h_m.
+FN float drag_coupling_single(float water_height, float mixed_height, float sand_height, float water_density, float sand_density, float kd, float dry) {
+    float m = water_density * water_height;
+    float d = kd * mixed_height;
+    float pair = divide_or_zero(m * d, m + d);
+    float kappa = divide_or_zero(pair, sand_density * sand_height);
+    return mixed_height > dry ? kappa : 0.0f;
+}
+
+// Sand's velocity after drag and stick or slip. px, py: sand momentum per mass with the water's share, us + kappa um;
+// slip: mu g dts max(0, 1 - rho_w h_m/(rho_s h_s)).
+FN float stick_or_slip(float along, float across, float slip, float kappa) {
+    float size = wsqrt(along * along + across * across);
+    float keep = wmax(0.0f, 1.0f - divide_or_zero(slip, size));
+    keep = size > 0.0f ? keep : 0.0f;
+    return wdiv(keep * along, 1.0f + kappa);
+}
+
+FN float friction_slip(float mu, float gravity, float dts, float mixed_height, float sand_height, float density_ratio) {
+    float lift = density_ratio * divide_or_zero(mixed_height, sand_height);
+    return mu * gravity * dts * wmax(0.0f, 1.0f - lift);
+}
+
+#endif

@@ -1,0 +1,45 @@
+// Conservative upwind transport of heights (paper 4.1.2 with the sign of Eq. 7 corrected; Chentanez and Mueller 2010)
+// and the outflow limiter (NUMERICS 2.2). A flux is a depth moved in one step, k*q [m], positive east and north.
+#ifndef PHYSICS_FLUX
+#define PHYSICS_FLUX
+#include "../physics/scalar.glsl"
+
+// Raw upwind flux through a face between `low` (west or south) and `high` (east or north) cells.
+FN float upwind_flux(float velocity, float height_low, float height_high, float k) {
+    return k * (wmax(velocity, 0.0f) * height_low + wmin(velocity, 0.0f) * height_high);
+}
+
+// What leaves a cell through its four faces; west and south fluxes leave where negative.
+FN float outflow(float flux_west, float flux_east, float flux_south, float flux_north) {
+    return (wmax(-flux_west, 0.0f) + wmax(flux_east, 0.0f)) + (wmax(-flux_south, 0.0f) + wmax(flux_north, 0.0f));
+}
+
+// Factor on all outflow of a cell so that it never gives more than it holds; the last 4 ulp keep the sum below it.
+FN float outflow_scale(float height, float outflow_depth, float limiter) {
+    float scale = divide_or_zero(height, outflow_depth) * (1.0f - 4.76837158e-7f);
+    float limited = outflow_depth > height ? scale : 1.0f;
+    return limiter > 0.0f ? limited : 1.0f;
+}
+
+// The flux after its donor's limiter, in whole quanta.
+FN float limited_flux(float raw, float scale_low, float scale_high, float quantum, float inv_quantum) {
+    float scale = raw > 0.0f ? scale_low : scale_high;
+    return flush(whole_quanta(raw * scale, quantum, inv_quantum));
+}
+
+FN float integrate_height(float height, float flux_west, float flux_east, float flux_south, float flux_north) {
+    return flush(wmax(height + ((flux_west - flux_east) + (flux_south - flux_north)), 0.0f));
+}
+
+// Diffusion of mixed water as a flux (NUMERICS 2.1): the smaller of the gradients of the mixed height and of the free
+// surface, none where they disagree in sign, so that a lake at rest stays at rest. number = c dt/dx^2.
+FN float diffusive_flux(float mixed_low, float mixed_high, float surface_low, float surface_high, float sand_low, float sand_high, float number, float dry) {
+    float a = mixed_high - mixed_low;
+    float e = surface_high - surface_low;
+    float s = wabs(a) < wabs(e) ? a : e;
+    bool agree = either(both(a > 0.0f, e > 0.0f), both(a < 0.0f, e < 0.0f));
+    bool sand = both(sand_low > dry, sand_high > dry);
+    return both(agree, sand) ? -number * s : 0.0f;
+}
+
+#endif

@@ -1,0 +1,26 @@
+// Scalar building blocks that mean the same in GLSL, C++ and CUDA, NaN and signed zero included.
+#ifndef PHYSICS_SCALAR
+#define PHYSICS_SCALAR
+
+// The second argument wins where they compare equal or unordered, as the machines' own min and max do.
+FN float wmin(float a, float b) { return b < a ? b : a; }
+FN float wmax(float a, float b) { return a < b ? b : a; }
+FN float wclamp(float x, float low, float high) { return wmin(wmax(x, low), high); }
+
+// No denormal and no negative zero leaves a stage: some GPUs flush denormals and others keep them.
+FN float flush(float x) { return wabs(x) < 1.0e-20f ? 0.0f : x; }
+
+// a/b where b may be zero: 0 there.
+FN float divide_or_zero(float a, float b) {
+    float safe = b > 0.0f ? b : 1.0f;
+    float q = wdiv(a, safe);
+    return b > 0.0f ? q : 0.0f;
+}
+
+// Volumes are moved in whole quanta (NUMERICS 2.2): toward zero, so that a limited outflow stays limited.
+FN float whole_quanta(float volume, float quantum, float inv_quantum) {
+    float t = wtrunc(volume * inv_quantum) * quantum;
+    return quantum > 0.0f ? t : volume;
+}
+
+#endif

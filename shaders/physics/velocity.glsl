@@ -1,0 +1,68 @@
+// Face velocities: momentum advection with the limited mass fluxes, pressure, wet/dry and rest rules (NUMERICS 2.3, 2.4).
+#ifndef PHYSICS_VELOCITY
+#define PHYSICS_VELOCITY
+#include "../physics/scalar.glsl"
+
+// Flux-form staggered upwind advection of one face velocity in increment form (NUMERICS 2.3, after Stelling and
+// Duinmeijer 2003): flux_* are the mean depths moved through the four sides of the face's own control volume,
+// height its mean new depth. A convex combination of the five velocities for any time step.
+FN float advect_velocity(float u, float u_west, float u_east, float u_south, float u_north, float flux_west, float flux_east, float flux_south,
+                         float flux_north, float height, float dry) {
+    float along = wmax(-flux_east, 0.0f) * (u_east - u) + wmax(flux_west, 0.0f) * (u_west - u);
+    float across = wmax(-flux_north, 0.0f) * (u_north - u) + wmax(flux_south, 0.0f) * (u_south - u);
+    float moved = u + divide_or_zero(along + across, height);
+    return height > dry ? moved : u;
+}
+
+// Momentum exchange between pure and mixed water when the boundary between them moves (paper 3.4.2; convex form,
+// NUMERICS 2.4a): gained_* = mixed height after the split less before, of the two cells of the face.
+FN void exchange_split(REF(float) pure, REF(float) mixed, float gained_low, float gained_high, float pure_height, float mixed_height, float dry) {
+    float to_mixed = 0.5f * (wmax(gained_low, 0.0f) + wmax(gained_high, 0.0f));
+    float to_pure = 0.5f * (wmax(-gained_low, 0.0f) + wmax(-gained_high, 0.0f));
+    float keep_mixed = wmax(mixed_height - to_pure, 0.0f);
+    float keep_pure = wmax(pure_height - to_mixed, 0.0f);
+    float mixed_total = keep_mixed + to_mixed;
+    float pure_total = keep_pure + to_pure;
+    float new_mixed = divide_or_zero(keep_mixed * mixed + to_mixed * pure, mixed_total);
+    float new_pure = divide_or_zero(keep_pure * pure + to_pure * mixed, pure_total);
+    mixed = mixed_total > dry ? new_mixed : mixed;
+    pure = pure_total > dry ? new_pure : pure;
+}
+
+// Gravity as a face may use it at this time step (NUMERICS 2.4b): the cap keeps the wave CFL number where the scheme
+// damps instead of ringing, and gets tighter the faster the water moves.
+FN float water_gravity(float gravity, float speed, float deepest, float k, float base, float least, float inv_k2) {
+    float margin = wmax(least, base - k * speed);
+    float cap = divide_or_zero(margin * margin * inv_k2, deepest);
+    return deepest > 0.0f ? wmin(gravity, cap) : gravity;
+}
+
+// The same for sand (NUMERICS 2.7): cap = 0.25/ks^2.
+FN float sand_gravity(float gravity, float highest, float cap) {
+    float limited = divide_or_zero(cap, highest);
+    return highest > 0.0f ? wmin(gravity, limited) : gravity;
+}
+
+// Wet/dry rule (NUMERICS 2.4c): true where a face must stand still, because both cells are dry, or because the wet
+// one's surface does not stand above its dry neighbour.
+FN bool blocked(float height_low, float height_high, float surface_low, float surface_high, float dry) {
+    bool wet_low = height_low > dry;
+    bool wet_high = height_high > dry;
+    bool both_dry = both(!wet_low, !wet_high);
+    bool wall_high = both(both(wet_low, !wet_high), surface_high >= surface_low);
+    bool wall_low = both(both(wet_high, !wet_low), surface_low >= surface_high);
+    return either(both_dry, either(wall_high, wall_low));
+}
+
+// Rest rule (NUMERICS 2.4e): a level and slow face stands still for ever.
+FN bool at_rest(float surface_low, float surface_high, float u, float rest_surface, float rest_velocity) {
+    return both(wabs(surface_high - surface_low) <= rest_surface, wabs(u) <= rest_velocity);
+}
+
+// Manning-like bed friction, implicit: u/(1 + dt c |u|/h).
+FN float bed_friction(float u, float height, float friction_dt) {
+    float rate = divide_or_zero(friction_dt * wabs(u), height);
+    return wdiv(u, 1.0f + rate);
+}
+
+#endif

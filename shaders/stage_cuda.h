@@ -1,0 +1,41 @@
+// Prelude of the stage language for CUDA. Included inside a namespace of its own; __fdiv_rn and __fsqrt_rn are the
+// correctly rounded forms whatever the compiler's flags, contraction is off by -fmad=false.
+
+struct alignas(8) vec2 { float x, y; };
+struct alignas(16) vec4 { float x, y, z, w; };
+typedef unsigned int uint;
+
+#define FN static __device__ __forceinline__
+#define REF(T) T&
+#include "effects.h"
+#include "step_params.h"
+
+#define STAGE(NAME)                                                                                                    \
+    template <unsigned EFFECTS> struct NAME {                                                                          \
+        WorldParams P;                                                                                                 \
+        const StepInput& S;
+#define EXTENT(KIND)
+#define END_STAGE                                                                                                      \
+    }                                                                                                                  \
+    ;
+#define HELPER __device__ __forceinline__
+#define HELPER_CONST const
+#define KERNEL __device__ __forceinline__ void kernel(int i, int j) const
+#define IN(SLOT, T, NAME) const T* __restrict__ NAME;
+#define OUT(SLOT, T, NAME) T* __restrict__ NAME;
+#define INOUT(SLOT, T, NAME) T* __restrict__ NAME;
+#define IN_IF(BITS, SLOT, T, NAME) IN(SLOT, T, NAME)
+#define OUT_IF(BITS, SLOT, T, NAME) OUT(SLOT, T, NAME)
+#define INOUT_IF(BITS, SLOT, T, NAME) INOUT(SLOT, T, NAME)
+#define HAS(BITS) ((EFFECTS & (BITS)) == (BITS))
+#define IDX(I, J) (((J) + GHOST) * P.pitch + (I) + GHOST)
+
+FN float wdiv(float a, float b) { return __fdiv_rn(a, b); }
+FN float wsqrt(float x) { return __fsqrt_rn(x); }
+FN float wabs(float x) { return fabsf(x); }
+FN float wtrunc(float x) { return truncf(x); }
+FN float wfloor(float x) { return floorf(x); }
+FN int float_bits(float x) { return __float_as_int(x); }
+FN float bits_float(int x) { return __int_as_float(x); }
+FN bool both(bool a, bool b) { return a && b; }
+FN bool either(bool a, bool b) { return a || b; }

@@ -1,0 +1,116 @@
+// The two parameter blocks of every stage, shared by the host and by all three stage compilers.
+// Only 4-byte scalars, and vec4 arrays at 16-byte offsets, so that the C++ struct and the std140 block
+// have the same layout (checked by static_assert in engine/compute/device.hpp).
+#ifndef WADI_STEP_PARAMS_H
+#define WADI_STEP_PARAMS_H
+
+#define GHOST 2          // ghost cells on each side of every field
+#define STRIP 32         // rows of one ledger strip
+#define MAX_SOURCES 32   // sources and sinks of one world
+#define SOURCE_DISC 0
+#define SOURCE_BOX 1
+#define MATERIAL_WATER 0
+#define MATERIAL_SAND 1
+#define SIDE_WALL 0
+#define SIDE_DISCHARGE 1
+#define SIDE_LEVEL 2
+#define SIDE_OUTFLOW 3
+#define SIDE_WEST 0
+#define SIDE_EAST 1
+#define SIDE_SOUTH 2
+#define SIDE_NORTH 3
+
+// Ledger rows: each holds a 64-bit count of quanta in two words (low, high), one per strip and column.
+#define LEDGER_WATER_IN 0
+#define LEDGER_WATER_OUT 1
+#define LEDGER_SAND_IN 2
+#define LEDGER_SAND_OUT 3
+#define LEDGER_REFUSED 4 // source volume refused because a column would pass the declared largest height
+#define LEDGER_ENTRIES 5
+
+// What is fixed for a world until it is re-recorded. At most 512 bytes. SI units.
+struct WorldParams {
+    int nx;                     // cells along x
+    int ny;                     // cells along y
+    int pitch;                  // floats from one row to the next
+    int strips;                 // ledger strips: ceil((ny + 1) / STRIP)
+    int substeps;               // T: sand substeps per water step
+    int source_count;
+    int source_i0;              // columns [i0, i1) and strips [s0, s1) that hold all sources
+    int source_i1;
+    int source_s0;
+    int source_s1;
+    int side_kind_west;         // SIDE_*
+    int side_kind_east;
+    int side_kind_south;
+    int side_kind_north;
+    float dx;                   // cell size [m]
+    float gravity;              // [m/s2]
+
+    float quantum;              // Q: every height is a multiple of it [m]; 0 = plain float
+    float inv_quantum;          // 1/Q, 0 when Q = 0 [1/m]
+    float inv_ledger_quantum;   // quanta per metre in the ledger [1/m]
+    float largest_height;       // declared largest column H + hs + W [m]
+    float dry_threshold;        // eps [m]
+
+    // water step
+    float k;                    // dt/dx [s/m]
+    float water_velocity_clamp; // alpha dx/dt [m/s]
+    float gravity_cap_base;     // 0.55 in NUMERICS 2.4b (dimensionless); 1e9 = no cap
+    float gravity_cap_floor;    // 0.15 in NUMERICS 2.4b
+    float inv_k2;               // 1/k^2 [m2/s2]
+    float rest_surface;         // eta_rest [m]; negative = rule off
+    float rest_velocity;        // v_rest [m/s]; negative = rule off
+    float diffusion_number;     // min(c_d, 0.2 dx^2/dt) dt/dx^2
+    float bed_friction_dt;      // dt c, Manning-like [m/s * s/m]
+    float limiter;              // 1 = outflow limiter on, 0 = off
+    float inv_substeps;         // 1/T
+
+    // sand substep
+    float ks;                   // dts/dx [s/m]
+    float dts;                  // dt/T [s]
+    float sand_velocity_clamp;  // alpha dx/dts [m/s]
+    float sand_gravity_cap;     // 0.25/ks^2 [m2/s2]; 1e9 = no cap
+    float density_ratio;        // rho_w/rho_s
+    float water_density;        // [kg/m3]
+    float sand_density;         // [kg/m3]
+    float friction;             // mu of sand on the ground
+    float drag_kd;              // dts c_e [kg/m3]
+
+    // elastoplastic sand
+    float lambda;               // Lame's first parameter after the elastic cap [Pa]
+    float shear;                // shear modulus after the elastic cap [Pa]
+    float inv_two_shear;        // 1/(2 shear)
+    float yield_slope;          // A = c_f (2 shear + 2 lambda) [Pa]
+    float inv_yield_slope;
+    float inv_bulk;             // 1/(lambda + shear)
+    float passive_pressure;     // K rho_s g [Pa/m]; 1e30 = compression uncapped
+    float inv_friction_yield;   // 1/c_f
+    float force_scale;          // ks/rho_s
+    float gradient_clamp;       // largest |dts grad v| entry (0.4)
+    float stress_taper;         // 1/h_el [1/m]; 1e30 = no taper
+    float cohesion_cap;         // 1.8 c_f rho_s g [Pa/m]: largest cohesion per metre of sand
+    float cohesion0;            // [Pa]
+    float cohesion1;
+    float phi1;                 // saturations of the piecewise linear cohesion
+    float phi2;
+    float phi3;
+    float slope01;              // (c1 - c0)/phi1
+    float slope12;              // (c2 - c1)/(phi2 - phi1)
+    float slope23;              // c2/(phi3 - phi2)
+    float smooth0;              // weights of the saturation low-pass at distance 0, 1, 2 cells
+    float smooth1;
+    float smooth2;
+};
+
+// What changes with every water step. At most 1 KiB.
+struct StepInput {
+    int step;                   // index of the water step
+    float rain;                 // depth of rain in this step [m], a whole number of quanta
+    float evaporation;          // largest depth that evaporates in this step [m]
+    float pad0;
+    vec4 source[MAX_SOURCES];   // depth added (negative: removed) [m], face velocity x, y [m/s], 1 if velocity is set
+    vec4 side[4];               // west, east, south, north: discharge per width [m2/s] or level [m],
+                                // least ghost depth [m], first and last index of the open span
+};
+#endif

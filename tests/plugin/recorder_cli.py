@@ -1,0 +1,203 @@
+#!/usr/bin/env python3
+"""Runs wadi-recorder through its success and error cases. Usage: recorder_cli.py RECORDER [--backend NAME]"""
+
+import argparse
+import json
+import os
+import signal
+import struct
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+OK, BAD_INPUT = 0, 2
+LEVEL = "dam_break"
+SUMMARY_KEYS = {
+    "level", "completed", "steps", "simulated_seconds", "wall_seconds", "ms_per_step", "stages", "ledger", "extremes", "counts",
+    "hash", "passes", "bytes_per_cell", "device", "warnings",
+}
+
+
+class Recorder:
+    def __init__(self, program, backend, folder):
+        self.program = str(Path(program).resolve())
+        self.backend = backend
+        self.folder = folder
+
+    def command(self, *arguments):
+        return [self.program, *[str(a) for a in arguments]]
+
+    def run(self, *arguments, code=OK):
+        done = subprocess.run(self.command(*arguments), cwd=self.folder, capture_output=True, text=True, timeout=300, check=False)
+        assert done.returncode == code, f"{arguments}: exit code {done.returncode}, not {code}\n{done.stdout}\n{done.stderr}"
+        return done
+
+    def record(self, *arguments, code=OK):
+        return self.run(LEVEL, "--backend", self.backend, "--size", "40x12", *arguments, code=code)
+
+    def refuse(self, *arguments, says):
+        """A refused call writes one line on standard error, which says what is wrong, and leaves no file."""
+        before = sorted(self.folder.rglob("*"))
+        done = self.run(*arguments, code=BAD_INPUT)
+        lines = done.stderr.strip().splitlines()
+        assert len(lines) == 1, f"{arguments}: want one line, got {lines}"
+        for word in says:
+            assert word in lines[0], f"{arguments}: \"{word}\" is not in: {lines[0]}"
+        assert sorted(self.folder.rglob("*")) == before, f"{arguments}: files were left behind"
+
+
+def png_size(path):
+    data = path.read_bytes()
+    assert data[:8] == b"\x89PNG\r\n\x1a\n", path
+    assert data[-8:-4] == b"IEND", f"{path} is cut off"
+    return struct.unpack(">II", data[16:24])
+
+
+def read_npy(path):
+    data = path.read_bytes()
+    assert data[:8] == b"\x93NUMPY\x01\x00", path
+    length = struct.unpack("<H", data[8:10])[0]
+    assert (10 + length) % 64 == 0 and data[9 + length] == ord("\n"), path
+    header = eval(data[10 : 10 + length], {"__builtins__": {}})  # a Python literal by the format's definition
+    assert header["descr"] == "<f4" and header["fortran_order"] is False, header
+    ny, nx = header["shape"]
+    assert len(data) == 10 + length + 4 * nx * ny, path
+    return nx, ny, struct.unpack(f"<{nx * ny}f", data[10 + length :])
+
+
+def test_lists(recorder):
+    assert "cpu" in recorder.run("--list-backends").stdout
+    names = [line.split()[0] for line in recorder.run("--list-levels").stdout.splitlines()]
+    assert LEVEL in names, names
+    assert names == sorted(names)
+    assert "--dump" in recorder.run("--help").stdout
+
+
+def test_plan(recorder):
+    assert "water" in recorder.record("--print-plan").stdout.lower()
+    assert not (recorder.folder / "out").exists()
+
+
+def test_refusals(recorder):
+    recorder.refuse(says=["--list-levels"])
+    recorder.refuse("dam_braek", says=["dam_braek", LEVEL])
+    recorder.refuse("nowhere/level.json", says=["nowhere/level.json"])
+    recorder.refuse("--terrain", "nowhere.png", says=["nowhere.png"])
+    recorder.refuse(LEVEL, "--terrain", "nowhere.png", says=["--terrain"])
+    recorder.refuse(LEVEL, "--unknown-option", says=["--unknown-option"])
+    recorder.refuse(LEVEL, "--backend", "abacus", says=["abacus"])
+    recorder.refuse(LEVEL, "--backend", "cpu", "--device", 1000, says=["1000"])
+    for size in ("0x5", "40", "40x", "40x12x3", "-4x12", "99999x2", "axb"):
+        recorder.refuse(LEVEL, f"--size={size}", says=["--size", size])
+    recorder.refuse(LEVEL, "--dt", "-1", says=["--dt"])
+    recorder.refuse(LEVEL, "--seconds", "soon", says=["--seconds"])
+    recorder.refuse(LEVEL, "--every", "0", says=["--every"])
+    recorder.refuse(LEVEL, "--method", "alchemy", says=["alchemy"])
+    recorder.refuse(LEVEL, "--dump", "hs", says=["--dump", "hs"])
+    recorder.refuse(LEVEL, "--dump", "gold@1", says=["gold", "hs"])
+    recorder.refuse(LEVEL, "--dump", "hs@now", says=["now"])
+    recorder.refuse(LEVEL, "--dump", "hs@-1", says=["-1"])
+    recorder.refuse(LEVEL, "--seconds", "0.1", "--dump", "hs@5", says=["hs@5", "--seconds"])
+    (recorder.folder / "a_file").write_text("not a folder\n", encoding="utf-8")
+    recorder.refuse(LEVEL, "--seconds", "0.1", "--out", "a_file/out", says=["a_file/out"])
+    recorder.refuse(LEVEL, "--seconds", "0.1", "--summary", "nowhere/summary.json", says=["nowhere"])
+    (recorder.folder / "broken.json").write_text("{ \"name\": ", encoding="utf-8")
+    recorder.refuse("broken.json", says=["broken.json"])
+
+
+def test_frames(recorder):
+    done = recorder.record("--seconds", "0.5", "--every", "0.25", "--out", "frames")
+    folder = recorder.folder / "frames"
+    names = sorted(path.name for path in folder.iterdir())
+    assert names == ["contact_sheet.png", "frame_00000.png", "frame_00001.png", "frame_00002.png"], names
+    for name in names[1:]:
+        width, height = png_size(folder / name)
+        assert width >= 800 and height > 240, (name, width, height)
+    assert png_size(folder / "contact_sheet.png")[0] > 0
+    assert "hash" in done.stdout and "ledger" in done.stdout
+    assert "100 %" in done.stderr
+    recorder.record("--seconds", "0", "--out", "frames")
+    names = sorted(path.name for path in folder.iterdir())
+    assert names == ["contact_sheet.png", "frame_00000.png"], f"frames of the earlier recording are left: {names}"
+
+
+def test_default_folder(recorder):
+    recorder.record("--seconds", "0")
+    assert (recorder.folder / "out" / LEVEL / "frame_00000.png").exists()
+
+
+def test_dumps(recorder):
+    done = recorder.record("--seconds", "0.5", "--no-frames", "--dump", "hs,W@0.2,0.5", "--dump", "H@0", "--out", "dumps")
+    folder = recorder.folder / "dumps"
+    names = sorted(path.name for path in folder.iterdir())
+    assert names == ["H_0.npy", "W_0.2.npy", "W_0.5.npy", "hs_0.2.npy", "hs_0.5.npy"], names
+    for name in names:
+        nx, ny, values = read_npy(folder / name)
+        assert (nx, ny) == (40, 12), (name, nx, ny)
+        assert all(value == value for value in values), name
+        assert name in done.stdout, f"{name} is not announced"
+    assert max(read_npy(folder / "W_0.5.npy")[2]) > 0
+
+
+def test_summary(recorder):
+    def summary(*arguments):
+        recorder.record("--seconds", "0.5", "--no-frames", "--summary", "summary.json", *arguments)
+        return json.loads((recorder.folder / "summary.json").read_text(encoding="utf-8"))
+
+    first = summary()
+    assert SUMMARY_KEYS <= first.keys(), SUMMARY_KEYS - first.keys()
+    assert first["completed"] is True and first["steps"] > 0
+    assert abs(first["simulated_seconds"] - 0.5) <= first["grid"]["dt"]
+    assert len(first["hash"]) == 16 and int(first["hash"], 16) >= 0
+    assert first["device"].keys() >= {"backend", "name", "exact_float"}
+    for layer in ("water", "sand"):
+        assert first["ledger"][layer].keys() >= {"initial_m3", "in_m3", "out_m3", "now_m3", "relative_drift", "drift_quanta"}
+        assert abs(first["ledger"][layer]["relative_drift"]) < 1e-6, first["ledger"]
+    assert first["counts"]["not_finite"]["largest"] == 0
+    assert first["extremes"]["smallest_height_m"] >= 0
+    assert first["stages"] == []
+    assert not (recorder.folder / "out").exists(), "--no-frames without dumps creates no folder"
+
+    profiled = summary("--profile")
+    assert profiled["hash"] == first["hash"], "profiling changes the result"
+    assert profiled["stages"] and all(stage.keys() >= {"name", "ms", "passes"} for stage in profiled["stages"])
+    assert sum(stage["passes"] for stage in profiled["stages"]) == profiled["passes"]["per_step"], profiled["passes"]
+
+
+def test_interrupt(recorder):
+    arguments = recorder.command(LEVEL, "--backend", recorder.backend, "--size", "40x12", "--seconds", "100000", "--every", "1000")
+    with subprocess.Popen(arguments + ["--out", "cut", "--summary", "cut.json"], cwd=recorder.folder, stdout=subprocess.PIPE,
+                          stderr=subprocess.PIPE, text=True) as process:
+        deadline = time.monotonic() + 60
+        while not (recorder.folder / "cut" / "frame_00000.png").exists():
+            assert time.monotonic() < deadline and process.poll() is None, "no first frame"
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        stdout, stderr = process.communicate(timeout=60)
+    assert process.returncode == OK, (process.returncode, stderr)
+    assert "hash" in stdout and "interrupted" in stdout
+    assert (recorder.folder / "cut" / "contact_sheet.png").exists()
+    cut = json.loads((recorder.folder / "cut.json").read_text(encoding="utf-8"))
+    assert cut["interrupted"] is True and cut["completed"] is False
+    assert not list((recorder.folder / "cut").glob("*.part"))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("recorder")
+    parser.add_argument("--backend", default="cpu")
+    options = parser.parse_args()
+    tests = [test_lists, test_plan, test_refusals, test_frames, test_default_folder, test_dumps, test_summary]
+    if os.name == "posix":
+        tests.append(test_interrupt)
+    for test in tests:
+        with tempfile.TemporaryDirectory(prefix="wadi_recorder_") as folder:
+            test(Recorder(options.recorder, options.backend, Path(folder)))
+        print(f"{test.__name__}: OK")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,168 @@
+// The sand's left stretch V and its stress: advection (2.5), Cayley update (2.6), projection (2.7).
+#pragma once
+#include "tests/reference/transport.inl"
+#include <array>
+
+namespace wadi::reference {
+
+/// 2.5: V moves with the sand's mass fluxes; a cell without sand holds the identity.
+template <class Real> void Solver<Real>::advect_stretch() {
+    const Axis x = axis(false);
+    const Axis y = axis(true);
+    for (Field<Real>* component : {&Vxx, &Vxy, &Vyy}) {
+        const Field<Real> old = *component;
+        const Real identity = component == &Vxy ? Real(0) : Real(1);
+        for (int j = 0; j < x.ny; ++j) {
+            for (int i = 0; i < x.nx; ++i) {
+                const std::size_t c = x.cell(i, j);
+                if (!(sand[c] > Real(1e-30))) {
+                    (*component)[c] = identity;
+                    continue;
+                }
+                // What face (a, b) lets into this cell from its neighbour, sign +1 where the axis points into the cell.
+                const auto inflow = [&](const Axis& ax, int a, int b, Real sign, int neighbour) {
+                    const Real in = std::max(sign * sand_flux.along(ax)[ax.face(a, b)], Real(0));
+                    if (neighbour < 0 || neighbour >= ax.along()) return Real(0);
+                    return in * (old[ax.cell(neighbour, b)] - old[c]);
+                };
+                const Real along_x = inflow(x, i, j, Real(1), i - 1) + inflow(x, i + 1, j, Real(-1), i + 1);
+                const Real along_y = inflow(y, j, i, Real(1), j - 1) + inflow(y, j + 1, i, Real(-1), j + 1);
+                (*component)[c] = old[c] + (along_x + along_y) / sand[c];
+            }
+        }
+    }
+}
+
+/// 2.6 on one cell: Cayley step with the gradient of the velocities before this substep, then the left stretch.
+template <class Real> void Solver<Real>::stretch_by_velocity_gradient(int i, int j) {
+    const Axis x = axis(false);
+    const std::size_t c = x.cell(i, j);
+    if (sand_before[c] <= P.eps) return;
+    // d(velocity along ax)/d(across ax), times the substep; `known` is false where no neighbour across is wet.
+    const auto shear_rate = [&](const Axis& ax, int a, int b, bool& known) {
+        const Field<Real>& u = sand_velocity.along(ax);
+        const auto average = [&](int row) { return mean(u[ax.face(a, row)], u[ax.face(a + 1, row)]); };
+        const bool below = b > 0 && sand_before[ax.cell(a, b - 1)] > P.eps;
+        const bool above = b + 1 < ax.across() && sand_before[ax.cell(a, b + 1)] > P.eps;
+        known = below || above;
+        if (below && above) return (average(b + 1) - average(b - 1)) * P.k_sand / Real(2);
+        if (above) return (average(b + 1) - average(b)) * P.k_sand;
+        if (below) return (average(b) - average(b - 1)) * P.k_sand;
+        return Real(0);
+    };
+    const auto stretch_rate = [&](const Axis& ax, int a, int b) {
+        const Field<Real>& u = sand_velocity.along(ax);
+        return (u[ax.face(a + 1, b)] - u[ax.face(a, b)]) * P.k_sand;
+    };
+    bool xy_known = false;
+    bool yx_known = false;
+    Real Gxy = shear_rate(x, i, j, xy_known);
+    Real Gyx = shear_rate(axis(true), j, i, yx_known);
+    if (!xy_known && yx_known) Gxy = -Gyx;
+    if (!yx_known && xy_known) Gyx = -Gxy;
+    const auto limited = [&](Real G) { return P.gradient_clamp > Real(0) ? clamped(G, P.gradient_clamp) : G; };
+    const Real a = limited(stretch_rate(x, i, j)) / Real(2);
+    const Real b = limited(Gxy) / Real(2);
+    const Real d = limited(Gyx) / Real(2);
+    const Real e = limited(stretch_rate(axis(true), j, i)) / Real(2);
+
+    // A = (I - G/2)^-1 (I + G/2) with G/2 = (a b; d e).
+    const Real det = (Real(1) - a) * (Real(1) - e) - b * d;
+    const Real A00 = ((Real(1) + a) * (Real(1) - e) + b * d) / det;
+    const Real A11 = ((Real(1) - a) * (Real(1) + e) + b * d) / det;
+    const Real A01 = Real(2) * b / det;
+    const Real A10 = Real(2) * d / det;
+    const Real N00 = A00 * Vxx[c] + A01 * Vxy[c];
+    const Real N01 = A00 * Vxy[c] + A01 * Vyy[c];
+    const Real N10 = A10 * Vxx[c] + A11 * Vxy[c];
+    const Real N11 = A10 * Vxy[c] + A11 * Vyy[c];
+    const Real px = N00 + N11;
+    const Real py = N10 - N01;
+    const Real n = std::hypot(px, py);
+    const Real cs = n > Real(0) ? px / n : Real(1);
+    const Real sn = n > Real(0) ? py / n : Real(0);
+    Vxx[c] = N00 * cs - N01 * sn;
+    Vyy[c] = N10 * sn + N11 * cs;
+    Vxy[c] = mean(N00 * sn + N01 * cs, N10 * cs - N11 * sn);
+}
+
+template <class Real> void Solver<Real>::evolve_deformation_gradient() {
+    advect_stretch();
+    const Axis x = axis(false);
+    for (int j = 0; j < x.ny; ++j)
+        for (int i = 0; i < x.nx; ++i) stretch_by_velocity_gradient(i, j);
+}
+
+/// Cohesion c_c(phibar) [Pa]: the paper's piecewise linear law, capped for thin layers (2.7).
+template <class Real> Real Solver<Real>::cohesion(std::size_t cell) const {
+    const Real phi = has(EFFECT_COHESION) ? saturation[cell] : Real(0);
+    Real c(0);
+    if (phi < P.phi1)
+        c = P.c0 + phi * (P.c1 - P.c0) / P.phi1;
+    else if (phi < P.phi2)
+        c = P.c1 + (phi - P.phi1) * (P.c2 - P.c1) / (P.phi2 - P.phi1);
+    else if (phi <= P.phi3)
+        c = P.c2 * (P.phi3 - phi) / (P.phi3 - P.phi2);
+    if (P.cohesion_cap > Real(0)) c = std::min(c, Real(2) * P.yield_friction * P.cohesion_cap * P.rho_s * P.gravity * sand[cell]);
+    return c;
+}
+
+template <class Real> void Solver<Real>::project_deformation_gradient() {
+    const Real lm = P.lambda + P.shear;
+    for (std::size_t c = 0; c < cells(); ++c) {
+        sxx[c] = sxy[c] = syy[c] = Real(0);
+        if (sand[c] <= P.eps) continue;
+        // Logarithmic strain of V from b = V V^T, without angles.
+        const Real bxx = Vxx[c] * Vxx[c] + Vxy[c] * Vxy[c];
+        const Real byy = Vxy[c] * Vxy[c] + Vyy[c] * Vyy[c];
+        const Real bxy = Vxy[c] * (Vxx[c] + Vyy[c]);
+        const Real det = Vxx[c] * Vyy[c] - Vxy[c] * Vxy[c];
+        const Real d = mean(bxx, -byy);
+        const Real radius = std::hypot(d, bxy);
+        const Real l1 = mean(bxx, byy) + radius;
+        const Real l2 = det * det / l1;
+        Real tr(0), dd(0), dxy(0);
+        if (det > Real(1e-6) && l1 < Real(1e6)) { // otherwise V starts again from the identity
+            const Real e1 = clamped(std::log(l1) / Real(2), Real(0.5));
+            const Real e2 = clamped(std::log(l2) / Real(2), Real(0.5));
+            tr = e1 + e2;
+            if (radius > Real(0)) {
+                dd = (e1 - e2) / Real(2) * d / radius;
+                dxy = (e1 - e2) / Real(2) * bxy / radius;
+            }
+        }
+        // Compression cap, tip and cone of the yield surface.
+        const Real coh = cohesion(c);
+        if (P.passive_pressure > Real(0)) {
+            const Real pressure = P.passive_pressure * P.rho_s * P.gravity * sand[c] + coh / P.yield_friction;
+            tr = std::max(tr, -pressure / lm);
+        }
+        const Real A = P.yield_friction * Real(2) * lm;
+        const Real y = A * tr - coh;
+        if (y >= Real(0)) {
+            tr = coh / A;
+            dd = dxy = Real(0);
+        } else {
+            const Real limit = -y / (Real(2) * P.shear);
+            const Real size = std::sqrt(Real(2) * (dd * dd + dxy * dxy));
+            if (size > limit) {
+                dd *= limit / size;
+                dxy *= limit / size;
+            }
+        }
+        const Real hd = std::hypot(dd, dxy);
+        const Real E = std::exp(tr / Real(2));
+        const Real shape = hd > Real(0) ? std::sinh(hd) / hd : Real(1);
+        Vxx[c] = E * (std::cosh(hd) + shape * dd);
+        Vyy[c] = E * (std::cosh(hd) - shape * dd);
+        Vxy[c] = E * shape * dxy;
+        // Cauchy stress; it fades out in thin layers where the taper is on.
+        Real per_J = std::exp(-tr);
+        if (P.taper > Real(0)) per_J *= std::clamp(sand[c] / P.taper - Real(1), Real(0), Real(1));
+        sxx[c] = (lm * tr + Real(2) * P.shear * dd) * per_J;
+        syy[c] = (lm * tr - Real(2) * P.shear * dd) * per_J;
+        sxy[c] = Real(2) * P.shear * dxy * per_J;
+    }
+}
+
+} // namespace wadi::reference

@@ -1,0 +1,148 @@
+// What enters and leaves: sources, rain, evaporation and open sides (2.9). Amounts are whole quanta.
+#pragma once
+#include "tests/reference/transport.inl"
+
+namespace wadi::reference {
+
+/// The amount of this step [m], so that everything given so far is floor(total / Q) quanta.
+template <class Real> double Solver<Real>::quanta(double& total, double amount) const {
+    const double Q = static_cast<double>(P.quantum);
+    const double before = total;
+    total += amount;
+    return Q > 0 ? (std::floor(total / Q) - std::floor(before / Q)) * Q : amount;
+}
+
+/// Adds to a cell, or removes what is there at most; refuses to pass the declared largest column.
+template <class Real> void Solver<Real>::add_depth(Field<Real>& field, std::size_t cell, Real amount, double& ledger) {
+    if (amount > Real(0) && P.quantum > Real(0) && terrain[cell] + sand[cell] + water[cell] + amount > P.largest_height) {
+        ++refused;
+        return;
+    }
+    const Real change = std::max(amount, -field[cell]);
+    field[cell] += change;
+    ledger += static_cast<double>(change);
+}
+
+template <class Real> void Solver<Real>::apply_source(const Source& source, double& total) {
+    const double dx = settings.grid.dx;
+    // Whether a position is inside; positions are cell centres and face centres [m].
+    const auto inside = [&](double px, double py) {
+        const double rx = px - source.center[0];
+        const double ry = py - source.center[1];
+        if (source.shape == SourceShape::disc) return rx * rx + ry * ry <= source.radius * source.radius;
+        return px >= source.box[0] && px <= source.box[2] && py >= source.box[1] && py <= source.box[3];
+    };
+    const bool is_point = source.shape == SourceShape::point;
+    const int point_i = static_cast<int>(std::floor(source.center[0] / dx));
+    const int point_j = static_cast<int>(std::floor(source.center[1] / dx));
+    const Axis x = axis(false);
+
+    const double rate = sample(source.rate, time());
+    const Real amount = static_cast<Real>(quanta(total, rate * settings.dt));
+    const bool is_water = source.material == SourceMaterial::water;
+    for (int j = 0; j < x.ny; ++j)
+        for (int i = 0; i < x.nx; ++i) {
+            const bool in = is_point ? i == point_i && j == point_j : inside((i + 0.5) * dx, (j + 0.5) * dx);
+            if (in) add_depth(is_water ? water : sand, x.cell(i, j), amount, is_water ? water_added : sand_added);
+        }
+
+    if (!source.set_velocity || !is_water || !(rate > 0)) return;
+    for_inner_faces([&](const Axis& ax, int a, int b) {
+        const double along = a * dx;
+        const double across = (b + 0.5) * dx;
+        const int cell_along = ax.is_y ? point_j : point_i;
+        const int cell_across = ax.is_y ? point_i : point_j;
+        const bool beside = b == cell_across && (a == cell_along || a == cell_along + 1);
+        if (!(is_point ? beside : ax.is_y ? inside(across, along) : inside(along, across))) return;
+        const Real u = static_cast<Real>(source.velocity[ax.is_y ? 1 : 0]);
+        pure_velocity.along(ax)[ax.face(a, b)] = u;
+        if (has(EFFECT_MIXTURE)) mixed_velocity.along(ax)[ax.face(a, b)] = u;
+    });
+}
+
+template <class Real> void Solver<Real>::apply_sources() {
+    if (!has(EFFECT_SOURCES)) return;
+    for (std::size_t s = 0; s < settings.sources.size(); ++s) apply_source(settings.sources[s], source_totals_[s]);
+}
+
+template <class Real> void Solver<Real>::apply_rain() {
+    if (!has(EFFECT_RAIN)) return;
+    const Real gained = static_cast<Real>(quanta(rain_total_, sample(settings.rain, time()) * settings.dt));
+    const Real lost = static_cast<Real>(quanta(evaporation_total_, sample(settings.evaporation, time()) * settings.dt));
+    for (std::size_t c = 0; c < cells(); ++c) {
+        add_depth(water, c, gained, water_added);
+        add_depth(water, c, -lost, water_added);
+    }
+}
+
+/// A face beside a reservoir whose surface stands at `level`: 2.4b to d with the reservoir as neighbour.
+template <class Real> void Solver<Real>::level_face(const Axis& ax, int a, int b, Real level) {
+    const bool far_end = a != 0;
+    const std::size_t f = ax.face(a, b);
+    const std::size_t inner = ax.cell(far_end ? a - 1 : 0, b);
+    const Real ghost = whole_quanta(std::max(level - terrain[inner], Real(0)), P.quantum);
+    ghost_water.along(ax)[f] = ghost;
+    const Real eta_in = terrain[inner] + water[inner];
+    const Real eta_out = terrain[inner] + ghost;
+    const Real rise = far_end ? eta_out - eta_in : eta_in - eta_out;
+    Real& u = pure_velocity.along(ax)[f];
+    u -= P.k * water_gravity(std::abs(u), std::max(water[inner], ghost)) * rise;
+    if (std::abs(rise) <= P.rest_surface && std::abs(u) <= P.rest_velocity) u = Real(0);
+    if (blocked(pure[inner], ghost, eta_in, eta_out, P.eps)) u = Real(0);
+    u = clamped(u, P.clamp);
+}
+
+/// Velocities and outer depths of one side's faces. Positive `outward` points out of the domain.
+template <class Real> void Solver<Real>::update_side(const Side& side, const Axis& ax, bool far_end) {
+    const int a = far_end ? ax.along() : 0;
+    const int a_inner = far_end ? ax.along() - 1 : 1;
+    const Real outward = far_end ? Real(1) : Real(-1);
+    const auto in_span = [&](int b) {
+        const double centre = (b + 0.5) * settings.grid.dx;
+        return centre >= side.from && centre <= side.to;
+    };
+    int open_faces = 0;
+    for (int b = 0; b < ax.across(); ++b) open_faces += in_span(b) ? 1 : 0;
+    const double value = sample(side.value, time());
+
+    for (int b = 0; b < ax.across(); ++b) {
+        const std::size_t f = ax.face(a, b);
+        const std::size_t inner = ax.cell(far_end ? a - 1 : 0, b);
+        const auto leave = [&](Faces<Real>& velocity) {
+            Field<Real>& u = velocity.along(ax);
+            u[f] = outward * std::max(outward * u[ax.face(a_inner, b)], Real(0));
+        };
+        const bool open = side.kind != SideKind::wall && in_span(b);
+        if (!open || side.kind != SideKind::level) pure_velocity.along(ax)[f] = Real(0);
+        mixed_velocity.along(ax)[f] = Real(0);
+        sand_velocity.along(ax)[f] = Real(0);
+        ghost_water.along(ax)[f] = Real(0);
+        if (!open) continue;
+        if (side.kind == SideKind::discharge) {
+            const Real q = static_cast<Real>(value) / (Real(open_faces) * P.dx);
+            const Real critical = P.gravity > Real(0) ? std::cbrt(q * q / P.gravity) : Real(0);
+            const Real depth = std::max(std::max(water[inner], critical), std::abs(q) * P.k / P.alpha);
+            ghost_water.along(ax)[f] = depth;
+            if (depth > Real(0)) pure_velocity.along(ax)[f] = -outward * q / depth;
+        } else if (side.kind == SideKind::level) {
+            level_face(ax, a, b, static_cast<Real>(value));
+            if (has(EFFECT_MIXTURE)) leave(mixed_velocity);
+        } else {
+            leave(pure_velocity);
+            if (has(EFFECT_MIXTURE)) leave(mixed_velocity);
+            if (has(EFFECT_SAND)) leave(sand_velocity);
+        }
+    }
+}
+
+template <class Real> void Solver<Real>::update_open_sides() {
+    if (!has(EFFECT_OPEN_SIDES)) return;
+    split_water();
+    for (const SideName name : {SideName::west, SideName::east, SideName::south, SideName::north}) {
+        const bool is_y = name == SideName::south || name == SideName::north;
+        const bool far_end = name == SideName::east || name == SideName::north;
+        update_side(settings.sides[static_cast<std::size_t>(name)], axis(is_y), far_end);
+    }
+}
+
+} // namespace wadi::reference

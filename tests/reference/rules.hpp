@@ -1,0 +1,34 @@
+// Small rules shared by water and sand: pure functions of their arguments.
+#pragma once
+#include <algorithm>
+#include <cmath>
+
+namespace wadi::reference {
+
+/// 2.4c: whether a face of a layer with depths h and surfaces S on both sides must stand still.
+template <class Real> bool blocked(Real h_left, Real h_right, Real S_left, Real S_right, Real eps) {
+    const bool wet_left = h_left > eps;
+    const bool wet_right = h_right > eps;
+    if (!wet_left && !wet_right) return true;
+    if (wet_left && !wet_right) return S_right >= S_left;
+    if (wet_right && !wet_left) return S_left >= S_right;
+    return false;
+}
+
+/// 2.4d.
+template <class Real> Real clamped(Real u, Real limit) { return std::clamp(u, -limit, limit); }
+
+/// 2.1: 0 where the slopes disagree in sign, else the one of smaller magnitude.
+template <class Real> Real minmod(Real a, Real e) {
+    if (a * e <= Real(0)) return Real(0);
+    return std::abs(a) < std::abs(e) ? a : e;
+}
+
+template <class Real> Real mean(Real left, Real right) { return (left + right) / Real(2); }
+
+/// Volume that is moved: whole quanta, towards zero.
+template <class Real> Real whole_quanta(Real depth, Real quantum) {
+    return quantum > Real(0) ? std::trunc(depth / quantum) * quantum : depth;
+}
+
+} // namespace wadi::reference

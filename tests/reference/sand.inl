@@ -1,0 +1,146 @@
+// The sand substep: heights, velocity, exchange with the water inside the sand (2.4a, 2.5, 2.7, 2.8).
+#pragma once
+#include "tests/reference/transport.inl"
+#include <array>
+
+namespace wadi::reference {
+
+template <class Real> void Solver<Real>::limit_sand_outflow() { limit_outflow(Layer::sand, P.k_sand, sand_scale); }
+
+template <class Real> void Solver<Real>::compute_sand_flux() { limited_flux(Layer::sand, P.k_sand, sand_scale, sand_flux); }
+
+template <class Real> void Solver<Real>::integrate_sand_height() {
+    const Axis x = axis(false);
+    sand_before = sand;
+    for (std::size_t c = 0; c < cells(); ++c) mixed_before[c] = std::min(water[c], sand[c]);
+    for (int j = 0; j < x.ny; ++j)
+        for (int i = 0; i < x.nx; ++i) {
+            Real& h = sand[x.cell(i, j)];
+            h = std::max(h + gain(sand_flux, i, j), Real(0));
+        }
+    split_water();
+    if (!has(EFFECT_OPEN_SIDES)) return;
+    for (const bool is_y : {false, true}) {
+        const Axis ax = axis(is_y);
+        const Field<Real>& flux = sand_flux.along(ax);
+        for (int b = 0; b < ax.across(); ++b)
+            sand_added += static_cast<double>(flux[ax.face(0, b)]) - static_cast<double>(flux[ax.face(ax.along(), b)]);
+    }
+}
+
+/// 2.7: gravity that keeps sand waves stable.
+template <class Real> Real Solver<Real>::sand_gravity(Real deepest) const {
+    if (P.sand_gravity_cap <= Real(0) || deepest <= Real(0)) return P.gravity;
+    return std::min(P.gravity, P.sand_gravity_cap / (P.k_sand * P.k_sand * deepest));
+}
+
+/// Force of the stress, gravity and the wet/dry rule with S = H + hs + (rho_w/rho_s) h_w.
+template <class Real> void Solver<Real>::add_stress_and_gravity() {
+    const bool elastic = has(EFFECT_ELASTOPLASTIC);
+    const auto surface = [&](std::size_t c) {
+        return terrain[c] + sand[c] + P.rho_w / P.rho_s * (water[c] - std::min(water[c], sand[c]));
+    };
+    // Shear at the corner between the cells a - 1, a along and b - 1, b across; 0 on the wall.
+    const auto corner = [&](const Axis& ax, int a, int b) {
+        if (b == 0 || b == ax.across()) return Real(0);
+        const std::array<std::size_t, 4> c = {ax.cell(a - 1, b - 1), ax.cell(a, b), ax.cell(a, b - 1), ax.cell(a - 1, b)};
+        const Real thinnest = std::min(std::min(sand[c[0]], sand[c[1]]), std::min(sand[c[2]], sand[c[3]]));
+        return thinnest * (((sxy[c[0]] + sxy[c[1]]) + (sxy[c[2]] + sxy[c[3]])) / Real(4));
+    };
+    for_inner_faces([&](const Axis& ax, int a, int b) {
+        const std::size_t L = ax.cell(a - 1, b);
+        const std::size_t R = ax.cell(a, b);
+        Real& u = sand_velocity.along(ax)[ax.face(a, b)];
+        if (elastic) {
+            const Field<Real>& normal = ax.is_y ? syy : sxx;
+            const Real force = (sand[R] * normal[R] - sand[L] * normal[L]) + (corner(ax, a, b + 1) - corner(ax, a, b));
+            const Real hb = mean(sand[L], sand[R]);
+            u = hb < P.eps / Real(2) ? Real(0) : u + P.k_sand * force / (P.rho_s * hb);
+        }
+        const Real S_L = surface(L);
+        const Real S_R = surface(R);
+        u -= P.k_sand * sand_gravity(std::max(sand[L], sand[R])) * (S_R - S_L);
+        if (blocked(sand[L], sand[R], S_L, S_R, P.eps)) u = Real(0);
+    });
+}
+
+template <class Real> void Solver<Real>::integrate_sand_velocity() {
+    advect_velocity(sand, sand_flux, sand_velocity);
+    add_stress_and_gravity();
+}
+
+/// 2.4a: momentum follows the water that changes between the pure and the mixed layer.
+template <class Real>
+void Solver<Real>::exchange_split(const Field<Real>& mixed_old, const Field<Real>& pure_old, const Field<Real>& mixed_new) {
+    for_inner_faces([&](const Axis& ax, int a, int b) {
+        const std::size_t L = ax.cell(a - 1, b);
+        const std::size_t R = ax.cell(a, b);
+        const Real d_L = mixed_new[L] - mixed_old[L];
+        const Real d_R = mixed_new[R] - mixed_old[R];
+        const Real pos = mean(std::max(d_L, Real(0)), std::max(d_R, Real(0)));
+        const Real neg = mean(std::max(-d_L, Real(0)), std::max(-d_R, Real(0)));
+        const Real m = std::max(mean(mixed_old[L], mixed_old[R]) - neg, Real(0));
+        const Real w = std::max(mean(pure_old[L], pure_old[R]) - pos, Real(0));
+        Real& um = mixed_velocity.along(ax)[ax.face(a, b)];
+        Real& uw = pure_velocity.along(ax)[ax.face(a, b)];
+        const Real um_old = um;
+        const Real uw_old = uw;
+        if (m + pos > P.eps) um = (m * um_old + pos * uw_old) / (m + pos);
+        if (w + neg > P.eps) uw = (w * uw_old + neg * um_old) / (w + neg);
+    });
+}
+
+template <class Real> void Solver<Real>::compute_momentum_exchange() {
+    Field<Real> pure_before(cells());
+    for (std::size_t c = 0; c < cells(); ++c) pure_before[c] = water[c] - mixed_before[c];
+    exchange_split(mixed_before, pure_before, mixed);
+    for_inner_faces([&](const Axis& ax, int a, int b) {
+        const std::size_t f = ax.face(a, b);
+        mixed_velocity.along(ax)[f] -= mixed_push.along(ax)[f];
+    });
+}
+
+/// 2.8: implicit pair of drag and Coulomb friction, on every inner face from the velocities before it.
+template <class Real> void Solver<Real>::apply_friction() {
+    const bool two_layers = has(EFFECT_MIXTURE);
+    const bool drag = has(EFFECT_DRAG);
+    Faces<Real>& partner = two_layers ? mixed_velocity : pure_velocity;
+    const Faces<Real> us_old = sand_velocity;
+    const Faces<Real> um_old = partner;
+    for_inner_faces([&](const Axis& ax, int a, int b) {
+        const std::size_t L = ax.cell(a - 1, b);
+        const std::size_t R = ax.cell(a, b);
+        const std::size_t f = ax.face(a, b);
+        const auto crosswise = [&](const Faces<Real>& velocity) {
+            const Field<Real>& v = velocity.across(ax);
+            return ((v[ax.cross(a - 1, b)] + v[ax.cross(a - 1, b + 1)]) + (v[ax.cross(a, b)] + v[ax.cross(a, b + 1)])) / Real(4);
+        };
+        const Real hs_bar = mean(sand[L], sand[R]);
+        const Real hm_bar = mean(mixed[L], mixed[R]);
+        Real& us = sand_velocity.along(ax)[f];
+        Real& um = partner.along(ax)[f];
+        if (hs_bar <= P.eps / Real(2)) {
+            us = Real(0);
+            um = clamped(um, P.clamp);
+            return;
+        }
+        // Per bed area: inertia of the partner layer and of the sand, and the drag impulse per velocity difference.
+        // In the two-layer form both sides are divided by h_m, so that thin layers divide by nothing small.
+        const Real r = hm_bar / (P.rho_s * hs_bar);
+        const Real inertia = two_layers ? P.rho_w : P.rho_w * mean(water[L], water[R]);
+        const Real kd = P.substep * P.exchange * (two_layers ? Real(1) : hm_bar);
+        Real kappa(0);
+        if (drag && hm_bar > P.eps) kappa = (two_layers ? r : Real(1) / (P.rho_s * hs_bar)) * inertia * kd / (inertia + kd);
+        const Real p = us_old.along(ax)[f] + kappa * um_old.along(ax)[f];
+        const Real p_cross = crosswise(us_old) + kappa * crosswise(um_old);
+        const Real size = std::sqrt(p * p + p_cross * p_cross);
+        const Real g_f = sand_gravity(std::max(sand[L], sand[R]));
+        const Real N = P.friction * g_f * P.substep * std::max(Real(1) - P.rho_w * r, Real(0));
+        us = size > Real(0) ? std::max(Real(1) - N / size, Real(0)) * p / (Real(1) + kappa) : Real(0);
+        if (drag && inertia + kd > Real(0)) um = (inertia * um_old.along(ax)[f] + kd * us) / (inertia + kd);
+        us = clamped(us, P.clamp_sand);
+        um = clamped(um, P.clamp);
+    });
+}
+
+} // namespace wadi::reference

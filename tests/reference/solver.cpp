@@ -1,0 +1,150 @@
+// Set-up and the order of the stages (section 3).
+#include "tests/reference/solver.hpp"
+#include "tests/reference/deformation.inl"
+#include "tests/reference/rim.inl"
+#include "tests/reference/sand.inl"
+#include "tests/reference/water.inl"
+
+namespace wadi::reference {
+
+double sample(const TimeSeries& series, double time) {
+    const auto& points = series.samples;
+    if (points.empty()) return 0;
+    if (time <= points.front().first) return points.front().second;
+    for (std::size_t n = 1; n < points.size(); ++n) {
+        const auto& [t0, v0] = points[n - 1];
+        const auto& [t1, v1] = points[n];
+        if (time < t1) return v0 + (v1 - v0) * ((time - t0) / (t1 - t0));
+    }
+    return points.back().second;
+}
+
+template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t mask) : settings(world), effects(mask) {
+    const Material& material = world.material;
+    const Method& method = world.method;
+    P.dx = static_cast<Real>(world.grid.dx);
+    P.gravity = static_cast<Real>(world.gravity);
+    P.rho_w = static_cast<Real>(material.water_density);
+    P.rho_s = static_cast<Real>(material.sand_density);
+    P.friction = static_cast<Real>(material.friction);
+    P.yield_friction = static_cast<Real>(material.yield_friction);
+    P.c0 = static_cast<Real>(material.cohesion_dry);
+    P.c1 = static_cast<Real>(material.cohesion_wet);
+    P.c2 = static_cast<Real>(material.cohesion_capillary);
+    P.phi1 = static_cast<Real>(material.saturation[0]);
+    P.phi2 = static_cast<Real>(material.saturation[1]);
+    P.phi3 = static_cast<Real>(material.saturation[2]);
+    P.exchange = has(EFFECT_DRAG) ? static_cast<Real>(material.exchange_rate) : Real(0);
+    P.bed_friction = has(EFFECT_BED_FRICTION) ? static_cast<Real>(material.bed_friction) : Real(0);
+    P.eps = static_cast<Real>(method.dry_threshold);
+    P.largest_height = static_cast<Real>(method.largest_height);
+    const double quantum = method.quantum < 0 ? std::exp2(std::ceil(std::log2(method.largest_height)) - 24) : method.quantum;
+    P.quantum = static_cast<Real>(quantum);
+    P.alpha = static_cast<Real>(method.velocity_clamp);
+    P.gravity_cap = static_cast<Real>(method.gravity_cap);
+    P.gravity_cap_least = static_cast<Real>(method.gravity_cap_least);
+    P.sand_gravity_cap = static_cast<Real>(method.sand_gravity_cap);
+    P.rest_surface = static_cast<Real>(method.rest_surface);
+    P.rest_velocity = static_cast<Real>(method.rest_velocity);
+    P.passive_pressure = static_cast<Real>(method.passive_pressure);
+    P.gradient_clamp = static_cast<Real>(method.gradient_clamp);
+    P.cohesion_cap = static_cast<Real>(method.cohesion_cap);
+    P.taper = static_cast<Real>(method.stress_taper);
+    P.substeps = method.substeps;
+    P.smoothing = method.saturation_smoothing;
+    P.limiter = method.outflow_limiter;
+    set_time_step(world.dt);
+
+    const std::size_t nx = static_cast<std::size_t>(world.grid.nx);
+    const std::size_t ny = static_cast<std::size_t>(world.grid.ny);
+    for (Field<Real>* field : {&terrain, &sand, &water, &Vxy, &pure, &mixed, &pure_predicted, &mixed_predicted, &pure_scale,
+                               &mixed_scale, &sand_scale, &saturation, &sand_before, &mixed_before, &sxx, &sxy, &syy})
+        field->assign(nx * ny, Real(0));
+    Vxx.assign(nx * ny, Real(1));
+    Vyy.assign(nx * ny, Real(1));
+    for (Faces<Real>* faces : {&sand_velocity, &pure_velocity, &mixed_velocity, &diffusion_flux, &pure_flux, &mixed_flux,
+                               &sand_flux, &mixed_push, &ghost_water}) {
+        faces->x.assign((nx + 1) * ny, Real(0));
+        faces->y.assign(nx * (ny + 1), Real(0));
+    }
+    source_totals_.assign(world.sources.size(), 0.0);
+}
+
+template <class Real> void Solver<Real>::set_time_step(double dt) {
+    settings.dt = dt;
+    P.dt = static_cast<Real>(dt);
+    P.substep = P.dt / Real(P.substeps);
+    P.k = P.dt / P.dx;
+    P.k_sand = P.substep / P.dx;
+    P.clamp = P.alpha / P.k;
+    P.clamp_sand = P.alpha / P.k_sand;
+    P.diffusion = std::min(static_cast<Real>(settings.material.diffusion_rate), Real(0.2) * P.dx * P.dx / P.dt);
+    const Real E = static_cast<Real>(settings.material.young_modulus);
+    const Real nu = static_cast<Real>(settings.material.poisson_ratio);
+    P.lambda = E * nu / ((Real(1) + nu) * (Real(1) - Real(2) * nu));
+    P.shear = E / (Real(2) * (Real(1) + nu));
+    const Real cap = static_cast<Real>(settings.method.elastic_cap);
+    if (cap > Real(0) && E > Real(0)) {
+        const Real stiffest = cap * P.rho_s * P.dx * P.dx / (P.substep * P.substep);
+        const Real factor = std::min(Real(1), stiffest / (P.lambda + Real(2) * P.shear));
+        P.lambda *= factor;
+        P.shear *= factor;
+    }
+}
+
+template <class Real> void Solver<Real>::load(const InitialFields& fields) {
+    const auto heights = [&](const std::vector<float>& from, Field<Real>& to) {
+        for (std::size_t c = 0; c < from.size(); ++c) {
+            const Real h = static_cast<Real>(from[c]);
+            to[c] = P.quantum > Real(0) ? std::nearbyint(h / P.quantum) * P.quantum : h;
+        }
+    };
+    const auto velocities = [&](const std::vector<float>& from_x, const std::vector<float>& from_y, Faces<Real>& to) {
+        for_inner_faces([&](const Axis& ax, int a, int b) {
+            const std::vector<float>& from = ax.is_y ? from_y : from_x;
+            if (from.empty()) return;
+            to.along(ax)[ax.face(a, b)] =
+                mean(static_cast<Real>(from[ax.cell(a - 1, b)]), static_cast<Real>(from[ax.cell(a, b)]));
+        });
+    };
+    heights(fields.terrain, terrain);
+    if (has(EFFECT_SAND)) heights(fields.sand, sand);
+    if (has(EFFECT_WATER)) heights(fields.water, water);
+    if (has(EFFECT_SAND)) velocities(fields.sand_velocity_x, fields.sand_velocity_y, sand_velocity);
+    if (has(EFFECT_WATER)) velocities(fields.velocity_x, fields.velocity_y, pure_velocity);
+    if (has(EFFECT_MIXTURE)) velocities(fields.velocity_x, fields.velocity_y, mixed_velocity);
+    split_water();
+}
+
+template <class Real> void Solver<Real>::step() {
+    apply_sources();
+    apply_rain();
+    update_open_sides();
+    if (has(EFFECT_WATER)) {
+        split_water();
+        diffuse_mixed_water();
+        limit_water_outflow();
+        compute_water_flux();
+        integrate_water_height();
+        integrate_water_velocity();
+    }
+    if (has(EFFECT_COHESION)) compute_saturation();
+    for (int substep = 0; has(EFFECT_SAND) && substep < P.substeps; ++substep) {
+        limit_sand_outflow();
+        compute_sand_flux();
+        integrate_sand_height();
+        if (has(EFFECT_ELASTOPLASTIC)) {
+            evolve_deformation_gradient();
+            project_deformation_gradient();
+        }
+        integrate_sand_velocity();
+        if (has(EFFECT_MIXTURE)) compute_momentum_exchange();
+        apply_friction();
+    }
+    ++step_index;
+}
+
+template class Solver<float>;
+template class Solver<double>;
+
+} // namespace wadi::reference

@@ -1,0 +1,142 @@
+// The reference solver: the equations of the design's NUMERICS page (section numbers in the comments are its sections),
+// written without looking at the stages, in float or double. Plain loops, every intermediate field public, so that a
+// single stage can be compared with a backend's. Choices where the page is silent: README.md.
+#pragma once
+#include "engine/include/wadi/settings.hpp"
+#include "tests/reference/grid.hpp"
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace wadi::reference {
+
+/// Numbers that stay fixed while the time step does, in the solver's own precision.
+template <class Real> struct Constants {
+    Real dx{}, dt{}, substep{};       // [m], [s], [s]: substep = dt / T
+    Real k{}, k_sand{};               // dt/dx, substep/dx [s/m]
+    Real gravity{};                   // [m/s2]
+    Real rho_w{}, rho_s{};            // [kg/m3]
+    Real friction{};                  // mu of Coulomb friction
+    Real yield_friction{};            // c_f
+    Real c0{}, c1{}, c2{};            // cohesion [Pa]
+    Real phi1{}, phi2{}, phi3{};      // saturation
+    Real exchange{};                  // c_e [kg/(m3 s)], 0 without the drag effect
+    Real diffusion{};                 // min(c_d, 0.2 dx2/dt) [m2/s]
+    Real bed_friction{};              // Manning-like, 0 without its effect
+    Real lambda{}, shear{};           // Lame constants [Pa], capped (2.7)
+    Real eps{};                       // dry threshold [m]
+    Real quantum{}, largest_height{}; // [m]; quantum 0 = plain arithmetic
+    Real clamp{}, clamp_sand{};       // alpha dx/dt, alpha dx/substep [m/s]
+    Real alpha{};                     // the clamp's factor
+    Real gravity_cap{}, gravity_cap_least{}, sand_gravity_cap{};
+    Real rest_surface{}, rest_velocity{}; // [m], [m/s]
+    Real passive_pressure{}, gradient_clamp{}, cohesion_cap{};
+    Real taper{}; // h_el [m]
+    int substeps{};
+    int smoothing{}; // radius of the saturation's low-pass [cells]
+    bool limiter{};
+};
+
+template <class Real> class Solver {
+  public:
+    /// `mask` is a legal combination of shaders/effects.h bits; elastoplastic needs young_modulus > 0.
+    Solver(const Settings& world, std::uint32_t mask);
+
+    /// Sets the state; heights are rounded to the nearest quantum, face velocities are means of the two cells.
+    void load(const InitialFields& fields);
+    /// Changes the time step (convergence studies); the state stays.
+    void set_time_step(double dt);
+    /// One water step with its T sand substeps.
+    void step();
+
+    // Stages, in the order in which step() calls them.
+    void apply_sources();
+    void apply_rain();
+    void update_open_sides();
+    void split_water();                  // mixed = min(W, hs), pure = W - mixed
+    void diffuse_mixed_water();          // 2.1 -> diffusion_flux
+    void limit_water_outflow();          // 2.2 -> pure_scale, mixed_scale
+    void compute_water_flux();           // 2.2 -> pure_flux, mixed_flux
+    void integrate_water_height();       // 2.2 -> water, pure_predicted, mixed_predicted, pure, mixed
+    void integrate_water_velocity();     // 2.3, 2.4 -> pure_velocity, mixed_velocity, mixed_push
+    void compute_saturation();           // 2.7 -> saturation
+    void limit_sand_outflow();           // 2.2 -> sand_scale
+    void compute_sand_flux();            // 2.2 -> sand_flux
+    void integrate_sand_height();        // 2.5 -> sand, sand_before, pure, mixed, mixed_before
+    void evolve_deformation_gradient();  // 2.5, 2.6 -> Vxx, Vxy, Vyy
+    void project_deformation_gradient(); // 2.7 -> Vxx, Vxy, Vyy, sxx, sxy, syy
+    void integrate_sand_velocity();      // 2.3, 2.7, rule 2.4c -> sand_velocity
+    void compute_momentum_exchange();    // 2.4a after the sand height, then mixed_push on mixed_velocity
+    void apply_friction();               // 2.8 -> sand_velocity, mixed_velocity (pure_velocity in the single-layer mask)
+
+    bool has(std::uint32_t effect) const { return (effects & effect) != 0; }
+    Axis axis(bool is_y) const { return {is_y, settings.grid.nx, settings.grid.ny}; }
+    double time() const { return static_cast<double>(step_index) * settings.dt; }
+
+    Settings settings;
+    std::uint32_t effects;
+    Constants<Real> P;
+    std::int64_t step_index = 0;
+
+    // State (section 1). Velocities of walls are 0. Without mixture pure_velocity is the velocity of all water.
+    Field<Real> terrain, sand, water;                         // H, hs, W [m]
+    Field<Real> Vxx, Vxy, Vyy;                                // left stretch of the sand
+    Faces<Real> sand_velocity, pure_velocity, mixed_velocity; // us, uw, um [m/s]
+
+    // Intermediate fields. Fluxes are depths per step, k q [m].
+    Field<Real> pure, mixed; // h_w, h_m; without mixture pure = W is the water layer
+    Field<Real> pure_predicted, mixed_predicted;
+    Field<Real> pure_scale, mixed_scale, sand_scale;
+    Faces<Real> diffusion_flux; // q_D [m2/s]
+    Faces<Real> pure_flux, mixed_flux, sand_flux;
+    Faces<Real> mixed_push;                // d_f, pressure's change of um per sand substep [m/s]
+    Field<Real> saturation;                // phibar
+    Field<Real> sand_before, mixed_before; // hs^n and min(W, hs^n)
+    Field<Real> sxx, sxy, syy;             // Cauchy stress [Pa]
+    Faces<Real> ghost_water;               // depth outside the open sides [m], on boundary faces
+
+    // What sources, rain and open sides added, as sums of depths [m]: exact in double with a quantum.
+    double water_added = 0;
+    double sand_added = 0;
+    std::int64_t refused = 0; // cell additions that would have passed the declared largest height
+
+  private:
+    using Side = wadi::Side;
+    enum class Layer : std::uint8_t { pure, mixed, sand };
+    std::size_t cells() const { return terrain.size(); }
+    /// f(axis, a, b) for every face between two cells.
+    template <class F> void for_inner_faces(F f) const;
+
+    Real raw_flux(Layer layer, const Axis& axis, int a, int b) const;
+    void limit_outflow(Layer layer, Real k, Field<Real>& scale) const;
+    void limited_flux(Layer layer, Real k, const Field<Real>& scale, Faces<Real>& flux) const;
+    /// Depth that the four fluxes add to cell (i, j).
+    Real gain(const Faces<Real>& flux, int i, int j) const;
+    void advect_velocity(const Field<Real>& height, const Faces<Real>& flux, Faces<Real>& velocity) const;
+    void exchange_split(const Field<Real>& mixed_old, const Field<Real>& pure_old, const Field<Real>& mixed_new);
+    Real water_gravity(Real fastest, Real deepest) const;
+    Real sand_gravity(Real deepest) const;
+    void water_face(const Axis& axis, int a, int b);
+    void advect_stretch();
+    void stretch_by_velocity_gradient(int i, int j);
+    Real cohesion(std::size_t cell) const;
+    void add_stress_and_gravity();
+
+    double quanta(double& total, double amount) const;
+    void add_depth(Field<Real>& field, std::size_t cell, Real amount, double& ledger);
+    void apply_source(const Source& source, double& total);
+    void update_side(const Side& side, const Axis& axis, bool far_end);
+    void level_face(const Axis& axis, int a, int b, Real level);
+
+    std::vector<double> source_totals_; // depth given so far, before rounding to quanta [m]
+    double rain_total_ = 0;
+    double evaporation_total_ = 0;
+};
+
+/// Linear between samples, constant outside; 0 without samples.
+double sample(const TimeSeries& series, double time);
+
+extern template class Solver<float>;
+extern template class Solver<double>;
+
+} // namespace wadi::reference

@@ -1,0 +1,97 @@
+// Transport that every layer shares: outflow limiter, upwind flux (2.2) and momentum advection (2.3).
+#pragma once
+#include "shaders/effects.h"
+#include "tests/reference/rules.hpp"
+#include "tests/reference/solver.hpp"
+#include <limits>
+
+namespace wadi::reference {
+
+template <class Real> template <class F> void Solver<Real>::for_inner_faces(F f) const {
+    for (const bool is_y : {false, true}) {
+        const Axis ax = axis(is_y);
+        for (int b = 0; b < ax.across(); ++b)
+            for (int a = 1; a < ax.along(); ++a) f(ax, a, b);
+    }
+}
+
+/// Raw upwind flux q [m2/s] of a layer, diffusion included. Outside an open side only the pure layer has depth.
+template <class Real> Real Solver<Real>::raw_flux(Layer layer, const Axis& ax, int a, int b) const {
+    const bool rim = a == 0 || a == ax.along();
+    if (rim && !has(EFFECT_OPEN_SIDES)) return Real(0);
+    const Field<Real>& h = layer == Layer::pure ? pure : layer == Layer::mixed ? mixed : sand;
+    const Faces<Real>& velocity = layer == Layer::pure ? pure_velocity : layer == Layer::mixed ? mixed_velocity : sand_velocity;
+    const std::size_t face = ax.face(a, b);
+    const Real outside = layer == Layer::pure ? ghost_water.along(ax)[face] : Real(0);
+    const Real h_left = a > 0 ? h[ax.cell(a - 1, b)] : outside;
+    const Real h_right = a < ax.along() ? h[ax.cell(a, b)] : outside;
+    const Real u = velocity.along(ax)[face];
+    Real q = std::max(u, Real(0)) * h_left + std::min(u, Real(0)) * h_right;
+    if (layer == Layer::mixed && has(EFFECT_DIFFUSION)) q += diffusion_flux.along(ax)[face];
+    return q;
+}
+
+template <class Real> void Solver<Real>::limit_outflow(Layer layer, Real k, Field<Real>& scale) const {
+    const Field<Real>& h = layer == Layer::pure ? pure : layer == Layer::mixed ? mixed : sand;
+    const Axis x = axis(false);
+    const Axis y = axis(true);
+    const Real margin = Real(1) - Real(4) * std::numeric_limits<Real>::epsilon();
+    for (int j = 0; j < x.ny; ++j) {
+        for (int i = 0; i < x.nx; ++i) {
+            const Real west = std::max(-raw_flux(layer, x, i, j), Real(0));
+            const Real east = std::max(raw_flux(layer, x, i + 1, j), Real(0));
+            const Real south = std::max(-raw_flux(layer, y, j, i), Real(0));
+            const Real north = std::max(raw_flux(layer, y, j + 1, i), Real(0));
+            const Real outflow = k * ((west + east) + (south + north));
+            const std::size_t c = x.cell(i, j);
+            scale[c] = !P.limiter || outflow <= h[c] ? Real(1) : h[c] / outflow * margin;
+        }
+    }
+}
+
+template <class Real> void Solver<Real>::limited_flux(Layer layer, Real k, const Field<Real>& scale, Faces<Real>& flux) const {
+    for (const bool is_y : {false, true}) {
+        const Axis ax = axis(is_y);
+        for (int b = 0; b < ax.across(); ++b) {
+            for (int a = 0; a <= ax.along(); ++a) {
+                Real q = raw_flux(layer, ax, a, b);
+                if (q > Real(0) && a > 0) q *= scale[ax.cell(a - 1, b)];
+                if (q < Real(0) && a < ax.along()) q *= scale[ax.cell(a, b)];
+                flux.along(ax)[ax.face(a, b)] = whole_quanta(k * q, P.quantum);
+            }
+        }
+    }
+}
+
+template <class Real> Real Solver<Real>::gain(const Faces<Real>& flux, int i, int j) const {
+    const Axis x = axis(false);
+    const Axis y = axis(true);
+    return (flux.x[x.face(i, j)] - flux.x[x.face(i + 1, j)]) + (flux.y[y.face(j, i)] - flux.y[y.face(j + 1, i)]);
+}
+
+/// 2.3 with the layer's predicted height and its limited fluxes.
+template <class Real>
+void Solver<Real>::advect_velocity(const Field<Real>& height, const Faces<Real>& flux, Faces<Real>& velocity) const {
+    const Faces<Real> old = velocity;
+    for_inner_faces([&](const Axis& ax, int a, int b) {
+        const Real hb = mean(height[ax.cell(a - 1, b)], height[ax.cell(a, b)]);
+        if (hb <= P.eps) return;
+        const Field<Real>& along = flux.along(ax);
+        const Field<Real>& across = flux.across(ax);
+        const Real Q_W = mean(along[ax.face(a - 1, b)], along[ax.face(a, b)]);
+        const Real Q_E = mean(along[ax.face(a, b)], along[ax.face(a + 1, b)]);
+        const Real Q_S = mean(across[ax.cross(a - 1, b)], across[ax.cross(a, b)]);
+        const Real Q_N = mean(across[ax.cross(a - 1, b + 1)], across[ax.cross(a, b + 1)]);
+        const Field<Real>& u_old = old.along(ax);
+        const Real u = u_old[ax.face(a, b)];
+        const Real u_W = u_old[ax.face(a - 1, b)];
+        const Real u_E = u_old[ax.face(a + 1, b)];
+        const Real u_S = b > 0 ? u_old[ax.face(a, b - 1)] : u;
+        const Real u_N = b + 1 < ax.across() ? u_old[ax.face(a, b + 1)] : u;
+        const Real from_along = std::max(-Q_E, Real(0)) * (u_E - u) + std::max(Q_W, Real(0)) * (u_W - u);
+        const Real from_across = std::max(-Q_N, Real(0)) * (u_N - u) + std::max(Q_S, Real(0)) * (u_S - u);
+        velocity.along(ax)[ax.face(a, b)] = u + (from_along + from_across) / hb;
+    });
+}
+
+} // namespace wadi::reference

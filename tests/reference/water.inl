@@ -1,0 +1,150 @@
+// The water step: diffusion, heights, pressure (2.1 to 2.4).
+#pragma once
+#include "tests/reference/transport.inl"
+
+namespace wadi::reference {
+
+template <class Real> void Solver<Real>::split_water() {
+    for (std::size_t c = 0; c < cells(); ++c) {
+        mixed[c] = has(EFFECT_SAND) ? std::min(water[c], sand[c]) : Real(0);
+        pure[c] = has(EFFECT_MIXTURE) ? water[c] - mixed[c] : water[c];
+    }
+}
+
+template <class Real> void Solver<Real>::diffuse_mixed_water() {
+    if (!has(EFFECT_DIFFUSION)) return;
+    for_inner_faces([&](const Axis& ax, int a, int b) {
+        const std::size_t L = ax.cell(a - 1, b);
+        const std::size_t R = ax.cell(a, b);
+        Real q(0);
+        if (sand[L] > P.eps && sand[R] > P.eps)
+            q = -P.diffusion * minmod(mixed[R] - mixed[L], (terrain[R] + water[R]) - (terrain[L] + water[L])) / P.dx;
+        diffusion_flux.along(ax)[ax.face(a, b)] = q;
+    });
+}
+
+template <class Real> void Solver<Real>::limit_water_outflow() {
+    limit_outflow(Layer::pure, P.k, pure_scale);
+    if (has(EFFECT_MIXTURE)) limit_outflow(Layer::mixed, P.k, mixed_scale);
+}
+
+template <class Real> void Solver<Real>::compute_water_flux() {
+    limited_flux(Layer::pure, P.k, pure_scale, pure_flux);
+    if (has(EFFECT_MIXTURE)) limited_flux(Layer::mixed, P.k, mixed_scale, mixed_flux);
+}
+
+template <class Real> void Solver<Real>::integrate_water_height() {
+    const Axis x = axis(false);
+    for (int j = 0; j < x.ny; ++j) {
+        for (int i = 0; i < x.nx; ++i) {
+            const std::size_t c = x.cell(i, j);
+            pure_predicted[c] = std::max(pure[c] + gain(pure_flux, i, j), Real(0));
+            mixed_predicted[c] = Real(0);
+            if (has(EFFECT_MIXTURE)) mixed_predicted[c] = std::max(mixed[c] + gain(mixed_flux, i, j), Real(0));
+            water[c] = pure_predicted[c] + mixed_predicted[c];
+        }
+    }
+    split_water();
+    if (!has(EFFECT_OPEN_SIDES)) return;
+    for (const bool is_y : {false, true}) {
+        const Axis ax = axis(is_y);
+        for (int b = 0; b < ax.across(); ++b) {
+            const std::size_t first = ax.face(0, b);
+            const std::size_t last = ax.face(ax.along(), b);
+            water_added += static_cast<double>(pure_flux.along(ax)[first]) - static_cast<double>(pure_flux.along(ax)[last]);
+            water_added += static_cast<double>(mixed_flux.along(ax)[first]) - static_cast<double>(mixed_flux.along(ax)[last]);
+        }
+    }
+}
+
+/// 2.4b: gravity that keeps surface waves stable beside velocities up to `fastest`.
+template <class Real> Real Solver<Real>::water_gravity(Real fastest, Real deepest) const {
+    if (P.gravity_cap <= Real(0) || deepest <= Real(0)) return P.gravity;
+    const Real room = std::max(P.gravity_cap_least, P.gravity_cap - P.k * fastest);
+    return std::min(P.gravity, room * room / (P.k * P.k * deepest));
+}
+
+/// 2.4b, e, c, bed friction and d on one inner face.
+template <class Real> void Solver<Real>::water_face(const Axis& ax, int a, int b) {
+    const std::size_t L = ax.cell(a - 1, b);
+    const std::size_t R = ax.cell(a, b);
+    const std::size_t f = ax.face(a, b);
+    const Real eta_L = terrain[L] + water[L];
+    const Real eta_R = terrain[R] + water[R];
+    const Real rise = eta_R - eta_L;
+    const bool level = std::abs(rise) <= P.rest_surface;
+    Real& uw = pure_velocity.along(ax)[f];
+    Real& um = mixed_velocity.along(ax)[f];
+    const Real fastest = std::max(std::abs(uw), std::abs(um));
+    const Real push = P.k * water_gravity(fastest, std::max(water[L], water[R])) * rise;
+
+    uw -= push;
+    if (level && std::abs(uw) <= P.rest_velocity) uw = Real(0);
+    if (blocked(pure[L], pure[R], eta_L, eta_R, P.eps)) uw = Real(0);
+    const Real depth = mean(pure[L], pure[R]);
+    if (has(EFFECT_BED_FRICTION) && depth > Real(0)) uw /= Real(1) + P.dt * P.bed_friction * std::abs(uw) / depth;
+    uw = clamped(uw, P.clamp);
+
+    if (!has(EFFECT_MIXTURE)) return;
+    Real& share = mixed_push.along(ax)[f];
+    share = push / Real(P.substeps);
+    const bool rests = level && std::abs(um) <= P.rest_velocity;
+    if (rests || blocked(mixed[L], mixed[R], eta_L, eta_R, P.eps)) {
+        um = Real(0);
+        share = Real(0);
+    }
+    um = clamped(um, P.clamp);
+}
+
+template <class Real> void Solver<Real>::integrate_water_velocity() {
+    advect_velocity(pure_predicted, pure_flux, pure_velocity);
+    if (has(EFFECT_MIXTURE)) {
+        advect_velocity(mixed_predicted, mixed_flux, mixed_velocity);
+        exchange_split(mixed_predicted, pure_predicted, mixed);
+    }
+    for_inner_faces([&](const Axis& ax, int a, int b) { water_face(ax, a, b); });
+}
+
+/// 2.7: low-passed saturation. Offsets are summed in classes that mirroring and transposing leave unchanged.
+template <class Real> void Solver<Real>::compute_saturation() {
+    const Axis x = axis(false);
+    const int radius = P.smoothing;
+    for (int j = 0; j < x.ny; ++j) {
+        for (int i = 0; i < x.nx; ++i) {
+            Real numerator(0);
+            Real denominator(0);
+            // The value that cell (i + di, j + dj) adds: to the numerator W, to the denominator W + hs.
+            const auto term = [&](int di, int dj, bool top) {
+                const int ii = i + di;
+                const int jj = j + dj;
+                if (ii < 0 || jj < 0 || ii >= x.nx || jj >= x.ny) return Real(0);
+                const std::size_t c = x.cell(ii, jj);
+                if (sand[c] <= P.eps) return Real(0);
+                return top ? water[c] : water[c] + sand[c];
+            };
+            const auto add = [&](bool top, Real& sum) {
+                for (int p = 0; p <= radius; ++p) {
+                    for (int q = 0; q <= p; ++q) {
+                        const Real weight = static_cast<Real>((radius + 1 - p) * (radius + 1 - q));
+                        const auto pair = [&](int di, int dj) { return term(di, dj, top) + term(-di, -dj, top); };
+                        Real value(0);
+                        if (p == 0)
+                            value = term(0, 0, top);
+                        else if (q == 0)
+                            value = pair(p, 0) + pair(0, p);
+                        else if (q == p)
+                            value = pair(p, p) + pair(-p, p);
+                        else
+                            value = (pair(p, q) + pair(-p, q)) + (pair(q, p) + pair(-q, p));
+                        sum += weight * value;
+                    }
+                }
+            };
+            add(true, numerator);
+            add(false, denominator);
+            saturation[x.cell(i, j)] = denominator > Real(0) ? numerator / denominator : Real(0);
+        }
+    }
+}
+
+} // namespace wadi::reference

@@ -1,0 +1,195 @@
+// engine/image: PNG, r16 and NPY maps, their errors, and resampling.
+#include "engine/image/map.hpp"
+#include "tests/unit/map_files.hpp"
+#include <cmath>
+#include <cstdint>
+#include <doctest/doctest.h>
+#include <limits>
+#include <random>
+
+using namespace wadi;
+using namespace map_files;
+
+namespace {
+
+template <class T> std::string message(const Result<T>& result) { return result ? std::string("no error") : result.status().message; }
+
+bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+const std::vector<float> VALUES = {1.5f, -2, 3, 4, 5, 6}; // 3 columns, 2 rows
+
+} // namespace
+
+TEST_CASE("image: 16-bit PNG, north row first in the file, south row first in the map") {
+    const auto map = decode_png(png16(3, 2, {0, 1, 2, 65535, 32768, 256}), "a.png");
+    REQUIRE_MESSAGE(map, message(map));
+    CHECK(map->nx == 3);
+    CHECK(map->ny == 2);
+    CHECK(map->integer);
+    const std::vector<float> expected = {1.0f, 32768.0f / 65535, 256.0f / 65535, 0.0f, 1.0f / 65535, 2.0f / 65535};
+    CHECK(map->values == expected);
+}
+
+TEST_CASE("image: 8-bit PNG, grey and colour") {
+    const auto grey = decode_png(png(2, 1, 8, 0, {0, 255}), "a.png");
+    REQUIRE_MESSAGE(grey, message(grey));
+    CHECK(grey->values == std::vector<float>{0, 1});
+    const auto color = decode_png(png(2, 1, 8, 2, {51, 51, 51, 255, 255, 255}), "a.png");
+    REQUIRE_MESSAGE(color, message(color));
+    CHECK(color->values[0] == doctest::Approx(0.2));
+    CHECK(color->values[1] == doctest::Approx(1));
+}
+
+TEST_CASE("image: damaged PNG files") {
+    const Bytes good = png16(3, 2, {0, 1, 2, 65535, 32768, 256});
+    for (std::size_t size = 0; size < good.size(); ++size) {
+        const auto map = decode_png(Bytes(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size)), "cut.png");
+        REQUIRE_MESSAGE(!map, "cut to " << size << " bytes");
+        CHECK(says(message(map), "cut.png"));
+        CHECK((says(message(map), "truncated") || says(message(map), "not a PNG")));
+    }
+    for (std::size_t at = 8; at < good.size(); ++at) {
+        Bytes bad = good;
+        bad[at] ^= 0x10;
+        CHECK_MESSAGE(!decode_png(bad, "bad.png"), "byte " << at);
+    }
+    CHECK(says(message(decode_png(png(40000, 2, 16, 0, {}), "a.png")), "40000 x 2 is outside 1 ... 16384"));
+    CHECK(says(message(decode_png(png(0, 2, 16, 0, {}), "a.png")), "0 x 2"));
+    // A header that asks for 512 MB in a file of 80 bytes.
+    CHECK(says(message(decode_png(png(16384, 16384, 16, 0, {}), "a.png")), "cannot hold"));
+    CHECK(says(message(decode_png(png(8, 8, 16, 0, {1, 2, 3, 4, 5, 6, 7, 8}), "a.png")), "cannot be decoded"));
+}
+
+TEST_CASE("image: r16") {
+    const auto map = decode_r16(words({0, 65535, 1, 2}, false), "a.r16", std::nullopt);
+    REQUIRE_MESSAGE(map, message(map));
+    CHECK(map->integer);
+    CHECK(map->values == std::vector<float>{1.0f / 65535, 2.0f / 65535, 0, 1});
+    const auto wide = decode_r16(words({1, 2, 3, 4, 5, 6}, false), "a.r16", std::pair{3, 2});
+    REQUIRE_MESSAGE(wide, message(wide));
+    CHECK(wide->nx == 3);
+    CHECK(wide->values[0] == 4.0f / 65535);
+
+    CHECK(says(message(decode_r16(words({1, 2, 3}, false), "a.r16", std::nullopt)), "6 bytes is not a square map"));
+    CHECK(says(message(decode_r16({}, "a.r16", std::nullopt)), "0 bytes is not a square map"));
+    CHECK(says(message(decode_r16({1, 2, 3}, "a.r16", std::nullopt)), "not a square map"));
+    CHECK(says(message(decode_r16(words({1, 2, 3}, false), "a.r16", std::pair{2, 2})), "truncated, 6 bytes where 2 x 2"));
+    CHECK(says(message(decode_r16(words({1, 2, 3}, false), "a.r16", std::pair{1, 1})), "wrong size, 6 bytes"));
+    CHECK(says(message(decode_r16(words({1}, false), "a.r16", std::pair{0, 1})), "outside 1 ... 16384"));
+    CHECK(says(message(decode_r16(words({1}, false), "a.r16", std::pair{20000, 1})), "outside 1 ... 16384"));
+}
+
+TEST_CASE("image: NPY of floats and doubles, format 1 and 2") {
+    for (const int version : {1, 2}) {
+        const auto map = decode_npy(npy(dictionary("<f4", "(2, 3)"), VALUES, version), "a.npy");
+        REQUIRE_MESSAGE(map, message(map));
+        CHECK(map->nx == 3);
+        CHECK(map->ny == 2);
+        CHECK(!map->integer);
+        CHECK(map->values == VALUES);
+    }
+    const std::vector<double> doubles = {0.1, 2};
+    const auto map = decode_npy(npy(dictionary("<f8", "(1, 2)"), doubles), "a.npy");
+    REQUIRE_MESSAGE(map, message(map));
+    CHECK(map->values == std::vector<float>{0.1f, 2});
+}
+
+TEST_CASE("image: damaged NPY files") {
+    const Bytes good = npy(dictionary("<f4", "(2, 3)"), VALUES);
+    for (std::size_t size = 0; size < good.size(); ++size)
+        CHECK_MESSAGE(!decode_npy(Bytes(good.begin(), good.begin() + static_cast<std::ptrdiff_t>(size)), "cut.npy"), size);
+    Bytes longer = good;
+    longer.push_back(0);
+    CHECK(says(message(decode_npy(longer, "a.npy")), "wrong size, 25 bytes of data where 3 x 2 values take 24"));
+    CHECK(says(message(decode_npy(Bytes(good.begin(), good.end() - 1), "a.npy")), "truncated, 23 bytes"));
+
+    const auto refuses = [](const std::string& type, const std::string& shape, const std::string& order, const std::string& part) {
+        const std::string text = message(decode_npy(npy(dictionary(type, shape, order), VALUES), "a.npy"));
+        CHECK_MESSAGE(says(text, part), text);
+    };
+    refuses("<i4", "(2, 3)", "False", "element type '<i4' is not read, only '<f4' and '<f8'");
+    refuses(">f4", "(2, 3)", "False", "'>f4'");
+    refuses("<f4", "(2, 3)", "True", "C order");
+    refuses("<f4", "(6,)", "False", "shape");
+    refuses("<f4", "(1, 2, 3)", "False", "shape");
+    refuses("<f4", "(2, x)", "False", "shape");
+    refuses("<f4", "(-2, -3)", "False", "outside 1 ... 16384");
+    refuses("<f4", "(99999999999999999999, 3)", "False", "shape");
+    refuses("<f4", "(4611686018427387904, 4)", "False", "outside 1 ... 16384"); // the product overflows to 0
+    refuses("<f4", "(16384, 16384)", "False", "truncated");
+    CHECK(says(message(decode_npy(npy(dictionary("<f4", "(2, 3)"), VALUES, 3), "a.npy")), "version 3"));
+    CHECK(says(message(decode_npy(npy("{}", VALUES), "a.npy")), "element type"));
+}
+
+TEST_CASE("image: the first NaN, infinity or overflow of an NPY is named") {
+    std::vector<float> values = VALUES;
+    values[4] = std::numeric_limits<float>::quiet_NaN();
+    values[5] = std::numeric_limits<float>::infinity();
+    CHECK(says(message(decode_npy(npy(dictionary("<f4", "(2, 3)"), values), "a.npy")), "column 1, row 1 is NaN"));
+    values[4] = 0;
+    CHECK(says(message(decode_npy(npy(dictionary("<f4", "(2, 3)"), values), "a.npy")), "column 2, row 1 is infinite"));
+    CHECK(says(message(decode_npy(npy(dictionary("<f8", "(1, 1)"), std::vector<double>{1e300}), "a.npy")), "too large"));
+}
+
+TEST_CASE("image: files by the ending of their name") {
+    const Folder folder;
+    CHECK(read_map(folder.write("a.PNG", png16(1, 1, {7})), std::nullopt));
+    CHECK(read_map(folder.write("a.r16", words({7}, false)), std::nullopt));
+    CHECK(read_map(folder.write("a.raw", words({7, 8}, false)), std::pair{2, 1}));
+    CHECK(read_map(folder.write("a.npy", npy(dictionary("<f4", "(2, 3)"), VALUES)), std::nullopt));
+
+    CHECK(read_map(folder.file("none.png"), std::nullopt).status().code == Code::not_found);
+    CHECK(says(message(read_map(folder.file("none.png"), std::nullopt)), "none.png: no such file"));
+    CHECK(says(message(read_map(folder.file("a.jpg"), std::nullopt)), "end in .png, .r16, .raw or .npy"));
+    CHECK(says(message(read_map(folder.file("a.PNG"), std::pair{1, 1})), "only .r16 and .raw maps are given a size"));
+    std::filesystem::create_directory(folder.file("folder.png"));
+    CHECK(says(message(read_map(folder.file("folder.png"), std::nullopt)), "not a regular file"));
+    CHECK(says(message(read_file_bytes(folder.file("a.npy"), 10)), "more than the largest accepted file, 10 bytes"));
+}
+
+TEST_CASE("image: resampling is exact at equal size, bilinear otherwise") {
+    Map map;
+    map.nx = 3;
+    map.ny = 2;
+    map.values = VALUES;
+    CHECK(resample(map, 3, 2) == VALUES);
+
+    Map slope; // a plane stays a plane between the outer sample centres
+    slope.nx = 8;
+    slope.ny = 4;
+    for (int j = 0; j < 4; ++j)
+        for (int i = 0; i < 8; ++i)
+            slope.values.push_back(static_cast<float>((i + 0.5) / 8 + 10 * (j + 0.5) / 4));
+    for (const auto& [nx, ny] : {std::pair{16, 12}, std::pair{5, 3}, std::pair{4, 4}}) {
+        const auto values = resample(slope, nx, ny);
+        REQUIRE(values.size() == static_cast<std::size_t>(nx * ny));
+        for (int j = 0; j < ny; ++j)
+            for (int i = 0; i < nx; ++i) {
+                const double x = (i + 0.5) / nx;
+                const double y = (j + 0.5) / ny;
+                if (x < 0.5 / 8 || x > 7.5 / 8 || y < 0.5 / 4 || y > 3.5 / 4) continue;
+                CHECK(values[static_cast<std::size_t>(j * nx + i)] == doctest::Approx(x + 10 * y).epsilon(1e-6));
+            }
+    }
+    const auto single = resample(map, 1, 1);
+    CHECK(single[0] == doctest::Approx((VALUES[1] + VALUES[4]) / 2));
+}
+
+TEST_CASE("image: random damage never crashes a reader") {
+    std::mt19937 random(1);
+    const std::vector<Bytes> files = {png16(3, 2, {0, 1, 2, 3, 4, 5}), words({1, 2, 3, 4}, false),
+                                      npy(dictionary("<f4", "(2, 3)"), VALUES)};
+    int read = 0;
+    for (int round = 0; round < 3000; ++round) {
+        Bytes bytes = files[static_cast<std::size_t>(round) % files.size()];
+        for (int flips = 1 + static_cast<int>(random() % 4); flips > 0; --flips)
+            bytes[random() % bytes.size()] = static_cast<std::uint8_t>(random());
+        if (random() % 4 == 0) bytes.resize(random() % (bytes.size() + 1));
+        for (const auto& map : {decode_png(bytes, "f"), decode_r16(bytes, "f", std::nullopt), decode_npy(bytes, "f")})
+            if (map) {
+                ++read;
+                CHECK(map->values.size() == static_cast<std::size_t>(map->nx) * static_cast<std::size_t>(map->ny));
+            }
+    }
+    CHECK(read > 0);
+}

@@ -1,0 +1,314 @@
+// engine/level: shapes, maps, settings, series and overrides of level files.
+#include "engine/level/level.hpp"
+#include "engine/level/shapes.hpp"
+#include "tests/unit/level_text.hpp"
+#include "tests/unit/map_files.hpp"
+#include <algorithm>
+#include <cmath>
+#include <doctest/doctest.h>
+
+using namespace wadi;
+using namespace level_text;
+using map_files::Folder;
+
+namespace {
+
+/// The level, or a failed check and an empty one.
+Level must(const Result<Level>& result) {
+    CHECK_MESSAGE(result, message(result));
+    return result ? result.value() : Level{};
+}
+
+constexpr double STEP = 1.0 / (1 << 20); // the quantum of 16 m
+
+} // namespace
+
+TEST_CASE("level: a level without layers is empty ground") {
+    const Level level = must(parse(""));
+    CHECK(level.name == "test");
+    CHECK(level.duration == 10);
+    CHECK(level.fields.terrain.empty());
+    CHECK(level.fields.velocity_x.empty());
+    CHECK(level.warnings.empty());
+    CHECK(level.settings.method.name == "robust");
+}
+
+TEST_CASE("level: comments are allowed") {
+    CHECK(parse_level("// a level\n" + level_text::level("/* none */ \"gravity\": 1.62"), "", {}));
+}
+
+TEST_CASE("level: plane") {
+    const Level level = must(parse(R"("terrain": [{"shape": "plane", "height": 2, "slope_x": 0.1, "slope_y": -0.2}])"));
+    CHECK(at(level, level.fields.terrain, 0, 0) == doctest::Approx(2 + 0.05 - 0.1).epsilon(1e-6));
+    CHECK(at(level, level.fields.terrain, 9, 7) == doctest::Approx(2 + 0.95 - 1.5).epsilon(1e-6));
+}
+
+TEST_CASE("level: box with vertical and with sloping sides") {
+    const Level level = must(parse(R"("terrain": [{"shape": "box", "from": [2, 2], "to": [4, 3], "height": -3}],
+        "sand": [{"shape": "box", "from": [2, 2], "to": [4, 4], "height": 1, "side_slope": 0.5}])"));
+    CHECK(at(level, level.fields.terrain, 2, 2) == -3);
+    CHECK(at(level, level.fields.terrain, 3, 2) == -3);
+    CHECK(at(level, level.fields.terrain, 4, 2) == 0);
+    CHECK(at(level, level.fields.terrain, 2, 3) == 0);
+    CHECK(at(level, level.fields.sand, 3, 3) == 1);
+    CHECK(at(level, level.fields.sand, 4, 3) == 0.75); // 0.5 m outside
+    CHECK(at(level, level.fields.sand, 5, 3) == 0.25);
+    CHECK(at(level, level.fields.sand, 6, 3) == 0);
+    CHECK(at(level, level.fields.sand, 4, 4) == doctest::Approx(1 - 0.5 * std::sqrt(0.5)).epsilon(1e-6)); // round the corner
+}
+
+TEST_CASE("level: cylinder and cone") {
+    const Level level = must(parse(R"("sand": [{"shape": "cylinder", "center": [3.5, 3.5], "radius": 1.2, "height": 2}],
+        "terrain": [{"shape": "cone", "center": [6.5, 3.5], "radius": 2, "height": 4}])"));
+    CHECK(at(level, level.fields.sand, 3, 3) == 2);
+    CHECK(at(level, level.fields.sand, 4, 3) == 2);
+    CHECK(at(level, level.fields.sand, 4, 4) == 0);
+    CHECK(at(level, level.fields.terrain, 6, 3) == 4);
+    CHECK(at(level, level.fields.terrain, 7, 3) == 2);
+    CHECK(at(level, level.fields.terrain, 8, 3) == 0);
+    const Level sloped = must(parse(R"("sand": [{"shape": "cone", "center": [6.5, 3.5], "side_slope": 2, "surface": 4}])"));
+    CHECK(sloped.fields.sand == level.fields.terrain);
+}
+
+TEST_CASE("level: ridge along a line") {
+    const Level level = must(parse(R"("terrain": [{"shape": "ridge", "points": [[1.5, 2.5], [5.5, 2.5], [5.5, 6.5]],
+        "width": 1, "height": 2, "side_slope": 1}])"));
+    CHECK(at(level, level.fields.terrain, 1, 2) == 2);
+    CHECK(at(level, level.fields.terrain, 4, 2) == 2);
+    CHECK(at(level, level.fields.terrain, 5, 6) == 2);
+    CHECK(at(level, level.fields.terrain, 3, 3) == 1.5);
+    CHECK(at(level, level.fields.terrain, 3, 0) == 0.5);
+    CHECK(at(level, level.fields.terrain, 8, 5) == 0);
+    CHECK(at(level, level.fields.terrain, 0, 2) == 1.5); // the end is round
+}
+
+TEST_CASE("level: noise is bounded, seeded and repeatable") {
+    const auto noise = [](const std::string& more) {
+        return must(parse(R"("terrain": [{"shape": "noise", "amplitude": 0.5, "wavelength": 3, "octaves": 4)" + more + "}]")).fields.terrain;
+    };
+    const auto first = noise("");
+    CHECK(first == noise(R"(, "seed": 0)"));
+    CHECK(first != noise(R"(, "seed": 1)"));
+    const auto [low, high] = std::minmax_element(first.begin(), first.end());
+    CHECK(*low >= -0.5f);
+    CHECK(*high <= 0.5f);
+    CHECK(*high - *low > 0.1f);
+    // Published values: a level must look the same in every build.
+    CHECK(value_noise(0, 0, 1) == doctest::Approx(0.84306287));
+    CHECK(value_noise(-3.25, 7.5, 42) == doctest::Approx(-0.07183463));
+    // Continuous across lattice lines.
+    CHECK(value_noise(2 - 1e-9, 0.3, 5) == doctest::Approx(value_noise(2 + 1e-9, 0.3, 5)).epsilon(1e-6));
+}
+
+TEST_CASE("level: layers combine in order and sand never goes below zero") {
+    const auto cell = [](const std::string& combine, const std::string& field) {
+        const Level level = must(parse("\"" + field + R"(": [{"shape": "plane", "height": 2}, {"shape": "box", "from": [0, 0],
+            "to": [5, 8], "height": 3, "combine": ")" + combine + "\"}]"));
+        const auto& values = field == "sand" ? level.fields.sand : level.fields.terrain;
+        CHECK(at(level, values, 7, 3) == 2);
+        return at(level, values, 2, 3);
+    };
+    CHECK(cell("add", "terrain") == 5);
+    CHECK(cell("set", "terrain") == 3);
+    CHECK(cell("max", "terrain") == 3);
+    CHECK(cell("subtract", "terrain") == -1);
+    CHECK(cell("subtract", "sand") == 0);
+    const Level level = must(parse(R"("terrain": [{"shape": "plane", "height": 2},
+        {"shape": "plane", "height": 1, "combine": "min"}])"));
+    CHECK(at(level, level.fields.terrain, 0, 0) == 1);
+}
+
+TEST_CASE("level: where present") {
+    const Level level = must(parse(R"("sand": [{"shape": "box", "from": [0, 0], "to": [5, 8], "height": 1},
+        {"shape": "plane", "height": 0.5, "where": "present"}])"));
+    CHECK(at(level, level.fields.sand, 2, 2) == 1.5);
+    CHECK(at(level, level.fields.sand, 7, 2) == 0);
+}
+
+TEST_CASE("level: surface fills up to an absolute elevation, flat to the bit") {
+    const Level level = must(parse(R"("terrain": [{"shape": "plane", "height": 0.3, "slope_x": 0.37}],
+        "sand": [{"shape": "box", "from": [2, 0], "to": [5, 8], "height": 0.7}],
+        "water": [{"shape": "plane", "surface": 2.1234567}])"));
+    double surface = 0;
+    for (int i = 0; i < 5; ++i) {
+        const double ground = at(level, level.fields.terrain, i, 4) + at(level, level.fields.sand, i, 4);
+        const double here = ground + at(level, level.fields.water, i, 4);
+        if (i > 0) CHECK(here == surface);
+        surface = here;
+        CHECK(ground / STEP == std::round(ground / STEP));
+    }
+    CHECK(surface == doctest::Approx(2.1234567));
+    CHECK(at(level, level.fields.water, 9, 4) == 0); // ground above
+}
+
+TEST_CASE("level: a dam with a flat crest across a valley") {
+    const Level level = must(parse(R"("terrain": [{"shape": "plane", "height": 4, "slope_x": -0.5},
+        {"shape": "plane", "height": -1, "slope_x": 0.5, "combine": "max"}],
+        "sand": [{"shape": "ridge", "points": [[0, 4.5], [10, 4.5]], "width": 1, "side_slope": 1, "surface": 2.5}])"));
+    const auto top = [&](int i, int j) { return at(level, level.fields.terrain, i, j) + at(level, level.fields.sand, i, j); };
+    CHECK(top(4, 4) == 2.5);
+    CHECK(top(5, 4) == 2.5);
+    CHECK(top(4, 5) == 2);
+    CHECK(at(level, level.fields.sand, 0, 4) == 0); // the valley side is higher
+    CHECK(top(0, 4) == 3.75);
+}
+
+TEST_CASE("level: surface cuts down with min") {
+    const Level level = must(parse(R"("sand": [{"shape": "plane", "height": 3},
+        {"shape": "box", "from": [0, 0], "to": [5, 8], "surface": 1, "combine": "min"}])"));
+    CHECK(at(level, level.fields.sand, 1, 1) == 1);
+    CHECK(at(level, level.fields.sand, 8, 1) == 3);
+}
+
+TEST_CASE("level: wet sand holds a share of its depth") {
+    const Level level = must(parse(R"("sand": [{"shape": "cylinder", "center": [5, 4], "radius": 2, "height": 2}],
+        "water": [{"shape": "plane", "wet": 0.25}, {"shape": "box", "from": [0, 0], "to": [10, 1], "surface": 1}])"));
+    CHECK(at(level, level.fields.water, 5, 4) == 0.5);
+    CHECK(at(level, level.fields.water, 0, 4) == 0);
+    CHECK(at(level, level.fields.water, 0, 0) == 1);
+}
+
+TEST_CASE("level: velocities by shape") {
+    const Level level = must(parse(R"("velocities": [
+        {"of": "water", "shape": "box", "from": [0, 0], "to": [5, 8], "velocity": [1, -2]},
+        {"of": "sand", "shape": "cylinder", "center": [5, 4], "radius": 1, "velocity": [0, 3]}])"));
+    CHECK(at(level, level.fields.velocity_x, 4, 4) == 1);
+    CHECK(at(level, level.fields.velocity_y, 4, 4) == -2);
+    CHECK(at(level, level.fields.velocity_x, 5, 4) == 0);
+    CHECK(at(level, level.fields.sand_velocity_y, 5, 4) == 3);
+    CHECK(at(level, level.fields.sand_velocity_x, 5, 4) == 0);
+}
+
+TEST_CASE("level: maps") {
+    const Folder folder;
+    folder.write("grey.png", map_files::png16(2, 2, {0, 65535, 65535, 0})); // north row first
+    folder.write("grey.r16", map_files::words({0, 65535, 65535, 0}, false));
+    folder.write("row.raw", map_files::words({0, 32768, 65535}, false));
+    folder.write("heights.npy", map_files::npy(map_files::dictionary("<f8", "(1, 2)"), std::vector<double>{1.5, -2}));
+    const auto terrain = [&](const std::string& layer) {
+        const auto level = parse_level(level_text::level("\"terrain\": [{" + layer + "}]", R"({"nx": 2, "ny": 2, "dx": 1})"), folder.path(), {});
+        return must(level).fields.terrain;
+    };
+    CHECK(terrain(R"("file": "grey.png", "max": 4)") == std::vector<float>{4, 0, 0, 4});
+    CHECK(terrain(R"("file": "grey.png", "min": 5, "max": 1)") == std::vector<float>{1, 5, 5, 1});
+    CHECK(terrain(R"("file": "grey.r16", "scale": 2, "offset": 1)") == std::vector<float>{3, 1, 1, 3});
+    CHECK(terrain(R"("file": "heights.npy")") == std::vector<float>{1.5, -2, 1.5, -2});
+    CHECK(terrain(R"("file": "heights.npy", "scale": 2, "offset": -1)") == std::vector<float>{2, -5, 2, -5});
+    CHECK(terrain(R"("file": "row.raw", "size": [3, 1], "max": 4)").size() == 4);
+
+    const auto level = parse_level(level_text::level(R"("terrain": [{"shape": "plane", "height": 1}],
+        "water": [{"file": "grey.png", "max": 4, "absolute": true}])", R"({"nx": 2, "ny": 2, "dx": 1})"), folder.path(), {});
+    CHECK(must(level).fields.water == std::vector<float>{3, 0, 0, 3});
+}
+
+TEST_CASE("level: settings by name") {
+    const Level level = must(parse(R"("gravity": 1.62, "duration": 3, "description": "d",
+        "material": {"friction": 0.7, "saturation": [0.1, 0.2, 0.5], "bed_friction": 0.02},
+        "method": {"name": "robust", "substeps": 2, "outflow_limiter": false, "quantum": 0, "saturation_smoothing": 1},
+        "sides": {"east": {"kind": "level", "value": 2, "from": 1, "to": 3}, "north": {"kind": "outflow"}},
+        "sources": [{"shape": "point", "center": [1, 2], "rate": -0.5, "material": "sand"},
+                    {"shape": "box", "from": [1, 2], "to": [3, 4], "rate": [[0, 1], [2, 0]], "velocity": [0, -4]}],
+        "rain": 1e-5, "effects": {"cohesion": "off", "mixture": "on", "drag": "auto"})"));
+    const Settings& s = level.settings;
+    CHECK(s.gravity == 1.62);
+    CHECK(s.material.friction == 0.7);
+    CHECK(s.material.saturation[2] == 0.5);
+    CHECK(s.material.young_modulus == 2e5);
+    CHECK(s.method.substeps == 2);
+    CHECK(!s.method.outflow_limiter);
+    CHECK(s.method.saturation_smoothing == 1);
+    CHECK(s.sides[1].kind == SideKind::level);
+    CHECK(s.sides[1].to == 3);
+    CHECK(s.sides[1].value.at(5) == 2);
+    CHECK(s.sides[3].kind == SideKind::outflow);
+    CHECK(s.sides[0].kind == SideKind::wall);
+    REQUIRE(s.sources.size() == 2);
+    CHECK(s.sources[0].material == SourceMaterial::sand);
+    CHECK(s.sources[0].rate.at(0) == -0.5);
+    CHECK(s.sources[1].box == std::array<double, 4>{1, 2, 3, 4});
+    CHECK(s.sources[1].set_velocity);
+    CHECK(s.sources[1].rate.at(1) == 0.5);
+    CHECK(s.rain.at(1) == 1e-5);
+    REQUIRE(s.effects.size() == 3);
+    CHECK(std::find(s.effects.begin(), s.effects.end(), std::pair{std::string("cohesion"), Force::off}) != s.effects.end());
+}
+
+TEST_CASE("level: a series from a file") {
+    const Folder folder;
+    folder.write("rain.csv", std::string("time [s], rain [m/s]\r\n# storm\n0, 0\r\n10,1e-4\n\n20,0"));
+    const Level level = must(parse(R"("rain": {"file": "rain.csv"})", folder.path()));
+    CHECK(level.settings.rain.samples.size() == 3);
+    CHECK(level.settings.rain.at(15) == doctest::Approx(5e-5));
+}
+
+TEST_CASE("level: size override keeps the x extent and stretches y") {
+    const std::string rest = R"("terrain": [{"shape": "box", "from": [0, 4], "to": [10, 8], "height": 1}],
+        "sides": {"west": {"kind": "outflow", "from": 4}, "south": {"kind": "outflow", "from": 4}},
+        "sources": [{"shape": "disc", "center": [5, 2], "radius": 1.5, "rate": 1}, {"shape": "box", "from": [1, 2], "to": [3, 4], "rate": 1}])";
+    LevelOverrides overrides;
+    overrides.size = {20, 32}; // dx 0.5, y extent 16 m instead of 8 m
+    const Level level = must(parse(rest, "", overrides));
+    CHECK(level.settings.grid.dx == 0.5);
+    CHECK(level.settings.dt == doctest::Approx(0.005));
+    CHECK(at(level, level.fields.terrain, 3, 15) == 0);
+    CHECK(at(level, level.fields.terrain, 3, 16) == 1);
+    CHECK(level.settings.sides[0].from == 8);
+    CHECK(level.settings.sides[2].from == 4);
+    CHECK(level.settings.sources[0].center[1] == 4);
+    CHECK(level.settings.sources[0].radius == 1.5);
+    CHECK(level.settings.sources[1].box == std::array<double, 4>{1, 4, 3, 8});
+    overrides.dt = 0.02;
+    overrides.method = "robust";
+    CHECK(must(parse(rest, "", overrides)).settings.dt == 0.02);
+}
+
+TEST_CASE("level: wrong overrides") {
+    const auto with = [](const LevelOverrides& overrides) {
+        const auto level = parse("", "", overrides);
+        CHECK((!level && level.status().code == Code::bad_argument));
+        return message(level);
+    };
+    LevelOverrides overrides;
+    overrides.size = {0, 10};
+    CHECK(says(with(overrides), "size: 0 is outside 1 ... 16384"));
+    overrides.size = {10, 20000};
+    CHECK(says(with(overrides), "size: 20000"));
+    overrides.size.reset();
+    overrides.dt = 0;
+    CHECK(says(with(overrides), "dt: 0 is outside"));
+    overrides.dt.reset();
+    overrides.method = "published";
+    CHECK(says(with(overrides), "method: \"published\" is not known; known: robust"));
+}
+
+TEST_CASE("level: from a terrain map alone") {
+    const Folder folder;
+    std::vector<std::uint16_t> grey(32 * 16, 100);
+    grey[5 * 32 + 20] = 300; // row 5 from the north
+    const auto path = folder.write("hill.png", map_files::png16(32, 16, grey));
+    const Level level = must(level_from_terrain(path, {}));
+    CHECK(level.name == "hill");
+    CHECK(level.settings.grid.nx == 32);
+    CHECK(level.settings.grid.dx == 1);
+    CHECK(at(level, level.fields.terrain, 20, 10) == 4); // an eighth of the longer side
+    CHECK(at(level, level.fields.terrain, 0, 0) == 0);
+    REQUIRE(level.settings.sources.size() == 1);
+    CHECK(level.settings.sources[0].center == std::array<double, 2>{20.5, 10.5});
+    for (const Side& side : level.settings.sides)
+        CHECK(side.kind == SideKind::outflow);
+    CHECK(level.warnings.empty());
+
+    LevelOverrides overrides;
+    overrides.size = {16, 8};
+    CHECK(must(level_from_terrain(path, overrides)).settings.grid.dx == 2);
+
+    const auto heights = folder.write("h.npy", map_files::npy(map_files::dictionary("<f4", "(1, 3)"), std::vector<float>{-5, 700, 2}));
+    const Level tall = must(level_from_terrain(heights, {}));
+    CHECK(at(tall, tall.fields.terrain, 1, 0) == 700);
+    CHECK(at(tall, tall.fields.terrain, 0, 0) == doctest::Approx(-5).epsilon(1e-4));
+    CHECK(tall.settings.method.largest_height >= 1050);
+
+    CHECK(level_from_terrain(folder.file("none.png"), {}).status().code == Code::not_found);
+    const auto huge = folder.write("huge.npy", map_files::npy(map_files::dictionary("<f4", "(1, 1)"), std::vector<float>{1e30f}));
+    CHECK(says(message(level_from_terrain(huge, {})), "more than a world holds"));
+}

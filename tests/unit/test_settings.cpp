@@ -1,0 +1,175 @@
+// validate() and TimeSeries of engine/include/wadi/settings.hpp.
+#include "engine/level/setting_fields.hpp"
+#include <cmath>
+#include <doctest/doctest.h>
+#include <functional>
+#include <limits>
+
+using namespace wadi;
+
+namespace {
+
+Settings good() {
+    Settings settings;
+    settings.grid = {20, 10, 0.5};
+    settings.dt = 0.01;
+    return settings;
+}
+
+std::string message(const std::function<void(Settings&)>& change) {
+    Settings settings = good();
+    change(settings);
+    const Status status = validate(settings);
+    CHECK((status || status.code == Code::bad_argument));
+    return status.message;
+}
+
+bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+constexpr double NOT_A_NUMBER = std::numeric_limits<double>::quiet_NaN();
+
+template <class Owner, class Number, std::size_t COUNT>
+void check_limits(const SettingField<Owner, Number> (&fields)[COUNT], const std::string& path, Owner Settings::*owner) {
+    for (const auto& field : fields) {
+        const auto with = [&](Number value) {
+            return message([&](Settings& s) {
+                s.*owner.*field.member = value;
+            });
+        };
+        const std::string name = path + field.name + ": ";
+        CHECK_MESSAGE(says(with(static_cast<Number>(field.most * 2 + 1)), name), name);
+        CHECK_MESSAGE(says(with(static_cast<Number>(field.least - 1)), " is outside "), name);
+        CHECK(!says(with(field.least), name + "is outside"));
+    }
+}
+
+} // namespace
+
+TEST_CASE("settings: defaults are valid") { CHECK(message([](Settings&) {}).empty()); }
+
+TEST_CASE("settings: every number of material and method is checked") {
+    check_limits(MATERIAL_FIELDS, "material.", &Settings::material);
+    check_limits(METHOD_FIELDS, "method.", &Settings::method);
+    check_limits(METHOD_COUNTS, "method.", &Settings::method);
+    for (const auto& field : MATERIAL_FIELDS)
+        CHECK(says(message([&](Settings& s) { s.material.*field.member = NOT_A_NUMBER; }), field.name));
+    CHECK(message([](Settings& s) { s.material.friction = 12; }) == "material.friction: 12 is outside 0 ... 10");
+}
+
+TEST_CASE("settings: grid, time step, gravity") {
+    CHECK(message([](Settings& s) { s.grid.nx = 0; }) == "grid.nx: 0 is outside 1 ... 16384");
+    CHECK(message([](Settings& s) { s.grid.ny = 20000; }) == "grid.ny: 20000 is outside 1 ... 16384");
+    CHECK(says(message([](Settings& s) { s.grid.dx = 0; }), "grid.dx: 0 is outside 0.0001 ... 10000"));
+    CHECK(says(message([](Settings& s) { s.grid.dx = NOT_A_NUMBER; }), "grid.dx: "));
+    CHECK(says(message([](Settings& s) { s.dt = 0; }), "dt: 0 is outside 1e-07 ... 100"));
+    CHECK(says(message([](Settings& s) { s.gravity = -1; }), "gravity: -1 is outside 0 ... 1000"));
+}
+
+TEST_CASE("settings: saturation, quantum, caps, names") {
+    CHECK(says(message([](Settings& s) { s.material.saturation = {0.3, 0.25, 0.4}; }), "saturation[1]: 0.25 must be at least 0.001"));
+    CHECK(says(message([](Settings& s) { s.material.saturation = {0, 0.25, 0.4}; }), "saturation[0]: 0 must be"));
+    CHECK(says(message([](Settings& s) { s.material.saturation = {0.1, 0.25, 1.4}; }), "saturation[2]: 1.4 is outside 0 ... 1"));
+    CHECK(message([](Settings& s) { s.method.quantum = 0; }).empty());
+    CHECK(message([](Settings& s) { s.method.quantum = std::ldexp(1.0, -20); }).empty());
+    CHECK(says(message([](Settings& s) { s.method.quantum = 0.001; }), "not a power of two; the next below is 0.000976562"));
+    CHECK(says(message([](Settings& s) { s.method.quantum = std::ldexp(1.0, -30); }), "largest_height / 2^24"));
+    CHECK(says(message([](Settings& s) { s.method.quantum = -0.5; }), "neither -1"));
+    CHECK(says(message([](Settings& s) { s.method.gravity_cap_least = 0.6; }), "0.6 is outside 0 ... 0.55"));
+    CHECK(says(message([](Settings& s) { s.method.name = "robst"; }), "did you mean \"robust\"?"));
+    CHECK(says(message([](Settings& s) { s.effects = {{"cohesoin", Force::off}}; }), "did you mean \"cohesion\"?"));
+    CHECK(message([](Settings& s) { s.effects = {{"bed_friction", Force::on}}; }).empty());
+}
+
+TEST_CASE("settings: the quantum that is chosen") {
+    Method method;
+    CHECK(height_quantum(method) == std::ldexp(1.0, -20)); // 16 m
+    method.largest_height = 17;
+    CHECK(height_quantum(method) == std::ldexp(1.0, -19));
+    method.quantum = 0;
+    CHECK(height_quantum(method) == 0);
+}
+
+TEST_CASE("settings: sides") {
+    const auto west = [](const std::function<void(Side&)>& change) {
+        return message([&](Settings& s) { change(s.sides[0]); });
+    };
+    CHECK(says(west([](Side& s) { s.kind = SideKind::discharge; }), "sides.west.value: missing"));
+    CHECK(says(west([](Side& s) { s.value.samples = {{0, 1}}; }), "only discharge and level"));
+    CHECK(says(west([](Side& s) { s.from = 5; }), "sides.west.from: 5 is outside 0 ... 5"));
+    CHECK(west([](Side& s) { s.from = 4; }).empty());
+    CHECK(says(west([](Side& s) { s.from = 3, s.to = 2; }), "sides.west.to: 2 is not greater than from, 3"));
+    CHECK(says(west([](Side& s) { s.kind = SideKind::level, s.value.samples = {{0, 2e6}}; }), "2e+06 is outside"));
+    CHECK(says(west([](Side& s) { s.kind = SideKind::level, s.value.samples = {{0, 2}, {0, 3}}; }), "value[1]: the time 0 s does not come after 0 s"));
+    CHECK(says(west([](Side& s) { s.kind = SideKind::level, s.value.samples = {{NOT_A_NUMBER, 2}}; }), "not a finite number"));
+    CHECK(says(message([](Settings& s) { s.sides[2].from = 10; }), "sides.south.from: 10 is outside 0 ... 10"));
+}
+
+TEST_CASE("settings: sources and rain") {
+    const auto with = [](const std::function<void(Source&)>& change) {
+        return message([&](Settings& s) {
+            Source source;
+            source.center = {5, 2};
+            source.radius = 1;
+            source.box = {1, 1, 2, 2};
+            source.rate.samples = {{0, 0.1}};
+            change(source);
+            s.sources = {source};
+        });
+    };
+    CHECK(with([](Source&) {}).empty());
+    CHECK(with([](Source& s) { s.shape = SourceShape::box; }).empty());
+    CHECK(with([](Source& s) { s.shape = SourceShape::point; }).empty());
+    CHECK(says(with([](Source& s) { s.radius = 0; }), "sources[0].radius: 0 is not a positive length"));
+    CHECK(says(with([](Source& s) { s.center = {5, 7}; }), "lies outside the grid, which spans 0 ... 5 m in y"));
+    CHECK(with([](Source& s) { s.center = {5, 5.5}; }).empty()); // the disc reaches in
+    CHECK(says(with([](Source& s) { s.center = {NOT_A_NUMBER, 1}; }), "sources[0].center[0]"));
+    CHECK(says(with([](Source& s) { s.shape = SourceShape::box, s.box = {1, 1, 1, 2}; }), "to[0]: 1 is not greater than from, 1"));
+    CHECK(says(with([](Source& s) { s.rate.samples.clear(); }), "sources[0].rate: missing"));
+    CHECK(says(with([](Source& s) { s.rate.samples = {{0, 1}, {1, 2e4}}; }), "sources[0].rate[1]: 20000 is outside"));
+    CHECK(with([](Source& s) { s.set_velocity = true, s.velocity = {1, 2}; }).empty());
+    CHECK(says(with([](Source& s) { s.set_velocity = true, s.velocity = {1, 2e5}; }), "sources[0].velocity[1]: 200000 is outside"));
+    CHECK(says(with([](Source& s) { s.set_velocity = true, s.material = SourceMaterial::sand; }), "only a source of water"));
+    CHECK(says(message([](Settings& s) { s.sources.resize(33); }), "33 are more than 32"));
+    CHECK(says(message([](Settings& s) { s.rain.samples = {{0, -1}}; }), "rain: -1 is outside 0 ... 1"));
+    CHECK(says(message([](Settings& s) { s.evaporation.samples = {{0, 2}}; }), "evaporation: 2 is outside 0 ... 1"));
+}
+
+TEST_CASE("settings: a time series is linear between its samples and constant outside") {
+    TimeSeries series;
+    CHECK(series.at(1) == 0);
+    series.samples = {{2, 5}};
+    CHECK(series.at(-1) == 5);
+    CHECK(series.at(9) == 5);
+    series.samples = {{1, 10}, {2, 20}, {4, 0}};
+    CHECK(series.at(0) == 10);
+    CHECK(series.at(1) == 10);
+    CHECK(series.at(1.5) == doctest::Approx(15));
+    CHECK(series.at(2) == 20);
+    CHECK(series.at(3.5) == doctest::Approx(5));
+    CHECK(series.at(4) == 0);
+    CHECK(series.at(1e9) == 0);
+}
+
+TEST_CASE("settings: initial fields") {
+    const Settings settings = good();
+    InitialFields fields;
+    CHECK(validate(fields, settings));
+    fields.terrain.assign(200, 3.0f);
+    fields.water.assign(200, 2.0f);
+    CHECK(validate(fields, settings));
+
+    fields.water[43] = -1;
+    CHECK(validate(fields, settings).message == "water: -1 is outside 0 ... 16 in cell (3, 2)");
+    fields.water[43] = std::numeric_limits<float>::quiet_NaN();
+    CHECK(says(validate(fields, settings).message, "in cell (3, 2)"));
+    fields.water[43] = 14;
+    CHECK(says(validate(fields, settings).message, "cell (3, 2) is 17 m high, above method.largest_height, 16 m"));
+    fields.water.assign(7, 0.0f);
+    CHECK(validate(fields, settings).message == "water: 7 values for a grid of 20 x 10");
+    fields.water.clear();
+    fields.terrain[0] = -17;
+    CHECK(says(validate(fields, settings).message, "terrain: -17 is outside -16 ... 16"));
+    fields.terrain[0] = 0;
+    fields.sand_velocity_y.assign(200, std::numeric_limits<float>::infinity());
+    CHECK(says(validate(fields, settings).message, "sand_velocity_y: inf is outside"));
+}
