@@ -97,7 +97,8 @@ Status check_side(const Settings& settings, std::size_t index) {
         return refuse(path + ".to: " + number_text(side.to) + " is not greater than from, " + number_text(side.from));
     const bool has_value = side.kind == SideKind::discharge || side.kind == SideKind::level;
     if (has_value == side.value.samples.empty())
-        return refuse(path + ".value: " + (has_value ? "missing; discharge in m3/s or level in m" : "only discharge and level have one"));
+        return refuse(
+            path + ".value: " + (has_value ? "missing; discharge in m3/s or level in m" : "only discharge and level have one"));
     const double most = side.kind == SideKind::discharge ? DISCHARGE_MOST : LEVEL_MOST;
     return check_series(path + ".value", side.value, -most, most);
 }
@@ -130,8 +131,8 @@ Status check_source(const Settings& settings, std::size_t index) {
     if (!source.set_velocity) return ok_status();
     if (source.material != SourceMaterial::water) return refuse(path + ".velocity: only a source of water sets one");
     for (std::size_t axis = 0; axis < 2; ++axis)
-        if (Status status = check_range(path + ".velocity[" + std::to_string(axis) + "]", source.velocity[axis], -SPEED_MOST,
-                                        SPEED_MOST);
+        if (Status status =
+                check_range(path + ".velocity[" + std::to_string(axis) + "]", source.velocity[axis], -SPEED_MOST, SPEED_MOST);
             !status)
             return status;
     return ok_status();

@@ -39,8 +39,8 @@ std::vector<Tap> taps(int source, int target) {
 
 Status check_map_size(std::int64_t nx, std::int64_t ny, const std::string& name) {
     if (nx >= 1 && ny >= 1 && nx <= MAP_LIMIT && ny <= MAP_LIMIT) return ok_status();
-    return error(Code::bad_file, name + ": a map of " + std::to_string(nx) + " x " + std::to_string(ny) +
-                                     " is outside 1 ... " + std::to_string(MAP_LIMIT) + " on each side");
+    return error(Code::bad_file, name + ": a map of " + std::to_string(nx) + " x " + std::to_string(ny) + " is outside 1 ... " +
+                                     std::to_string(MAP_LIMIT) + " on each side");
 }
 
 Result<std::vector<std::uint8_t>> read_file_bytes(const std::string& path, std::uint64_t limit) {

@@ -38,15 +38,13 @@ std::uint32_t crc32(const std::uint8_t* data, std::size_t size) {
         std::array<std::uint32_t, 256> t{};
         for (std::uint32_t n = 0; n < 256; ++n) {
             std::uint32_t c = n;
-            for (int bit = 0; bit < 8; ++bit)
-                c = (c & 1u) != 0 ? 0xedb88320u ^ (c >> 1) : c >> 1;
+            for (int bit = 0; bit < 8; ++bit) c = (c & 1u) != 0 ? 0xedb88320u ^ (c >> 1) : c >> 1;
             t[n] = c;
         }
         return t;
     }();
     std::uint32_t crc = 0xffffffffu;
-    for (std::size_t i = 0; i < size; ++i)
-        crc = table[(crc ^ data[i]) & 0xffu] ^ (crc >> 8);
+    for (std::size_t i = 0; i < size; ++i) crc = table[(crc ^ data[i]) & 0xffu] ^ (crc >> 8);
     return crc ^ 0xffffffffu;
 }
 
@@ -71,8 +69,7 @@ template <class Sample> std::vector<float> to_grey(const Sample* samples, int nx
     const auto width = static_cast<std::size_t>(nx);
     grey.reserve(width * static_cast<std::size_t>(ny));
     for (auto row = static_cast<std::size_t>(ny); row-- > 0;)
-        for (std::size_t i = 0; i < width; ++i)
-            grey.push_back(static_cast<float>(samples[row * width + i]) / white);
+        for (std::size_t i = 0; i < width; ++i) grey.push_back(static_cast<float>(samples[row * width + i]) / white);
     return grey;
 }
 
@@ -80,8 +77,7 @@ template <class Sample> std::vector<float> to_grey(const Sample* samples, int nx
 
 Result<Map> decode_png(const std::vector<std::uint8_t>& bytes, const std::string& name) {
     const std::size_t ihdr_end = SIGNATURE_BYTES + 25;
-    if (bytes.size() < ihdr_end || bytes.size() > INT_MAX ||
-        !std::equal(SIGNATURE.begin(), SIGNATURE.end(), bytes.begin()))
+    if (bytes.size() < ihdr_end || bytes.size() > INT_MAX || !std::equal(SIGNATURE.begin(), SIGNATURE.end(), bytes.begin()))
         return error(Code::bad_file, name + ": not a PNG file");
     if (Status status = check_chunks(bytes, name); !status) return status;
     const std::int64_t width = big_endian(&bytes[16]);
@@ -105,8 +101,8 @@ Result<Map> decode_png(const std::vector<std::uint8_t>& bytes, const std::string
         if (!samples) return refuse();
         map.values = to_grey(samples.get(), nx, ny, 65535.0f);
     } else {
-        const std::unique_ptr<stbi_uc, void (*)(void*)> samples(
-            stbi_load_from_memory(bytes.data(), size, &nx, &ny, &channels, 1), stbi_image_free);
+        const std::unique_ptr<stbi_uc, void (*)(void*)> samples(stbi_load_from_memory(bytes.data(), size, &nx, &ny, &channels, 1),
+                                                                stbi_image_free);
         if (!samples) return refuse();
         map.values = to_grey(samples.get(), nx, ny, 255.0f);
     }

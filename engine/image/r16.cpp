@@ -4,8 +4,7 @@
 
 namespace wadi {
 
-Result<Map> decode_r16(const std::vector<std::uint8_t>& bytes, const std::string& name,
-                       std::optional<std::pair<int, int>> size) {
+Result<Map> decode_r16(const std::vector<std::uint8_t>& bytes, const std::string& name, std::optional<std::pair<int, int>> size) {
     const std::uint64_t samples = bytes.size() / 2;
     std::int64_t nx = 0;
     std::int64_t ny = 0;

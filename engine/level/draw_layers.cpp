@@ -17,11 +17,16 @@ double value_at(const std::vector<float>& field, std::size_t cell) {
 
 double combined(double current, double value, Combine combine) {
     switch (combine) {
-    case Combine::add: return current + value;
-    case Combine::set: return value;
-    case Combine::max: return std::max(current, value);
-    case Combine::min: return std::min(current, value);
-    case Combine::subtract: return current - value;
+    case Combine::add:
+        return current + value;
+    case Combine::set:
+        return value;
+    case Combine::max:
+        return std::max(current, value);
+    case Combine::min:
+        return std::min(current, value);
+    case Combine::subtract:
+        return current - value;
     }
     return current;
 }
@@ -31,7 +36,9 @@ double rounded(double height, double quantum) { return quantum > 0 ? std::round(
 Result<std::vector<float>> load_heights(const Layer& layer, const Frame& frame, const std::string& folder) {
     const MapSource& source = *layer.map;
     auto map = read_map((std::filesystem::path(folder) / source.file).string(), source.size);
-    if (!map) return error(map.status().code, layer.path + ".file: " + map.status().message);
+    if (!map) // a bad argument of ours is a bad field of the level's author
+        return error(map.status().code == Code::bad_argument ? Code::bad_file : map.status().code,
+                     layer.path + ".file: " + map.status().message);
     if (source.grey_range && !map->integer)
         return error(Code::bad_file, layer.path + ": min and max are for integer maps (PNG, r16); " + source.file +
                                          " holds heights, use scale and offset");
@@ -100,8 +107,8 @@ Result<std::vector<float>> draw_layers(const std::vector<Layer>& layers, LayerTa
                 changed = changed || field[cell] != static_cast<float>(current);
             }
         }
-        const bool flat_zero = layer.amount == Amount::height && !layer.map && layer.top == 0;
-        if (!changed && !flat_zero)
+        const bool meant_as_nothing = !layer.map && layer.top == 0 && layer.amount != Amount::surface;
+        if (!changed && !meant_as_nothing)
             warnings.push_back(layer.path +
                                ": changes no cell; it lies outside the grid, between cell centres, below the ground or under "
                                "what is already there");

@@ -16,7 +16,8 @@ Status check(const LevelOverrides& overrides) {
         return error(Code::bad_argument, outside_text("dt", *overrides.dt, DT_LEAST, DT_MOST) + " s");
     const auto& names = method_names();
     if (overrides.method && std::find(names.begin(), names.end(), *overrides.method) == names.end())
-        return error(Code::bad_argument, "method: \"" + *overrides.method + "\" is not known" + suggestion(*overrides.method, names));
+        return error(Code::bad_argument,
+                     "method: \"" + *overrides.method + "\" is not known" + suggestion(*overrides.method, names));
     return ok_status();
 }
 

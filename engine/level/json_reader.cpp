@@ -91,8 +91,7 @@ std::vector<const Json*> read_array(const Json& value, const std::string& path, 
     else if (value.size() > most)
         refuse(status, path + ": " + std::to_string(value.size()) + " elements are more than " + std::to_string(most));
     else
-        for (const Json& element : value)
-            elements.push_back(&element);
+        for (const Json& element : value) elements.push_back(&element);
     return elements;
 }
 
@@ -100,7 +99,8 @@ ObjectReader::ObjectReader(const Json& value, std::string path, Status& status) 
     if (value.is_object())
         object_ = &value;
     else
-        refuse(status, (path_.empty() ? std::string("the level") : path_) + ": expected an object {...}, found " + json_text(value));
+        refuse(status,
+               (path_.empty() ? std::string("the level") : path_) + ": expected an object {...}, found " + json_text(value));
 }
 
 const Json* ObjectReader::find(const char* key) {

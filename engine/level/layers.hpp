@@ -18,9 +18,9 @@ inline constexpr double POSITION_MOST = 1e9;    // [m]
 struct Frame {
     int nx = 0;
     int ny = 0;
-    double dx = 0;        // [m]
+    double dx = 0; // [m]
     double stretch_y = 1;
-    double quantum = 0;   // fields are rounded to multiples of it, so that lakes are flat to the bit; 0 = not rounded [m]
+    double quantum = 0; // fields are rounded to multiples of it, so that lakes are flat to the bit; 0 = not rounded [m]
 };
 
 enum class LayerTarget { terrain, sand, water };
@@ -47,9 +47,9 @@ struct Layer {
     std::optional<MapSource> map; // otherwise the shape counts
     Shape shape;
     Amount amount = Amount::height;
-    double top = 0;               // height, surface or wet
+    double top = 0; // height, surface or wet
     Combine combine = Combine::add;
-    bool only_present = false;    // only cells where the field is above zero
+    bool only_present = false; // only cells where the field is above zero
 };
 
 /// A region that starts with a velocity.

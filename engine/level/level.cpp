@@ -24,7 +24,8 @@ void read_version(ObjectReader& root) {
     root.require("format_version");
     root.whole_number("format_version", version, 1, 1000000);
     if (version > FORMAT_VERSION)
-        root.fail("format_version", std::to_string(version) + " is newer than this build reads, " + std::to_string(FORMAT_VERSION));
+        root.fail("format_version",
+                  std::to_string(version) + " is newer than this build reads, " + std::to_string(FORMAT_VERSION));
 }
 
 Status read_root(const Json& json, const std::string& folder, Level& level, Layers& layers) {
@@ -73,8 +74,7 @@ Result<Level> parse(const std::string& text, const std::string& folder, const Le
     if (Status status = validate(level.settings); !status) return error(Code::bad_argument, status.message);
     if (Status status = draw(layers, *frame, folder, level); !status) return status;
     if (Status status = validate(level.fields, level.settings); !status) return error(Code::bad_file, status.message);
-    for (std::string& warning : level_warnings(level.settings, level.fields))
-        level.warnings.push_back(std::move(warning));
+    for (std::string& warning : level_warnings(level.settings, level.fields)) level.warnings.push_back(std::move(warning));
     return level;
 }
 
@@ -93,7 +93,8 @@ Result<Level> load_level(const std::string& path, const LevelOverrides& override
     if (!bytes) return bytes.status();
     const std::string text(bytes->begin(), bytes->end());
     auto level = parse_level(text, std::filesystem::path(path).parent_path().string(), overrides);
-    if (!level && level.status().code != Code::bad_argument) return error(level.status().code, path + ": " + level.status().message);
+    if (!level && level.status().code != Code::bad_argument)
+        return error(level.status().code, path + ": " + level.status().message);
     return level;
 }
 

@@ -1,7 +1,7 @@
 // Level files: JSON plus maps, or a terrain map alone. docs: samples/levels/README.md; schema: samples/levels/level.schema.json.
 #pragma once
-#include "engine/include/wadi/settings.hpp"
 #include "engine/compute/status.hpp"
+#include "engine/include/wadi/settings.hpp"
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,8 +14,8 @@ struct Level {
     std::string description;
     Settings settings;
     InitialFields fields;
-    double duration = 10;               // [s] a recorder runs by default
-    std::vector<std::string> warnings;  // advice with numbers, not errors
+    double duration = 10;              // [s] a recorder runs by default
+    std::vector<std::string> warnings; // advice with numbers, not errors
 };
 
 /// What a caller may override before maps are sampled and shapes drawn.
@@ -23,8 +23,8 @@ struct LevelOverrides {
     /// New grid size. Keeps the x extent and square cells: dx = extent/nx, maps and shapes stretch in y when the aspect
     /// changes, dt scales with dx unless given.
     std::optional<std::pair<int, int>> size;
-    std::optional<double> dt;           // [s]
-    std::optional<std::string> method;  // name of a method preset
+    std::optional<double> dt;          // [s]
+    std::optional<std::string> method; // name of a method preset
 };
 
 /// Reads a level file. Errors: not_found, bad_file (position or field, nearest known key, allowed range).

@@ -63,8 +63,8 @@ void read_outline(ObjectReader& reader, Shape& shape) {
     const std::string path = reader.path_of("points");
     const auto elements = read_array(*points, path, POINTS_MOST, reader.status());
     for (std::size_t n = 0; n < elements.size(); ++n)
-        shape.points.push_back(read_pair(*elements[n], path + "[" + std::to_string(n) + "]", -POSITION_MOST, POSITION_MOST,
-                                         reader.status()));
+        shape.points.push_back(
+            read_pair(*elements[n], path + "[" + std::to_string(n) + "]", -POSITION_MOST, POSITION_MOST, reader.status()));
     if (elements.size() < 2) reader.fail("points", "a ridge needs at least two points");
 }
 

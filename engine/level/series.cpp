@@ -75,7 +75,8 @@ TimeSeries read_series(const Json& value, const std::string& path, const std::st
     } else if (value.is_number()) {
         series.samples.emplace_back(0, read_number(value, path, -ANY, ANY, status));
     } else if (status) {
-        status = error(Code::bad_file, path + ": expected a number, a list of [time, value] or {\"file\": ...}, found " + json_text(value));
+        status = error(Code::bad_file,
+                       path + ": expected a number, a list of [time, value] or {\"file\": ...}, found " + json_text(value));
     }
     return series;
 }

@@ -52,19 +52,18 @@ inline constexpr SettingField<Method, int> METHOD_COUNTS[] = {
 };
 
 inline constexpr int GRID_MOST = 16384;
-inline constexpr double DX_LEAST = 1e-4, DX_MOST = 1e4;           // [m]
-inline constexpr double DT_LEAST = 1e-7, DT_MOST = 100;           // [s]
-inline constexpr double GRAVITY_MOST = 1000;                      // [m/s2]
-inline constexpr double RAIN_MOST = 1;                            // rain and evaporation [m/s]
-inline constexpr double RATE_MOST = 1e4;                          // of a source [m/s]
-inline constexpr double SPEED_MOST = 1e4;                         // set by a source or as an initial velocity [m/s]
-inline constexpr double DISCHARGE_MOST = 1e9;                     // through a side [m3/s]
-inline constexpr double SATURATION_GAP = 1e-3;                    // least distance of 0, phi1, phi2 and phi3
+inline constexpr double DX_LEAST = 1e-4, DX_MOST = 1e4; // [m]
+inline constexpr double DT_LEAST = 1e-7, DT_MOST = 100; // [s]
+inline constexpr double GRAVITY_MOST = 1000;            // [m/s2]
+inline constexpr double RAIN_MOST = 1;                  // rain and evaporation [m/s]
+inline constexpr double RATE_MOST = 1e4;                // of a source [m/s]
+inline constexpr double SPEED_MOST = 1e4;               // set by a source or as an initial velocity [m/s]
+inline constexpr double DISCHARGE_MOST = 1e9;           // through a side [m3/s]
+inline constexpr double SATURATION_GAP = 1e-3;          // least distance of 0, phi1, phi2 and phi3
 
 /// Names as level files write them; sides are indexed by SideName.
 const std::vector<std::string>& method_names();
 const std::vector<std::string>& effect_names();
 const std::vector<std::string>& side_names();
-
 
 } // namespace wadi

@@ -11,14 +11,12 @@ constexpr std::size_t SOURCES_READ = 1000;                 // more than a world 
 
 template <class Owner, std::size_t COUNT>
 void read_fields(ObjectReader& reader, Owner& owner, const SettingField<Owner, double> (&fields)[COUNT]) {
-    for (const auto& field : fields)
-        reader.number(field.name, owner.*field.member, field.least, field.most);
+    for (const auto& field : fields) reader.number(field.name, owner.*field.member, field.least, field.most);
 }
 
 void read_grid(const Json& value, Grid& grid, Status& status) {
     ObjectReader reader(value, "grid", status);
-    for (const char* key : {"nx", "ny", "dx"})
-        reader.require(key);
+    for (const char* key : {"nx", "ny", "dx"}) reader.require(key);
     reader.whole_number("nx", grid.nx, 1, GRID_MOST);
     reader.whole_number("ny", grid.ny, 1, GRID_MOST);
     reader.number("dx", grid.dx, DX_LEAST, DX_MOST);
@@ -32,8 +30,7 @@ void read_material(const Json& value, Material& material, Status& status) {
         const auto elements = read_array(*saturation, "material.saturation", 3, status);
         if (elements.size() != 3) reader.fail("saturation", "expected three numbers [phi1, phi2, phi3]");
         for (std::size_t n = 0; n < elements.size(); ++n)
-            material.saturation[n] =
-                read_number(*elements[n], "material.saturation[" + std::to_string(n) + "]", 0, 1, status);
+            material.saturation[n] = read_number(*elements[n], "material.saturation[" + std::to_string(n) + "]", 0, 1, status);
     }
     reader.finish();
 }
@@ -43,8 +40,7 @@ void read_method(const Json& value, Method& method, Status& status) {
     reader.string("name", method.name);
     reader.boolean("outflow_limiter", method.outflow_limiter);
     read_fields(reader, method, METHOD_FIELDS);
-    for (const auto& field : METHOD_COUNTS)
-        reader.whole_number(field.name, method.*field.member, field.least, field.most);
+    for (const auto& field : METHOD_COUNTS) reader.whole_number(field.name, method.*field.member, field.least, field.most);
     reader.finish();
 }
 

@@ -18,8 +18,7 @@ double distance_to_segment(double x, double y, const Point& a, const Point& b) {
 
 double distance_to_line(const std::vector<Point>& points, double x, double y) {
     double least = length(x - points[0][0], y - points[0][1]);
-    for (std::size_t n = 1; n < points.size(); ++n)
-        least = std::min(least, distance_to_segment(x, y, points[n - 1], points[n]));
+    for (std::size_t n = 1; n < points.size(); ++n) least = std::min(least, distance_to_segment(x, y, points[n - 1], points[n]));
     return least;
 }
 
@@ -32,10 +31,13 @@ double distance_from_top(const Shape& shape, double x, double y) {
         return length(dx, dy);
     }
     case ShapeKind::cylinder:
-    case ShapeKind::cone: return std::max(length(x - shape.center[0], y - shape.center[1]) - shape.radius, 0.0);
-    case ShapeKind::ridge: return std::max(distance_to_line(shape.points, x, y) - shape.width / 2, 0.0);
+    case ShapeKind::cone:
+        return std::max(length(x - shape.center[0], y - shape.center[1]) - shape.radius, 0.0);
+    case ShapeKind::ridge:
+        return std::max(distance_to_line(shape.points, x, y) - shape.width / 2, 0.0);
     case ShapeKind::plane:
-    case ShapeKind::noise: break;
+    case ShapeKind::noise:
+        break;
     }
     return 0;
 }

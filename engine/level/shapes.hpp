@@ -13,16 +13,16 @@ enum class ShapeKind { plane, box, cylinder, cone, ridge, noise };
 
 struct Shape {
     ShapeKind kind = ShapeKind::plane;
-    Point slope = {0, 0};              // plane: rise per metre to the east and to the north
-    Point from = {0, 0};               // box
+    Point slope = {0, 0}; // plane: rise per metre to the east and to the north
+    Point from = {0, 0};  // box
     Point to = {0, 0};
-    Point center = {0, 0};             // cylinder, cone
-    double radius = 0;                 // cylinder [m]
-    std::vector<Point> points;         // ridge: its crest line
-    double width = 0;                  // ridge: of the crest [m]
+    Point center = {0, 0};                                       // cylinder, cone
+    double radius = 0;                                           // cylinder [m]
+    std::vector<Point> points;                                   // ridge: its crest line
+    double width = 0;                                            // ridge: of the crest [m]
     double side_slope = std::numeric_limits<double>::infinity(); // fall per metre beyond the top; infinite = vertical
-    double amplitude = 0;              // noise [m]
-    double wavelength = 1;             // noise: of the first octave [m]
+    double amplitude = 0;                                        // noise [m]
+    double wavelength = 1;                                       // noise: of the first octave [m]
     int octaves = 1;
     std::uint32_t seed = 0;
 };

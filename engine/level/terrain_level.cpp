@@ -28,8 +28,7 @@ Status scale_heights(Map& map, const std::string& path) {
         const float least = *low;
         const float range = *high > *low ? *high - *low : 1.0f;
         const auto relief = static_cast<float>(RELIEF * CELL * std::max(map.nx, map.ny));
-        for (float& value : map.values)
-            value = (value - least) / range * relief;
+        for (float& value : map.values) value = (value - least) / range * relief;
     } else if (std::max(std::fabs(*low), std::fabs(*high)) > static_cast<float>(HEIGHT_MOST / HEADROOM / 2)) {
         return error(Code::bad_file, path + ": heights up to " + std::to_string(*high) + " m are more than a world holds");
     }
@@ -71,8 +70,7 @@ Result<Level> build(const std::string& map_path, const LevelOverrides& overrides
     const double quantum = height_quantum(settings.method);
     settings.method.rest_surface = std::max(settings.method.rest_surface, 2 * quantum);
     settings.method.dry_threshold = std::max(settings.method.dry_threshold, quantum);
-    for (Side& side : settings.sides)
-        side.kind = SideKind::outflow;
+    for (Side& side : settings.sides) side.kind = SideKind::outflow;
 
     auto frame = apply_overrides(overrides, settings);
     if (!frame) return frame.status();

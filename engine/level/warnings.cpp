@@ -10,13 +10,13 @@
 namespace wadi {
 namespace {
 
-constexpr double WAVE_CFL = 0.45;          // above it the gravity cap slows waves on still water (2.4b)
-constexpr double UNCAPPED_CFL = 0.70;      // above it waves without a gravity cap grow (section 5, row 7)
-constexpr double STIFFNESS_LEAST = 5;      // E in units of rho_s g h0 (section 4)
+constexpr double WAVE_CFL = 0.45;     // above it the gravity cap slows waves on still water (2.4b)
+constexpr double UNCAPPED_CFL = 0.70; // above it waves without a gravity cap grow (section 5, row 7)
+constexpr double STIFFNESS_LEAST = 5; // E in units of rho_s g h0 (section 4)
 constexpr double STIFFNESS_MOST = 15;
-constexpr double WALL_SLOPE = 1.5;         // a step steeper than this is a wall that only cohesion holds
-constexpr double WET_SHARE = 0.02;         // sand with less water than this share of its depth counts as dry
-constexpr double NEARLY_FULL = 0.9;        // of largest_height
+constexpr double WALL_SLOPE = 1.5;  // a step steeper than this is a wall that only cohesion holds
+constexpr double WET_SHARE = 0.02;  // sand with less water than this share of its depth counts as dry
+constexpr double NEARLY_FULL = 0.9; // of largest_height
 
 std::string meters(double value) { return number_text(std::round(value * 1000) / 1000) + " m"; }
 /// Three significant digits, rounded down: a limit that may be typed as it stands.
@@ -31,14 +31,14 @@ std::string at_least(double value) {
 
 /// The extremes of the initial fields that the rules need.
 struct Survey {
-    double highest_column = 0;  // H + hs + W [m]
-    double deepest_water = 0;   // W [m]
-    double deepest_sand = 0;    // hs [m]
-    double dry_front = 0;       // pure water beside lower dry ground [m]
-    double wet_wall = 0;        // step of wet sand [m]
-    double wet_wall_ratio = 0;  // W / hs there
-    double steepest_wet = 0;    // slope of wet sand beyond what buoyant friction holds
-    double steepest_limit = 0;  // that limit
+    double highest_column = 0; // H + hs + W [m]
+    double deepest_water = 0;  // W [m]
+    double deepest_sand = 0;   // hs [m]
+    double dry_front = 0;      // pure water beside lower dry ground [m]
+    double wet_wall = 0;       // step of wet sand [m]
+    double wet_wall_ratio = 0; // W / hs there
+    double steepest_wet = 0;   // slope of wet sand beyond what buoyant friction holds
+    double steepest_limit = 0; // that limit
     std::size_t steep_faces = 0;
 };
 
@@ -138,17 +138,17 @@ void warn_water(const Settings& s, const Survey& survey, std::vector<std::string
     const double clamp = s.method.velocity_clamp / k;
     if (front > clamp)
         warnings.push_back(grid + "water of " + meters(survey.dry_front) + " beside dry ground should run at up to " +
-                           number_text(std::round(front * 100) / 100) + " m/s but is held at velocity_clamp dx/dt = " +
-                           number_text(std::round(clamp * 100) / 100) + " m/s; use dt <= " +
-                           at_most(s.method.velocity_clamp * s.grid.dx / front) + " s or dx >= " +
-                           at_least(s.dt * front / s.method.velocity_clamp) + " m");
+                           number_text(std::round(front * 100) / 100) +
+                           " m/s but is held at velocity_clamp dx/dt = " + number_text(std::round(clamp * 100) / 100) +
+                           " m/s; use dt <= " + at_most(s.method.velocity_clamp * s.grid.dx / front) +
+                           " s or dx >= " + at_least(s.dt * front / s.method.velocity_clamp) + " m");
     for (std::size_t n = 0; n < s.sources.size(); ++n) {
         const Source& source = s.sources[n];
         const double speed = std::max(std::fabs(source.velocity[0]), std::fabs(source.velocity[1]));
         if (source.set_velocity && speed > clamp)
             warnings.push_back("sources[" + std::to_string(n) + "].velocity: " + number_text(speed) +
-                               " m/s is more than velocity_clamp dx/dt = " + number_text(clamp) + " m/s; use dt <= " +
-                               at_most(s.method.velocity_clamp * s.grid.dx / speed) + " s");
+                               " m/s is more than velocity_clamp dx/dt = " + number_text(clamp) +
+                               " m/s; use dt <= " + at_most(s.method.velocity_clamp * s.grid.dx / speed) + " s");
     }
     const double diffusion_most = 0.2 * s.grid.dx / k;
     if (survey.deepest_sand > 0 && s.material.diffusion_rate > diffusion_most && !forced_off(s, "diffusion"))
@@ -168,21 +168,22 @@ void warn_sand(const Settings& s, const Survey& survey, std::vector<std::string>
         const std::string range = at_least(STIFFNESS_LEAST * weight) + " ... " + at_most(STIFFNESS_MOST * weight) +
                                   " Pa (5 ... 15 times the weight of the deepest sand, " + meters(survey.deepest_sand) + ")";
         if (m.young_modulus < STIFFNESS_LEAST * weight || m.young_modulus > STIFFNESS_MOST * weight)
-            warnings.push_back("material.young_modulus: " + number_text(m.young_modulus) + " Pa is outside " + range + ": sand is " +
+            warnings.push_back("material.young_modulus: " + number_text(m.young_modulus) + " Pa is outside " + range +
+                               ": sand is " +
                                (m.young_modulus < STIFFNESS_LEAST * weight ? "compressed by its own weight"
                                                                            : "so stiff that it does not fill hollows"));
         else if (scale * m.young_modulus < STIFFNESS_LEAST * weight)
             warnings.push_back("material.young_modulus: " + number_text(m.young_modulus) + " Pa acts like " +
-                               at_most(scale * m.young_modulus) + " Pa at this sand step, below " + range + "; use dt <= " +
-                               at_most(s.dt * std::sqrt(scale * m.young_modulus / (STIFFNESS_LEAST * weight))) +
+                               at_most(scale * m.young_modulus) + " Pa at this sand step, below " + range +
+                               "; use dt <= " + at_most(s.dt * std::sqrt(scale * m.young_modulus / (STIFFNESS_LEAST * weight))) +
                                " s or more substeps");
     }
     if (survey.wet_wall > 0 && !forced_off(s, "cohesion")) {
         const double least = wall_cohesion(s, survey.wet_wall);
         const double peak = std::max(m.cohesion_wet, m.cohesion_capillary);
         if (survey.wet_wall_ratio < m.saturation[2] && peak < least)
-            warnings.push_back("material.cohesion_wet: a wet sand wall of " + meters(survey.wet_wall) + " needs " + at_least(least) +
-                               " Pa (yield_friction sand_density g h) and the level has " + number_text(peak) +
+            warnings.push_back("material.cohesion_wet: a wet sand wall of " + meters(survey.wet_wall) + " needs " +
+                               at_least(least) + " Pa (yield_friction sand_density g h) and the level has " + number_text(peak) +
                                " Pa: it will fall; raise cohesion_wet and cohesion_capillary, or lower the wall");
     }
     if (survey.steep_faces > 0)
@@ -226,7 +227,8 @@ std::vector<std::string> level_warnings(const Settings& settings, const InitialF
     warn_sand(settings, survey, warnings);
     for (std::size_t n = 0; n < settings.sources.size(); ++n)
         if (!covers_a_cell(settings.sources[n], settings.grid))
-            warnings.push_back("sources[" + std::to_string(n) + "]: covers no cell centre, so nothing flows; make it larger than dx, " +
+            warnings.push_back("sources[" + std::to_string(n) +
+                               "]: covers no cell centre, so nothing flows; make it larger than dx, " +
                                number_text(settings.grid.dx) + " m, or use a point");
     const Method& method = settings.method;
     if (survey.highest_column > NEARLY_FULL * method.largest_height)

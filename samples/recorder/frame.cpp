@@ -69,12 +69,12 @@ void draw_legend(Image& image, int y, const Look& look, bool square, double metr
     const auto metres = [](double value) { return format("%.3g", value); };
     const double low = static_cast<double>(look.low), high = static_cast<double>(look.high);
     // Both ends of the terrain's range to a tenth of it.
-    const int decimals = high > low ? std::clamp(1 - static_cast<int>(std::floor(std::log10(high - low))), 0, 6) : 2;
+    const int decimals = high > low ? std::clamp(1 - static_cast<int>(std::floor(std::log10(high - low))), 0, 6) : 0;
     const auto height = [&](double value) { return format("%.*f", decimals, value); };
     if (high > low) {
         draw_key(image, x, y, width, "ground [m]", {height(low), "", height(high)}, [](float t) { return terrain_colour(t); });
     } else {
-        draw_key(image, x, y, width, "ground [m]", {"", height(low), ""}, [](float) { return terrain_colour(0.5f); });
+        draw_key(image, x, y, width, "ground [m]", {"", metres(low), ""}, [](float) { return terrain_colour(0.5f); });
     }
     x += width + gap;
     draw_key(image, x, y, width, "sand dry-wet", {"0", "0.25", "0.5"}, [](float t) { return sand_colour(0.5f * t); });

@@ -74,7 +74,8 @@ Failure Recording::plan() {
     }
     for (std::uint64_t k = 0;; ++k) {
         const std::uint64_t step = step_at(static_cast<double>(k) * every, dt);
-        if (step >= steps_) break;
+        // The last frame shows the end; one just before it would show the same.
+        if (step >= steps_ || (k > 0 && static_cast<double>(steps_ - step) * dt < every / 2)) break;
         if (frame_steps_.empty() || step > frame_steps_.back()) frame_steps_.push_back(step);
     }
     frame_steps_.push_back(steps_);

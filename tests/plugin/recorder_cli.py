@@ -35,7 +35,7 @@ class Recorder:
         return done
 
     def record(self, *arguments, code=OK):
-        return self.run(LEVEL, "--backend", self.backend, "--size", "40x12", *arguments, code=code)
+        return self.run(LEVEL, "--backend", self.backend, "--size", "40x12", "--dt", "0.01", *arguments, code=code)
 
     def refuse(self, *arguments, says):
         """A refused call writes one line on standard error, which says what is wrong, and leaves no file."""

@@ -9,21 +9,25 @@ namespace level_text {
 
 /// A 10 x 8 m level of 1 m cells; `rest` is more JSON, without a leading comma.
 inline std::string level(const std::string& rest, const std::string& grid = R"({"nx": 10, "ny": 8, "dx": 1})") {
-    return R"({"format_version": 1, "name": "test", "grid": )" + grid + R"(, "dt": 0.01)" + (rest.empty() ? "" : ", " + rest) + "}";
+    return R"({"format_version": 1, "name": "test", "grid": )" + grid + R"(, "dt": 0.01)" + (rest.empty() ? "" : ", " + rest) +
+           "}";
 }
 
-inline wadi::Result<wadi::Level> parse(const std::string& rest, const std::string& folder = "", const wadi::LevelOverrides& overrides = {}) {
+inline wadi::Result<wadi::Level> parse(const std::string& rest, const std::string& folder = "",
+                                       const wadi::LevelOverrides& overrides = {}) {
     return wadi::parse_level(level(rest), folder, overrides);
 }
 
-inline std::string message(const wadi::Result<wadi::Level>& result) { return result ? std::string("no error") : result.status().message; }
+inline std::string message(const wadi::Result<wadi::Level>& result) {
+    return result ? std::string("no error") : result.status().message;
+}
 
 inline bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 /// Value of a field in cell (i, j).
 inline double at(const wadi::Level& level, const std::vector<float>& field, int i, int j) {
-    return static_cast<double>(field.at(static_cast<std::size_t>(j) * static_cast<std::size_t>(level.settings.grid.nx) +
-                                        static_cast<std::size_t>(i)));
+    return static_cast<double>(
+        field.at(static_cast<std::size_t>(j) * static_cast<std::size_t>(level.settings.grid.nx) + static_cast<std::size_t>(i)));
 }
 
 inline std::filesystem::path samples() {

@@ -16,16 +16,14 @@ using Bytes = std::vector<std::uint8_t>;
 inline void append(Bytes& bytes, const std::string& text) { bytes.insert(bytes.end(), text.begin(), text.end()); }
 
 inline void append_big(Bytes& bytes, std::uint32_t value) {
-    for (int shift = 24; shift >= 0; shift -= 8)
-        bytes.push_back(static_cast<std::uint8_t>(value >> shift));
+    for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<std::uint8_t>(value >> shift));
 }
 
 inline std::uint32_t crc(const std::uint8_t* data, std::size_t size) {
     std::uint32_t value = 0xffffffffu;
     for (std::size_t n = 0; n < size; ++n) {
         value ^= data[n];
-        for (int bit = 0; bit < 8; ++bit)
-            value = (value >> 1) ^ ((value & 1u) != 0 ? 0xedb88320u : 0u);
+        for (int bit = 0; bit < 8; ++bit) value = (value >> 1) ^ ((value & 1u) != 0 ? 0xedb88320u : 0u);
     }
     return ~value;
 }
@@ -44,8 +42,7 @@ inline Bytes png(std::uint32_t nx, std::uint32_t ny, std::uint8_t depth, std::ui
     const std::size_t pitch = ny == 0 ? 0 : samples.size() / ny;
     for (std::size_t row = 0; row < ny && !samples.empty(); ++row) {
         raw.push_back(0);
-        for (std::size_t n = 0; n < pitch; ++n)
-            raw.push_back(samples[row * pitch + n]);
+        for (std::size_t n = 0; n < pitch; ++n) raw.push_back(samples[row * pitch + n]);
     }
     std::uint32_t a = 1;
     std::uint32_t b = 0;
@@ -125,7 +122,9 @@ class Folder {
         out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
         return file(name);
     }
-    std::string write(const std::string& name, const std::string& text) const { return write(name, Bytes(text.begin(), text.end())); }
+    std::string write(const std::string& name, const std::string& text) const {
+        return write(name, Bytes(text.begin(), text.end()));
+    }
 
   private:
     std::filesystem::path path_;

@@ -12,7 +12,9 @@ using namespace map_files;
 
 namespace {
 
-template <class T> std::string message(const Result<T>& result) { return result ? std::string("no error") : result.status().message; }
+template <class T> std::string message(const Result<T>& result) {
+    return result ? std::string("no error") : result.status().message;
+}
 
 bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
@@ -103,7 +105,8 @@ TEST_CASE("image: damaged NPY files") {
     CHECK(says(message(decode_npy(longer, "a.npy")), "wrong size, 25 bytes of data where 3 x 2 values take 24"));
     CHECK(says(message(decode_npy(Bytes(good.begin(), good.end() - 1), "a.npy")), "truncated, 23 bytes"));
 
-    const auto refuses = [](const std::string& type, const std::string& shape, const std::string& order, const std::string& part) {
+    const auto refuses = [](const std::string& type, const std::string& shape, const std::string& order,
+                            const std::string& part) {
         const std::string text = message(decode_npy(npy(dictionary(type, shape, order), VALUES), "a.npy"));
         CHECK_MESSAGE(says(text, part), text);
     };
@@ -158,8 +161,7 @@ TEST_CASE("image: resampling is exact at equal size, bilinear otherwise") {
     slope.nx = 8;
     slope.ny = 4;
     for (int j = 0; j < 4; ++j)
-        for (int i = 0; i < 8; ++i)
-            slope.values.push_back(static_cast<float>((i + 0.5) / 8 + 10 * (j + 0.5) / 4));
+        for (int i = 0; i < 8; ++i) slope.values.push_back(static_cast<float>((i + 0.5) / 8 + 10 * (j + 0.5) / 4));
     for (const auto& [nx, ny] : {std::pair{16, 12}, std::pair{5, 3}, std::pair{4, 4}}) {
         const auto values = resample(slope, nx, ny);
         REQUIRE(values.size() == static_cast<std::size_t>(nx * ny));

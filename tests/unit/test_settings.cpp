@@ -31,11 +31,7 @@ constexpr double NOT_A_NUMBER = std::numeric_limits<double>::quiet_NaN();
 template <class Owner, class Number, std::size_t COUNT>
 void check_limits(const SettingField<Owner, Number> (&fields)[COUNT], const std::string& path, Owner Settings::*owner) {
     for (const auto& field : fields) {
-        const auto with = [&](Number value) {
-            return message([&](Settings& s) {
-                s.*owner.*field.member = value;
-            });
-        };
+        const auto with = [&](Number value) { return message([&](Settings& s) { s.*owner.*field.member = value; }); };
         const std::string name = path + field.name + ": ";
         CHECK_MESSAGE(says(with(static_cast<Number>(field.most * 2 + 1)), name), name);
         CHECK_MESSAGE(says(with(static_cast<Number>(field.least - 1)), " is outside "), name);
@@ -45,7 +41,9 @@ void check_limits(const SettingField<Owner, Number> (&fields)[COUNT], const std:
 
 } // namespace
 
-TEST_CASE("settings: defaults are valid") { CHECK(message([](Settings&) {}).empty()); }
+TEST_CASE("settings: defaults are valid") {
+    CHECK(message([](Settings&) {}).empty());
+}
 
 TEST_CASE("settings: every number of material and method is checked") {
     check_limits(MATERIAL_FIELDS, "material.", &Settings::material);
@@ -66,7 +64,10 @@ TEST_CASE("settings: grid, time step, gravity") {
 }
 
 TEST_CASE("settings: saturation, quantum, caps, names") {
-    CHECK(says(message([](Settings& s) { s.material.saturation = {0.3, 0.25, 0.4}; }), "saturation[1]: 0.25 must be at least 0.001"));
+    CHECK(says(message([](Settings& s) {
+                   s.material.saturation = {0.3, 0.25, 0.4};
+               }),
+               "saturation[1]: 0.25 must be at least 0.001"));
     CHECK(says(message([](Settings& s) { s.material.saturation = {0, 0.25, 0.4}; }), "saturation[0]: 0 must be"));
     CHECK(says(message([](Settings& s) { s.material.saturation = {0.1, 0.25, 1.4}; }), "saturation[2]: 1.4 is outside 0 ... 1"));
     CHECK(message([](Settings& s) { s.method.quantum = 0; }).empty());
@@ -90,16 +91,17 @@ TEST_CASE("settings: the quantum that is chosen") {
 }
 
 TEST_CASE("settings: sides") {
-    const auto west = [](const std::function<void(Side&)>& change) {
-        return message([&](Settings& s) { change(s.sides[0]); });
-    };
+    const auto west = [](const std::function<void(Side&)>& change) { return message([&](Settings& s) { change(s.sides[0]); }); };
     CHECK(says(west([](Side& s) { s.kind = SideKind::discharge; }), "sides.west.value: missing"));
     CHECK(says(west([](Side& s) { s.value.samples = {{0, 1}}; }), "only discharge and level"));
     CHECK(says(west([](Side& s) { s.from = 5; }), "sides.west.from: 5 is outside 0 ... 5"));
     CHECK(west([](Side& s) { s.from = 4; }).empty());
     CHECK(says(west([](Side& s) { s.from = 3, s.to = 2; }), "sides.west.to: 2 is not greater than from, 3"));
     CHECK(says(west([](Side& s) { s.kind = SideKind::level, s.value.samples = {{0, 2e6}}; }), "2e+06 is outside"));
-    CHECK(says(west([](Side& s) { s.kind = SideKind::level, s.value.samples = {{0, 2}, {0, 3}}; }), "value[1]: the time 0 s does not come after 0 s"));
+    CHECK(says(west([](Side& s) {
+                   s.kind = SideKind::level, s.value.samples = {{0, 2}, {0, 3}};
+               }),
+               "value[1]: the time 0 s does not come after 0 s"));
     CHECK(says(west([](Side& s) { s.kind = SideKind::level, s.value.samples = {{NOT_A_NUMBER, 2}}; }), "not a finite number"));
     CHECK(says(message([](Settings& s) { s.sides[2].from = 10; }), "sides.south.from: 10 is outside 0 ... 10"));
 }
@@ -123,11 +125,17 @@ TEST_CASE("settings: sources and rain") {
     CHECK(says(with([](Source& s) { s.center = {5, 7}; }), "lies outside the grid, which spans 0 ... 5 m in y"));
     CHECK(with([](Source& s) { s.center = {5, 5.5}; }).empty()); // the disc reaches in
     CHECK(says(with([](Source& s) { s.center = {NOT_A_NUMBER, 1}; }), "sources[0].center[0]"));
-    CHECK(says(with([](Source& s) { s.shape = SourceShape::box, s.box = {1, 1, 1, 2}; }), "to[0]: 1 is not greater than from, 1"));
+    CHECK(says(with([](Source& s) {
+                   s.shape = SourceShape::box, s.box = {1, 1, 1, 2};
+               }),
+               "to[0]: 1 is not greater than from, 1"));
     CHECK(says(with([](Source& s) { s.rate.samples.clear(); }), "sources[0].rate: missing"));
     CHECK(says(with([](Source& s) { s.rate.samples = {{0, 1}, {1, 2e4}}; }), "sources[0].rate[1]: 20000 is outside"));
     CHECK(with([](Source& s) { s.set_velocity = true, s.velocity = {1, 2}; }).empty());
-    CHECK(says(with([](Source& s) { s.set_velocity = true, s.velocity = {1, 2e5}; }), "sources[0].velocity[1]: 200000 is outside"));
+    CHECK(says(with([](Source& s) {
+                   s.set_velocity = true, s.velocity = {1, 2e5};
+               }),
+               "sources[0].velocity[1]: 200000 is outside"));
     CHECK(says(with([](Source& s) { s.set_velocity = true, s.material = SourceMaterial::sand; }), "only a source of water"));
     CHECK(says(message([](Settings& s) { s.sources.resize(33); }), "33 are more than 32"));
     CHECK(says(message([](Settings& s) { s.rain.samples = {{0, -1}}; }), "rain: -1 is outside 0 ... 1"));

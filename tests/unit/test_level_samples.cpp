@@ -1,0 +1,262 @@
+// engine/level: warnings with their numbers, the levels that ship and their schema.
+#include "engine/level/json_reader.hpp"
+#include "engine/level/setting_fields.hpp"
+#include "tests/unit/level_text.hpp"
+#include <algorithm>
+#include <cmath>
+#include <doctest/doctest.h>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+using namespace wadi;
+using namespace level_text;
+
+namespace {
+
+std::string read_text(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+Json read_json(const std::filesystem::path& path) {
+    auto json = parse_json(read_text(path));
+    CHECK_MESSAGE(json, path.string() << ": " << json.status().message);
+    return json ? json.value() : Json{};
+}
+
+/// All warnings of a level of 0.1 m cells and 0.009 s, one per line.
+std::string warnings(const std::string& rest, double dt = 0.009) {
+    const std::string text = R"({"format_version": 1, "name": "w", "grid": {"nx": 40, "ny": 30, "dx": 0.1}, "dt": )" +
+                             std::to_string(dt) + ", " + rest + "}";
+    const auto level = parse_level(text, "", {});
+    CHECK_MESSAGE(level, message(level));
+    std::string lines;
+    if (level)
+        for (const std::string& warning : level->warnings) lines += warning + "\n";
+    return lines;
+}
+
+const char* const LOW_PILE = R"("sand": [{"shape": "cylinder", "center": [2, 1.5], "radius": 1, "height": 0.5}],
+    "water": [{"shape": "plane", "wet": 0.25}], "material": {"young_modulus": 8e4, "cohesion_wet": 5e3, "cohesion_capillary": 5e3}, "gravity": 9.81)";
+
+void collect_keys(const Json& value, std::set<std::string>& keys) {
+    if (value.is_object())
+        for (const auto& [key, child] : value.items()) {
+            keys.insert(key);
+            collect_keys(child, keys);
+        }
+    if (value.is_array())
+        for (const Json& child : value) collect_keys(child, keys);
+}
+
+/// Every name under a "properties" anywhere in the schema.
+void collect_properties(const Json& value, std::set<std::string>& names) {
+    if (value.is_array())
+        for (const Json& child : value) collect_properties(child, names);
+    if (!value.is_object()) return;
+    for (const auto& [key, child] : value.items()) {
+        if (key == "properties")
+            for (const auto& [name, property] : child.items()) names.insert(name);
+        collect_properties(child, names);
+    }
+}
+
+template <class Owner, class Number, std::size_t COUNT>
+void check_against_schema(const Json& properties, const SettingField<Owner, Number> (&fields)[COUNT], const Owner& defaults) {
+    for (const auto& field : fields) {
+        REQUIRE_MESSAGE(properties.contains(field.name), field.name);
+        const Json& property = properties[field.name];
+        CHECK_MESSAGE(property["minimum"].get<double>() == field.least, field.name);
+        CHECK_MESSAGE(property["maximum"].get<double>() == field.most, field.name);
+        CHECK_MESSAGE(property["default"].get<double>() == defaults.*field.member, field.name);
+    }
+}
+
+} // namespace
+
+TEST_CASE("level warnings: none for a small pile of damp sand") { CHECK(warnings(LOW_PILE).empty()); }
+
+TEST_CASE("level warnings: waves slower than they should be") {
+    const std::string text = warnings(R"("water": [{"shape": "plane", "height": 2}])", 0.03);
+    // (0.45 / 0.3)^2 / 9.81 = 0.229; 0.45 * 0.1 / sqrt(2 * 9.81) = 0.01016; 0.03 * sqrt(2 * 9.81) / 0.45 = 0.2953
+    CHECK_MESSAGE(says(text, "dx 0.1 m, dt 0.03 s: water deeper than 0.229 m moves slower than it should, and the level has 2 m; "
+                             "use dt <= 0.0101 s or dx >= 0.296 m"),
+                  text);
+    CHECK(warnings(R"("water": [{"shape": "plane", "height": 2}])", 0.0101).empty());
+    CHECK(says(warnings(R"("water": [{"shape": "plane", "height": 2}], "method": {"gravity_cap": 0})", 0.03),
+               "unstable while method.gravity_cap is off"));
+}
+
+TEST_CASE("level warnings: a front onto dry ground") {
+    const std::string rest = R"("water": [{"shape": "box", "from": [0, 0], "to": [2, 3], "height": 0.5}])";
+    // 2 sqrt(9.81 * 0.5) = 4.43; 0.35 * 0.1 / 0.009 = 3.89; 0.035 / 4.43 = 0.0079; 0.009 * 4.43 / 0.35 = 0.1139
+    CHECK_MESSAGE(says(warnings(rest),
+                       "water of 0.5 m beside dry ground should run at up to 4.43 m/s but is held at velocity_clamp dx/dt = "
+                       "3.89 m/s; use dt <= 0.0079 s or dx >= 0.114 m"),
+                  warnings(rest));
+    CHECK(warnings(rest, 0.0079).empty());
+    // The same water behind a bank that is higher than it.
+    CHECK(warnings(rest + R"(, "terrain": [{"shape": "box", "from": [2, 0], "to": [4, 3], "height": 1}])").empty());
+}
+
+TEST_CASE("level warnings: speed of a source, diffusion") {
+    CHECK(says(warnings(R"("sources": [{"shape": "box", "from": [1, 1], "to": [2, 2], "rate": 1, "velocity": [0, -8]}])"),
+               "sources[0].velocity: 8 m/s is more than velocity_clamp dx/dt = 3.88889 m/s; use dt <= 0.00437 s"));
+    CHECK(says(warnings(R"("sources": [{"shape": "disc", "center": [1, 1], "radius": 0.04, "rate": 1}])"),
+               "sources[0]: covers no cell centre"));
+    CHECK(warnings(R"("sources": [{"shape": "disc", "center": [1.04, 1.04], "radius": 0.04, "rate": 1}])").empty());
+    CHECK(says(warnings(R"("sources": [{"shape": "box", "from": [1.06, 1], "to": [1.14, 2], "rate": 1}])"),
+               "covers no cell centre"));
+    CHECK(
+        says(warnings(R"("sand": [{"shape": "plane", "height": 0.5}], "material": {"young_modulus": 8e4, "diffusion_rate": 1})"),
+             "material.diffusion_rate: 1 m2/s acts like 0.222222 m2/s"));
+}
+
+TEST_CASE("level warnings: stiffness of the sand") {
+    const auto with = [](const std::string& modulus, const std::string& method = "") {
+        return warnings(R"("sand": [{"shape": "plane", "height": 2}], "material": {"young_modulus": )" + modulus + "}" + method);
+    };
+    // rho_s g h0 = 39240 Pa: 196200 ... 588600
+    CHECK(says(with("1e5"), "material.young_modulus: 100000 Pa is outside 197000 ... 588000 Pa"));
+    CHECK(says(with("1e5"), "compressed by its own weight"));
+    CHECK(says(with("1e6"), "does not fill hollows"));
+    CHECK(with("2e5").empty());
+    CHECK(with("0").empty()); // friction only
+    // lambda + 2 mu = 1.346 E; the cap is 0.2 * 2000 * (0.1/0.009)^2 = 49383 Pa with one substep: E acts like 36684 Pa
+    CHECK_MESSAGE(says(with("2e5", R"(, "method": {"substeps": 1})"), "200000 Pa acts like 36600 Pa at this sand step"),
+                  with("2e5", R"(, "method": {"substeps": 1})"));
+    CHECK(with("1e5", R"(, "effects": {"elastoplastic": "off"})").empty());
+}
+
+TEST_CASE("level warnings: cohesion too weak for a wall, wet slopes") {
+    const auto wall = [](const std::string& cohesion, const std::string& wet = "0.25") {
+        return warnings(R"("sand": [{"shape": "cylinder", "center": [2, 1.5], "radius": 1, "height": 2}],
+            "water": [{"shape": "plane", "wet": )" +
+                        wet + R"(}], "material": {"cohesion_wet": )" + cohesion + R"(, "cohesion_capillary": )" + cohesion + "}");
+    };
+    // 0.4 * 2000 * 9.81 * 2 = 15696 Pa
+    CHECK_MESSAGE(
+        says(wall("1e4"), "a wet sand wall of 2 m needs 15700 Pa (yield_friction sand_density g h) and the level has 10000 Pa"),
+        wall("1e4"));
+    CHECK(wall("1.57e4").empty());
+    CHECK(wall("1e4", "0.45").empty()); // soaked sand is meant to run
+    const auto slope = [](const std::string& rise, const std::string& wet) {
+        return warnings(R"("sand": [{"shape": "plane", "height": 0.5, "slope_x": )" + rise +
+                        R"(}], "water": [{"shape": "plane", "wet": )" + wet + R"(}], "material": {"young_modulus": 2e5})");
+    };
+    CHECK_MESSAGE(says(slope("0.3", "1"), "wet sand slopes up to 0.3 at 1170 faces, more than friction holds there, 0.25 "),
+                  slope("0.3", "1"));
+    CHECK(slope("0.2", "1").empty());
+    CHECK(slope("0.3", "0").empty());
+    CHECK(slope("0.3", "0.25").empty()); // cohesion holds it
+}
+
+TEST_CASE("level warnings: heights and the quantum") {
+    CHECK_MESSAGE(says(warnings(R"("terrain": [{"shape": "plane", "height": 15}])"),
+                       "the highest column is 15 m of 16 m; what would rise above is refused, use 32 or more"),
+                  warnings(R"("terrain": [{"shape": "plane", "height": 15}])"));
+    CHECK(warnings(R"("terrain": [{"shape": "plane", "height": 14}])").empty());
+    CHECK(says(warnings(R"("method": {"largest_height": 1000})"),
+               "method.rest_surface: 1e-05 m is finer than the height quantum, 6.10352e-05 m"));
+    CHECK(says(warnings(R"("method": {"largest_height": 1000})"), "use 0.000123 or more"));
+}
+
+TEST_CASE("level warnings: a layer that changes nothing") {
+    CHECK(says(warnings(R"("sand": [{"shape": "cylinder", "center": [9, 9], "radius": 1, "height": 1}])"),
+               "sand[0]: changes no cell"));
+    CHECK(says(warnings(R"("terrain": [{"shape": "plane", "height": 3}], "water": [{"shape": "plane", "surface": 2}])"),
+               "water[0]: changes no cell"));
+    CHECK(warnings(R"("terrain": [{"shape": "plane", "height": 0}])").empty());
+}
+
+TEST_CASE("shipped levels: piles and canyon load without a warning, dam_break with the three its README explains") {
+    for (const char* name : {"piles", "canyon"}) {
+        const auto level = load_level((samples() / name / "level.json").string(), {});
+        REQUIRE_MESSAGE(level, message(level));
+        for (const std::string& warning : level->warnings) CHECK_MESSAGE(false, name << ": " << warning);
+    }
+    const std::string path = (samples() / "dam_break" / "level.json").string();
+    const auto level = load_level(path, {});
+    REQUIRE_MESSAGE(level, message(level));
+    REQUIRE(level->warnings.size() == 3);
+    CHECK(says(level->warnings[0], "the level has 8 m; use dt <= 0.0253 s or dx >= 0.886 m"));
+    CHECK(says(level->warnings[1], "dt <= 0.00987 s or dx >= 2.28 m"));
+    CHECK(says(level->warnings[2], "acts like 330000 Pa"));
+    LevelOverrides overrides;
+    overrides.dt = 0.009; // what the README advises
+    const auto cured = load_level(path, overrides);
+    REQUIRE_MESSAGE(cured, message(cured));
+    CHECK(cured->warnings.empty());
+}
+
+TEST_CASE("shipped levels: other sizes load") {
+    for (const auto& [nx, ny] : {std::pair{64, 64}, std::pair{97, 33}, std::pair{512, 512}}) {
+        LevelOverrides overrides;
+        overrides.size = {nx, ny};
+        for (const char* name : {"dam_break", "piles", "canyon"}) {
+            const auto level = load_level((samples() / name / "level.json").string(), overrides);
+            CHECK_MESSAGE(level, name << ": " << message(level));
+        }
+    }
+}
+
+TEST_CASE("shipped levels: piles") {
+    const auto loaded = load_level((samples() / "piles" / "level.json").string(), {});
+    REQUIRE_MESSAGE(loaded, message(loaded));
+    const Level& level = loaded.value();
+    const double wet[2][3] = {{0.33, 0.45, 1}, {0, 0.1, 0.25}}; // from the south
+    for (int row = 0; row < 2; ++row)
+        for (int column = 0; column < 3; ++column) {
+            const int i = column * 112 + 60;
+            const int j = row * 112 + 50;
+            const double sand = at(level, level.fields.sand, i, j);
+            CHECK(sand == doctest::Approx(2).epsilon(0.011));
+            CHECK(at(level, level.fields.water, i, j) == doctest::Approx(wet[row][column] * sand).epsilon(1e-5));
+        }
+    CHECK(at(level, level.fields.sand, 50, 50) != at(level, level.fields.sand, 61, 61)); // not symmetric
+}
+
+TEST_CASE("shipped levels: the canyon's dams close it, and its reaches lie one below the other") {
+    const auto loaded = load_level((samples() / "canyon" / "level.json").string(), {});
+    REQUIRE_MESSAGE(loaded, message(loaded));
+    const Level& level = loaded.value();
+    const double crest[3] = {11.16, 9.1, 7.04};
+    const int row[3] = {192, 128, 64};
+    for (int dam = 0; dam < 3; ++dam) {
+        int sandy = 0;
+        for (int i = 0; i < 200; ++i) {
+            const double top = at(level, level.fields.terrain, i, row[dam]) + at(level, level.fields.sand, i, row[dam]);
+            CHECK(top >= crest[dam] - 1e-5);
+            if (at(level, level.fields.sand, i, row[dam]) > 3.7) ++sandy;
+        }
+        CHECK(sandy >= 18); // the floor is 10 m wide
+    }
+    double highest_sand = 0;
+    for (const float sand : level.fields.sand) highest_sand = std::max(highest_sand, static_cast<double>(sand));
+    CHECK(highest_sand < 4);
+    CHECK(level.fields.water.empty());
+}
+
+TEST_CASE("shipped levels: every key is in the schema, and the schema has every setting with its range and default") {
+    const Json schema = read_json(samples() / "level.schema.json");
+    REQUIRE(schema.is_object());
+    std::set<std::string> names;
+    collect_properties(schema, names);
+    for (const char* name : {"dam_break", "piles", "canyon"}) {
+        std::set<std::string> keys;
+        collect_keys(read_json(samples() / name / "level.json"), keys);
+        CHECK(keys.size() > 10);
+        for (const std::string& key : keys) CHECK_MESSAGE(names.count(key) == 1, name << ": " << key);
+    }
+    const Json& properties = schema["properties"];
+    check_against_schema(properties["material"]["properties"], MATERIAL_FIELDS, Material{});
+    check_against_schema(properties["method"]["properties"], METHOD_FIELDS, Method{});
+    check_against_schema(properties["method"]["properties"], METHOD_COUNTS, Method{});
+    CHECK(properties["method"]["properties"].size() ==
+          std::size(METHOD_FIELDS) + std::size(METHOD_COUNTS) + 2);                       // name, outflow_limiter
+    CHECK(properties["material"]["properties"].size() == std::size(MATERIAL_FIELDS) + 1); // saturation
+    for (const std::string& effect : effect_names()) CHECK(properties["effects"]["properties"].contains(effect));
+    CHECK(properties["effects"]["properties"].size() == effect_names().size());
+    for (const std::string& side : side_names()) CHECK(properties["sides"]["properties"].contains(side));
+}
