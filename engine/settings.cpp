@@ -1,4 +1,5 @@
 #include "engine/compute/params.hpp"
+#include "engine/effects.hpp"
 #include "engine/level/setting_fields.hpp"
 #include "engine/level/text.hpp"
 #include <algorithm>
@@ -99,8 +100,8 @@ Status check_side(const Settings& settings, std::size_t index) {
     if (has_value == side.value.samples.empty())
         return refuse(
             path + ".value: " + (has_value ? "missing; discharge in m3/s or level in m" : "only discharge and level have one"));
-    const double most = side.kind == SideKind::discharge ? DISCHARGE_MOST : LEVEL_MOST;
-    return check_series(path + ".value", side.value, -most, most);
+    if (side.kind == SideKind::discharge) return check_series(path + ".value", side.value, 0, DISCHARGE_MOST);
+    return check_series(path + ".value", side.value, -LEVEL_MOST, LEVEL_MOST);
 }
 
 Status check_source(const Settings& settings, std::size_t index) {
@@ -122,7 +123,7 @@ Status check_source(const Settings& settings, std::size_t index) {
         if (box && !(high > low))
             return refuse(path + ".to[" + std::to_string(axis) + "]: " + number_text(high) + " is not greater than from, " +
                           number_text(low));
-        if (high + reach < 0 || low - reach > extent[axis])
+        if (high + reach < 0 || low - reach >= extent[axis])
             return refuse(path + ": lies outside the grid, which spans 0 ... " + number_text(extent[axis]) + " m in " +
                           (axis == 0 ? "x" : "y"));
     }
@@ -162,8 +163,11 @@ const std::vector<std::string>& method_names() {
 }
 
 const std::vector<std::string>& effect_names() {
-    static const std::vector<std::string> names = {"water",    "sand",    "mixture", "diffusion",  "drag",        "elastoplastic",
-                                                   "cohesion", "sources", "rain",    "open_sides", "bed_friction"};
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> found;
+        for (const Effect& effect : effect_table()) found.emplace_back(effect.name);
+        return found;
+    }();
     return names;
 }
 

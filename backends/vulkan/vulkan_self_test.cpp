@@ -35,7 +35,7 @@ std::vector<Operands> make_operands() {
     for (std::uint32_t n = 0; n < tries; ++n) {
         // A quarter of the pairs are far apart, the others as close as the terms of one equation are.
         const int exponents = n % 4 == 0 ? 40 : 6;
-        operands[n].a = n % 64 == 1 ? 0.0f : draw(exponents);
+        operands[n].a = n % 64 == 1 ? 0.0f : n % 64 == 2 ? -0.0f : draw(exponents);
         operands[n].b = std::fabs(draw(exponents));
     }
     return operands;

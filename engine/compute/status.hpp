@@ -38,6 +38,7 @@ template <class T> class [[nodiscard]] Result {
     T& value() { return std::get<0>(content_); }
     const T& value() const { return std::get<0>(content_); }
     T& operator*() { return value(); }
+    const T& operator*() const { return value(); }
     T* operator->() { return &value(); }
     const T* operator->() const { return &value(); }
     Status status() const { return *this ? ok_status() : std::get<1>(content_); }

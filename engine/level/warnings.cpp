@@ -218,6 +218,13 @@ bool covers_a_cell(const Source& source, const Grid& grid) {
     return square <= source.radius * source.radius;
 }
 
+bool opens_a_cell(const Settings& settings, std::size_t index) {
+    const Side& side = settings.sides[index];
+    const bool along_y = index == static_cast<std::size_t>(SideName::west) || index == static_cast<std::size_t>(SideName::east);
+    const double last = (along_y ? settings.grid.ny : settings.grid.nx) - 1;
+    return std::ceil(side.from / settings.grid.dx - 0.5) <= std::min(std::floor(side.to / settings.grid.dx - 0.5), last);
+}
+
 } // namespace
 
 std::vector<std::string> level_warnings(const Settings& settings, const InitialFields& fields) {
@@ -230,6 +237,11 @@ std::vector<std::string> level_warnings(const Settings& settings, const InitialF
             warnings.push_back("sources[" + std::to_string(n) +
                                "]: covers no cell centre, so nothing flows; make it larger than dx, " +
                                number_text(settings.grid.dx) + " m, or use a point");
+    for (std::size_t n = 0; n < settings.sides.size(); ++n)
+        if (settings.sides[n].kind != SideKind::wall && !opens_a_cell(settings, n))
+            warnings.push_back("sides." + side_names()[n] +
+                               ": no cell centre lies between from and to, so the side stays closed; widen the opening to " +
+                               number_text(settings.grid.dx) + " m or more");
     const Method& method = settings.method;
     if (survey.highest_column > NEARLY_FULL * method.largest_height)
         warnings.push_back("method.largest_height: the highest column is " + meters(survey.highest_column) + " of " +

@@ -14,10 +14,11 @@ FN float outflow(float flux_west, float flux_east, float flux_south, float flux_
     return (wmax(-flux_west, 0.0f) + wmax(flux_east, 0.0f)) + (wmax(-flux_south, 0.0f) + wmax(flux_north, 0.0f));
 }
 
-// Factor on all outflow of a cell so that it never gives more than it holds; the last 4 ulp keep the sum below it.
+// Factor on all outflow of a cell so that it never gives more than it holds; 4 ulp
+// keep the sum of the four below it however they were rounded.
 FN float outflow_scale(float height, float outflow_depth, float limiter) {
-    float scale = divide_or_zero(height, outflow_depth) * (1.0f - 4.76837158e-7f);
-    float limited = outflow_depth > height ? scale : 1.0f;
+    float safe_height = height * (1.0f - 4.76837158e-7f);
+    float limited = outflow_depth > safe_height ? divide_or_zero(safe_height, outflow_depth) : 1.0f;
     return limiter > 0.0f ? limited : 1.0f;
 }
 

@@ -102,12 +102,18 @@ FN void project_stretch(REF(Stretch) v, REF(Stress) stress, float c, float cap, 
     float dd = along * d;
     float dxy = along * bxy;
 
-    tr = wmax(tr, -(cap + c * inv_friction_yield) * inv_bulk);
+    Stretch before = v;
+    float least_tr = -(cap + c * inv_friction_yield) * inv_bulk;
+    // What was projected before comes back within rounding of the surface: it yields again only clearly beyond it.
+    float slack = 1.0f + 4.0e-6f;
+    bool elastic = tr >= least_tr * slack;
+    tr = elastic ? tr : least_tr;
     float y = yield_slope * tr - c;
     bool tip = y >= 0.0f;
     float limit = -y * inv_two_shear;
     float size = wsqrt(2.0f * (dd * dd + dxy * dxy));
-    float shrink = size > limit ? divide_or_zero(limit, size) : 1.0f;
+    bool beyond = size > limit * slack;
+    float shrink = beyond ? divide_or_zero(limit, size) : 1.0f;
     shrink = tip ? 0.0f : shrink;
     tr = tip ? c * inv_yield_slope : tr;
     dd = dd * shrink;
@@ -118,6 +124,8 @@ FN void project_stretch(REF(Stretch) v, REF(Stress) stress, float c, float cap, 
     dd = broken ? 0.0f : dd;
     dxy = broken ? 0.0f : dxy;
 
+    elastic = both(both(elastic, !tip), both(!broken, !beyond));
+
     float hh = dd * dd + dxy * dxy;
     float em = exp_minus_one(0.5f * tr);
     float e = 1.0f + em;
@@ -126,6 +134,11 @@ FN void project_stretch(REF(Stretch) v, REF(Stress) stress, float c, float cap, 
     v.xx = (em + e * ch) + sh * dd;
     v.yy = (em + e * ch) - sh * dd;
     v.xy = sh * dxy;
+    // Where nothing yields V stays as it is: the way through log and exp would move it by rounding for ever, and a strained
+    // pile at rest would not be a fixed point.
+    v.xx = elastic ? before.xx : v.xx;
+    v.xy = elastic ? before.xy : v.xy;
+    v.yy = elastic ? before.yy : v.yy;
     float inv_j = wdiv(1.0f, e * e);
     float mean = bulk * tr;
     stress.xx = (mean + two_shear * dd) * inv_j;

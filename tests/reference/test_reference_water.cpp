@@ -95,7 +95,6 @@ TEST_CASE("reference: Thacker's radial bowl, one period") {
         const Field<double> exact = s.water;
         run_to(s, PI / w, 0.4);
         const double halfway = relative_error(s.water, exact);
-        fill(s, s.water, depth);
         s = Solver<double>(convergence_settings(n, n, L / n), EFFECT_WATER);
         fill(s, s.terrain, bed);
         fill(s, s.water, depth);

@@ -152,6 +152,12 @@ TEST_CASE("level warnings: cohesion too weak for a wall, wet slopes") {
     CHECK(slope("0.3", "0.25").empty()); // cohesion holds it
 }
 
+TEST_CASE("level warnings: an opening between two cell centres") {
+    CHECK(says(warnings(R"("sides": {"west": {"kind": "outflow", "from": 1.06, "to": 1.14}})"),
+               "sides.west: no cell centre lies between"));
+    CHECK(warnings(R"("sides": {"west": {"kind": "outflow", "from": 1.04, "to": 1.06}})").empty());
+}
+
 TEST_CASE("level warnings: heights and the quantum") {
     CHECK_MESSAGE(says(warnings(R"("terrain": [{"shape": "plane", "height": 15}])"),
                        "the highest column is 15 m of 16 m; what would rise above is refused, use 32 or more"),

@@ -103,6 +103,10 @@ TEST_CASE("settings: sides") {
                }),
                "value[1]: the time 0 s does not come after 0 s"));
     CHECK(says(west([](Side& s) { s.kind = SideKind::level, s.value.samples = {{NOT_A_NUMBER, 2}}; }), "not a finite number"));
+    CHECK(says(west([](Side& s) {
+                   s.kind = SideKind::discharge, s.value.samples = {{0, -1}};
+               }),
+               "value: -1 is outside 0 ... 1e+09"));
     CHECK(says(message([](Settings& s) { s.sides[2].from = 10; }), "sides.south.from: 10 is outside 0 ... 10"));
 }
 
@@ -121,6 +125,8 @@ TEST_CASE("settings: sources and rain") {
     CHECK(with([](Source&) {}).empty());
     CHECK(with([](Source& s) { s.shape = SourceShape::box; }).empty());
     CHECK(with([](Source& s) { s.shape = SourceShape::point; }).empty());
+    CHECK(with([](Source& s) { s.shape = SourceShape::point, s.center = {0, 4.99}; }).empty());
+    CHECK(says(with([](Source& s) { s.shape = SourceShape::point, s.center = {10, 2}; }), "lies outside the grid"));
     CHECK(says(with([](Source& s) { s.radius = 0; }), "sources[0].radius: 0 is not a positive length"));
     CHECK(says(with([](Source& s) { s.center = {5, 7}; }), "lies outside the grid, which spans 0 ... 5 m in y"));
     CHECK(with([](Source& s) { s.center = {5, 5.5}; }).empty()); // the disc reaches in

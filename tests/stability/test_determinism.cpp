@@ -1,0 +1,121 @@
+// Same input, same bits: runs, threads, instruction sets, replay, interleaved worlds, barriers everywhere, and backends.
+#include "tests/support/worlds.hpp"
+#include <doctest/doctest.h>
+
+using namespace wadi;
+using namespace wadi::test;
+
+namespace {
+
+std::uint64_t run(const Scene& scene, int steps, const Target& target = {}) {
+    auto world = make_world(scene, target);
+    step(*world, steps);
+    return hash_of(*world);
+}
+
+Target cpu(int threads, const std::string& set = "") {
+    Target target;
+    target.options.threads = threads;
+    target.options.instruction_set = set;
+    return target;
+}
+
+} // namespace
+
+TEST_CASE("runs, thread counts and instruction sets agree in every bit") {
+    const auto scene = mixed_scene(160, 130);
+    const auto expected = run(scene, 60, cpu(1));
+    for (const int threads : {1, 2, 3, 8}) {
+        CAPTURE(threads);
+        CHECK(run(scene, 60, cpu(threads)) == expected);
+    }
+    CHECK(run(scene, 60, cpu(2, "base")) == expected);
+    auto changed = scene;
+    changed.fields.water[0] += 1e-4F;
+    CHECK(run(changed, 60) != expected);
+}
+
+TEST_CASE("two worlds interleaved give what each gives alone") {
+    const auto a = mixed_scene(64, 50), b = mixed_scene(50, 64);
+    auto first = make_world(a), second = make_world(b);
+    for (int n = 0; n < 30; ++n) {
+        step(*first, 1);
+        step(*second, 1);
+    }
+    CHECK(hash_of(*first) == run(a, 30));
+    CHECK(hash_of(*second) == run(b, 30));
+}
+
+TEST_CASE("barriers everywhere, recording anew and profiling change no bit, on every backend") {
+    const auto scene = mixed_scene(48, 40);
+    const auto expected = run(scene, 20);
+    for (const auto& backend : available_backends()) {
+        CAPTURE(backend);
+        Target full{backend, {}}, anew{backend, {}};
+        full.options.full_barriers = true;
+        anew.options.no_replay = true;
+        CHECK(run(scene, 20, {backend, {}}) == expected);
+        CHECK(run(scene, 20, full) == expected);
+        CHECK(run(scene, 20, anew) == expected);
+        auto profiled = make_world(scene, {backend, {}});
+        REQUIRE(profiled->set_profiling(true));
+        step(*profiled, 20);
+        CHECK(hash_of(*profiled) == expected);
+        auto times = profiled->stage_times();
+        REQUIRE(times);
+        CHECK(times->size() == 14);
+        for (const auto& time : *times) CHECK_MESSAGE(time.milliseconds > 0, time.stage);
+    }
+}
+
+TEST_CASE("nothing is allocated, written to descriptors or recorded per step, on every backend") {
+    for (const auto& backend : available_backends()) {
+        CAPTURE(backend);
+        auto world = make_world(mixed_scene(32, 32), {backend, {}});
+        step(*world, 2);
+        const auto before = world->device().counters();
+        step(*world, 30);
+        const auto after = world->device().counters();
+        CHECK(after.submits == before.submits + 30);
+        CHECK(after.allocations == before.allocations);
+        CHECK(after.descriptor_writes == before.descriptor_writes);
+        CHECK(after.recordings == before.recordings);
+    }
+}
+
+TEST_CASE("every backend equals the CPU in every bit after 200 coupled steps of the shipped levels, without a validation message") {
+    for (const auto& backend : available_backends()) {
+        if (backend == "cpu") continue;
+        for (const auto& [name, nx, ny] : {std::tuple{"canyon", 80, 102}, {"piles", 96, 64}, {"dam_break", 64, 64}}) {
+            CAPTURE(backend);
+            CAPTURE(name);
+            const auto scene = shipped_level(name, nx, ny);
+            Target checked{backend, {}};
+            checked.options.validate = backend == "vulkan";
+            std::string messages;
+            checked.options.log = [&](int level, const std::string& message) { messages += level < 2 ? message + "\n" : std::string(); };
+            auto world = make_world(scene, checked);
+            if (!world->device().capabilities().exact_float) {
+                MESSAGE("the device fails the exact-float self-test: bits are not compared");
+                continue;
+            }
+            step(*world, 200);
+            CHECK(hash_of(*world) == run(scene, 200));
+            CHECK_MESSAGE(world->device().counters().validation_messages == 0, messages);
+        }
+    }
+}
+
+TEST_CASE("a lost device is reported by every call, and only by worlds on it") {
+    for (const auto& backend : available_backends()) {
+        CAPTURE(backend);
+        auto world = make_world(mixed_scene(16, 16), {backend, {}}), other = make_world(mixed_scene(16, 16), {backend, {}});
+        step(*world, 3);
+        world->device().inject_device_lost();
+        CHECK(world->step(1).code == Code::device_lost);
+        CHECK(world->stats().status().code == Code::device_lost);
+        std::vector<float> cells(256);
+        CHECK(world->read("water_height", cells).code == Code::device_lost);
+        CHECK(other->step(1).code == Code::ok);
+    }
+}

@@ -1,0 +1,98 @@
+#include "tests/support/worlds.hpp"
+#include <cmath>
+#include <doctest/doctest.h>
+
+namespace wadi::test {
+
+void Scene::fill(std::vector<float>& field, const std::function<double(double, double)>& value) {
+    const auto& g = settings.grid;
+    field.assign(static_cast<std::size_t>(g.nx) * static_cast<std::size_t>(g.ny), 0.0F);
+    for (int j = 0; j < g.ny; ++j) {
+        for (int i = 0; i < g.nx; ++i) {
+            field[static_cast<std::size_t>(j) * static_cast<std::size_t>(g.nx) + static_cast<std::size_t>(i)] =
+                static_cast<float>(value((i + 0.5) * g.dx, (j + 0.5) * g.dx));
+        }
+    }
+}
+
+Scene flat_scene(int nx, int ny, double dx, double dt) {
+    Scene scene;
+    scene.settings.grid = {nx, ny, dx};
+    scene.settings.dt = dt;
+    return scene;
+}
+
+Scene mixed_scene(int nx, int ny) {
+    auto scene = flat_scene(nx, ny, 0.2, 0.015);
+    auto& material = scene.settings.material;
+    material.friction = 0.35;
+    material.young_modulus = 5e5;
+    material.cohesion_dry = 500;
+    material.cohesion_wet = material.cohesion_capillary = 1e4;
+    material.exchange_rate = 3e4;
+    material.bed_friction = 0.01;
+    const double lx = nx * 0.2, ly = ny * 0.2;
+    scene.fill(scene.fields.terrain, [&](double x, double y) { return 0.4 + 0.3 * std::sin(3 * x / lx + 1) * std::cos(2 * y / ly); });
+    const auto bump = [](double x, double y, double cx, double cy, double r) { return std::max(0.0, 1 - std::hypot(x - cx, y - cy) / r); };
+    scene.fill(scene.fields.sand, [&](double x, double y) {
+        return 1.2 * bump(x, y, 0.4 * lx, 0.45 * ly, 0.3 * lx) + (std::hypot(x - 0.7 * lx, y - 0.6 * ly) < 0.12 * lx ? 0.9 : 0.0);
+    });
+    scene.fill(scene.fields.water, [&](double x, double y) { return x < 0.3 * lx ? 1.1 : 0.25 * bump(x, y, 0.45 * lx, 0.5 * ly, 0.25 * lx); });
+    return scene;
+}
+
+Scene shipped_level(const std::string& name, int nx, int ny) {
+    LevelOverrides overrides;
+    overrides.size = {nx, ny};
+    auto level = load_level(std::string(WADI_SOURCE_DIR) + "/samples/levels/" + name + "/level.json", overrides);
+    REQUIRE_MESSAGE(level, level.status().message);
+    return {level->settings, level->fields};
+}
+
+std::unique_ptr<World> make_world(const Scene& scene, const Target& target) {
+    auto device = compute::open_device(target.backend, -1, target.options);
+    REQUIRE_MESSAGE(device, device.status().message);
+    auto world = World::create(scene.settings, scene.fields, std::move(*device));
+    REQUIRE_MESSAGE(world, world.status().message);
+    return std::move(*world);
+}
+
+bool has_backend(const std::string& name) {
+    std::string why;
+    for (const auto& backend : compute::backends()) {
+        if (name == backend.name) return !backend.enumerate(why).empty();
+    }
+    return false;
+}
+
+std::vector<std::string> available_backends() {
+    std::vector<std::string> names;
+    for (const auto& backend : compute::backends()) {
+        if (has_backend(backend.name)) names.emplace_back(backend.name);
+    }
+    return names;
+}
+
+std::vector<std::pair<std::string, std::vector<float>>> state_of(World& world) {
+    std::vector<std::pair<std::string, std::vector<float>>> state;
+    for (const auto& field : world.plan().fields) {
+        if (field.role != FieldRole::state) continue;
+        auto raw = world.read_raw(field.name);
+        REQUIRE_MESSAGE(raw, raw.status().message);
+        state.emplace_back(field.name, *raw);
+    }
+    return state;
+}
+
+std::uint64_t hash_of(World& world) {
+    auto stats = world.stats();
+    REQUIRE_MESSAGE(stats, stats.status().message);
+    return stats->hash;
+}
+
+void step(World& world, int count) {
+    const auto status = world.step(static_cast<std::uint32_t>(count));
+    REQUIRE_MESSAGE(status, status.message);
+}
+
+} // namespace wadi::test

@@ -1,0 +1,44 @@
+// Worlds for tests: small scenes as settings and fields, and the backends of this build.
+#pragma once
+#include "engine/level/level.hpp"
+#include "engine/world.hpp"
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace wadi::test {
+
+/// A scene: settings and fields to change before the world is made.
+struct Scene {
+    Settings settings;
+    InitialFields fields;
+    /// Fills a field from a function of the cell's centre [m].
+    void fill(std::vector<float>& field, const std::function<double(double x, double y)>& value);
+};
+
+/// nx x ny cells of dx metres, flat ground, no sand, no water, robust method.
+Scene flat_scene(int nx, int ny, double dx, double dt);
+/// Sand, water, wet sand, a slope and a bump: everything meets. Fits any grid of at least 1 x 1.
+Scene mixed_scene(int nx, int ny);
+/// A shipped level at a test's size.
+Scene shipped_level(const std::string& name, int nx, int ny);
+
+struct Target {
+    std::string backend = "cpu";
+    compute::DeviceOptions options;
+};
+
+/// Fails the running test when the world cannot be made.
+std::unique_ptr<World> make_world(const Scene& scene, const Target& target = {});
+/// True when the build and machine have a device of this backend (lavapipe counts).
+bool has_backend(const std::string& name);
+/// Every backend that has a device here, the CPU first.
+std::vector<std::string> available_backends();
+
+/// All state fields of a world, raw, by name.
+std::vector<std::pair<std::string, std::vector<float>>> state_of(World& world);
+std::uint64_t hash_of(World& world);
+void step(World& world, int count);
+
+} // namespace wadi::test

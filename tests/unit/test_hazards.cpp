@@ -1,0 +1,80 @@
+// The barrier planner on hand-made programs, against barriers worked out on paper.
+#include "engine/compute/hazards.hpp"
+#include <doctest/doctest.h>
+
+using namespace wadi;
+using namespace wadi::compute;
+
+namespace {
+
+constexpr Buffer a{1}, b{2}, c{3}, d{4};
+
+Copy copy(Buffer from, Buffer to) { return {from, to, 0, 0, 4}; }
+
+Dispatch velocity(Buffer x, Buffer y, Buffer out_x, Buffer out_y) {
+    return {Pipeline{1}, find_stage("publish_velocity"), 0, {x, y, out_x, out_y}, {0, 0, 1, 1}, "publish"};
+}
+
+} // namespace
+
+TEST_CASE("a barrier stands where a read follows a write, and nowhere else") {
+    CHECK(plan_barriers({copy(a, b), copy(b, c)}) == std::vector{false, true});  // read after write
+    CHECK(plan_barriers({copy(a, b), copy(c, a)}) == std::vector{false, true});  // write after read
+    CHECK(plan_barriers({copy(a, c), copy(b, c)}) == std::vector{false, true});  // write after write
+    CHECK(plan_barriers({copy(a, b), copy(a, c)}) == std::vector{false, false}); // two readers
+    CHECK(plan_barriers({copy(a, b), copy(c, d)}) == std::vector{false, false}); // strangers
+}
+
+TEST_CASE("one barrier serves everything before it") {
+    CHECK(plan_barriers({copy(a, b), copy(a, c), copy(b, d), copy(c, d)}) == std::vector{false, false, true, true});
+    CHECK(plan_barriers({copy(a, b), copy(b, c), copy(a, d)}) == std::vector{false, true, false});
+}
+
+TEST_CASE("a stage's access comes from its own binding lines") {
+    const auto uses = buffer_uses(velocity(a, b, c, d));
+    REQUIRE(uses.size() == 4);
+    CHECK(uses[0].reads);
+    CHECK_FALSE(uses[0].writes);
+    CHECK(uses[2].writes);
+    CHECK_FALSE(uses[2].reads);
+    CHECK(plan_barriers({copy(d, a), velocity(a, b, c, d), velocity(a, b, Buffer{5}, Buffer{6})}) == std::vector{false, true, false});
+}
+
+TEST_CASE("timestamps and bindings that do not exist touch nothing") {
+    CHECK(buffer_uses(Timestamp{"t"}).empty());
+    const int stage = find_stage("project_deformation_gradient");
+    const Dispatch dry{Pipeline{1}, stage, 0, {a, b, c, d, Buffer{5}, Buffer{6}, Buffer{7}, Buffer{}}, {0, 0, 1, 1}, "project"};
+    CHECK(buffer_uses(dry).size() == 7);
+    auto wet = dry;
+    wet.effects = EFFECT_COHESION;
+    wet.slots.back() = Buffer{8};
+    CHECK(buffer_uses(wet).size() == 8);
+}
+
+TEST_CASE("dependencies name the last writer, and the readers before a write") {
+    const auto edges = plan_dependencies({copy(a, b), copy(b, c), copy(b, d), copy(a, b)});
+    CHECK(edges[0].empty());
+    CHECK(edges[1] == std::vector{0});
+    CHECK(edges[2] == std::vector{0});
+    CHECK(edges[3] == std::vector{1, 2});
+}
+
+TEST_CASE("validate refuses what no backend may run, and names it") {
+    const auto message = [](const Op& op) {
+        ProgramBuilder builder("test");
+        if (const auto* dispatch = std::get_if<Dispatch>(&op)) builder.dispatch(*dispatch);
+        if (const auto* c = std::get_if<Copy>(&op)) builder.copy(*c);
+        return validate(builder).message;
+    };
+    CHECK(message(velocity(a, b, c, d)).empty());
+    CHECK(message(velocity(a, b, c, c)).find("bound twice") != std::string::npos);
+    CHECK(message(velocity(a, b, a, d)).find("bound twice") != std::string::npos);
+    CHECK(message(velocity(a, b, c, Buffer{})).find("centre_velocity_y") != std::string::npos);
+    auto few = velocity(a, b, c, d);
+    few.slots.pop_back();
+    CHECK(message(few).find("3 slots") != std::string::npos);
+    auto none = velocity(a, b, c, d);
+    none.stage = -1;
+    CHECK(message(none).find("no such stage") != std::string::npos);
+    CHECK(message(copy(a, a)).find("within one buffer") != std::string::npos);
+}

@@ -1,0 +1,156 @@
+// Effects decide which passes and buffers exist: checked for every legal mask.
+#include "engine/effects.hpp"
+#include "engine/step_plan.hpp"
+#include "tests/support/worlds.hpp"
+#include <algorithm>
+#include <doctest/doctest.h>
+#include <set>
+
+using namespace wadi;
+
+namespace {
+
+std::vector<std::uint32_t> legal_masks() {
+    std::uint32_t all = 0;
+    for (const auto& effect : effect_table()) all |= effect.bit;
+    std::vector<std::uint32_t> masks;
+    for (std::uint32_t mask = 1; mask <= all; ++mask) {
+        if (is_legal(mask) && (mask & (EFFECT_WATER | EFFECT_SAND)) != 0) masks.push_back(mask);
+    }
+    return masks;
+}
+
+bool runs(const StepPlan& plan, const char* stage) {
+    const int index = compute::find_stage(stage);
+    REQUIRE(index >= 0);
+    const auto is = [&](const PlanPass& pass) { return pass.stage == index; };
+    return std::any_of(plan.water_passes.begin(), plan.water_passes.end(), is) || std::any_of(plan.substep_passes.begin(), plan.substep_passes.end(), is);
+}
+
+constexpr std::uint32_t everything = 2047;
+
+} // namespace
+
+TEST_CASE("every legal mask gives a plan whose scratch is written before it is read") {
+    for (const auto mask : legal_masks()) {
+        const auto plan = make_step_plan(mask, 3);
+        std::set<std::string> written;
+        std::vector<PlanPass> order = plan.water_passes;
+        order.insert(order.end(), plan.substep_passes.begin(), plan.substep_passes.end());
+        for (const auto& pass : order) {
+            const auto& bindings = compute::stage_table()[static_cast<std::size_t>(pass.stage)].bindings;
+            for (std::size_t n = 0; n < bindings.size(); ++n) {
+                const auto* field = plan.find(pass.fields[n]);
+                if (field == nullptr || field->role != FieldRole::scratch || bindings[n].access != compute::Access::in) continue;
+                CHECK_MESSAGE(written.contains(field->name), "mask " << mask << ": " << field->name << " is read before it is written");
+            }
+            for (std::size_t n = 0; n < bindings.size(); ++n) {
+                if (bindings[n].access != compute::Access::in) written.insert(pass.fields[n]);
+            }
+        }
+    }
+}
+
+TEST_CASE("no pass binds one memory block twice with a write, whatever the mask") {
+    for (const auto mask : legal_masks()) {
+        const auto plan = make_step_plan(mask, 2);
+        for (const auto* passes : {&plan.water_passes, &plan.substep_passes}) {
+            for (const auto& pass : *passes) {
+                std::set<int> blocks;
+                for (const auto& name : pass.fields) {
+                    const auto* field = plan.find(name);
+                    if (field == nullptr || field->role != FieldRole::scratch) continue;
+                    CHECK_MESSAGE(blocks.insert(field->memory).second, "mask " << mask << ": " << name << " shares its block within one pass");
+                }
+            }
+        }
+    }
+}
+
+TEST_CASE("scratch that lives across the substeps is overwritten by nobody in them") {
+    const auto plan = make_step_plan(everything, 3);
+    for (const char* name : {"pressure_x", "pressure_y", "saturation"}) {
+        const auto* keeper = plan.find(name);
+        REQUIRE(keeper != nullptr);
+        for (const auto& pass : plan.substep_passes) {
+            for (const auto& other : pass.fields) {
+                const auto* field = plan.find(other);
+                if (field == nullptr || field->role != FieldRole::scratch || field->name == name) continue;
+                CHECK_MESSAGE(field->memory != keeper->memory, other << " lies on " << name);
+            }
+        }
+    }
+}
+
+TEST_CASE("every flipped field comes back after two steps, and each pass writes what it flips") {
+    for (const auto mask : legal_masks()) {
+        const auto plan = make_step_plan(mask, 3);
+        for (const auto* passes : {&plan.water_passes, &plan.substep_passes}) {
+            std::set<std::string> written;
+            for (const auto& pass : *passes) {
+                const auto& bindings = compute::stage_table()[static_cast<std::size_t>(pass.stage)].bindings;
+                for (std::size_t n = 0; n < bindings.size(); ++n) {
+                    if (bindings[n].access != compute::Access::in) written.insert(pass.fields[n]);
+                }
+                for (const auto& flip : pass.flips) CHECK_MESSAGE(written.contains(flip + "_next"), "mask " << mask << ": " << flip << " flips unwritten");
+            }
+        }
+    }
+}
+
+TEST_CASE("an effect that is off has no pass and no buffer") {
+    const auto water = make_step_plan(EFFECT_WATER, 3);
+    CHECK(water.substep_passes.empty());
+    CHECK(water.water_passes.size() == 4);
+    CHECK(water.find("sand_height") == nullptr);
+    CHECK(water.find("mixed_velocity_x") == nullptr);
+    CHECK(water.bytes_per_cell() <= 56);
+
+    const auto dry = make_step_plan(EFFECT_SAND, 3);
+    CHECK(dry.water_passes.empty());
+    CHECK(dry.find("water_height") == nullptr);
+    CHECK(dry.find("stretch_xx") == nullptr);
+    CHECK_FALSE(runs(dry, "project_deformation_gradient"));
+    CHECK(runs(make_step_plan(EFFECT_SAND | EFFECT_ELASTOPLASTIC, 3), "project_deformation_gradient"));
+
+    const auto single = make_step_plan(EFFECT_WATER | EFFECT_SAND | EFFECT_DRAG, 3);
+    CHECK(single.find("mixed_velocity_x") == nullptr);
+    CHECK_FALSE(runs(single, "compute_momentum_exchange"));
+
+    const auto full = make_step_plan(everything, 3);
+    CHECK(full.bytes_per_cell() <= 144);
+    for (const auto& effect : effect_table()) {
+        std::uint32_t without = everything & ~effect.bit;
+        for (const auto& other : effect_table()) {
+            if ((other.needs & ~without) != 0 && (without & other.bit) != 0) without &= ~other.bit;
+        }
+        const auto less = make_step_plan(without, 3);
+        const bool fewer_passes = less.water_passes.size() + less.substep_passes.size() < full.water_passes.size() + full.substep_passes.size();
+        // Drag and bed friction are branches of a stage that runs anyway; the others are passes of their own.
+        if (effect.bit == EFFECT_DRAG || effect.bit == EFFECT_BED_FRICTION) {
+            CHECK(less.bytes_per_cell() <= full.bytes_per_cell());
+        } else {
+            CHECK_MESSAGE(fewer_passes, effect.name << " off removes no pass");
+        }
+    }
+}
+
+TEST_CASE("effects follow from the scene, with a reason, and a level may force them") {
+    using test::flat_scene;
+    auto scene = flat_scene(8, 8, 1, 0.01);
+    CHECK(effects_required(scene.settings, scene.fields)->mask == 0);
+    scene.fill(scene.fields.water, [](double, double) { return 1; });
+    CHECK(effects_required(scene.settings, scene.fields)->mask == EFFECT_WATER);
+    scene.fill(scene.fields.sand, [](double, double) { return 1; });
+    const auto full = effects_required(scene.settings, scene.fields);
+    CHECK(full->mask == (EFFECT_WATER | EFFECT_SAND | EFFECT_MIXTURE | EFFECT_DIFFUSION | EFFECT_DRAG | EFFECT_ELASTOPLASTIC | EFFECT_COHESION));
+    CHECK(full->reasons[0] == "the level holds water");
+    scene.settings.effects = {{"mixture", Force::off}};
+    CHECK(effects_required(scene.settings, scene.fields)->mask == (EFFECT_WATER | EFFECT_SAND | EFFECT_DRAG | EFFECT_ELASTOPLASTIC | EFFECT_COHESION));
+    scene.settings.effects = {{"mixture", Force::off}, {"diffusion", Force::on}};
+    const auto bad = effects_required(scene.settings, scene.fields);
+    CHECK(bad.status().code == Code::bad_argument);
+    CHECK(bad.status().message.find("effects.diffusion: on, but it needs mixture") != std::string::npos);
+    scene.settings.effects = {{"foam", Force::on}};
+    CHECK(effects_required(scene.settings, scene.fields).status().message.find("effects.foam") != std::string::npos);
+}
