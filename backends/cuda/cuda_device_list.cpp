@@ -60,8 +60,8 @@ std::vector<ListedDevice> list_devices(std::string& why_none) {
             continue;
         }
         const auto kind = properties.integrated != 0 ? compute::DeviceKind::integrated_gpu : compute::DeviceKind::discrete_gpu;
-        list.push_back({ordinal, capability,
-                        {"cuda", static_cast<int>(list.size()), properties.name, kind, properties.totalGlobalMem}});
+        list.push_back(
+            {ordinal, capability, {"cuda", static_cast<int>(list.size()), properties.name, kind, properties.totalGlobalMem}});
     }
     return list;
 }

@@ -44,8 +44,6 @@ Code code_of(cudaError_t result) {
     case cudaErrorCudartUnloading:
     case cudaErrorMpsRpcFailure:
     case cudaErrorMpsClientTerminated:
-    case cudaErrorNoDevice:
-    case cudaErrorInvalidDevice:
     case cudaErrorUnknown:
         return Code::device_lost;
     default:
@@ -53,7 +51,9 @@ Code code_of(cudaError_t result) {
     }
 }
 
-std::string error_text(cudaError_t result) { return std::string(cudaGetErrorName(result)) + " (" + cudaGetErrorString(result) + ")"; }
+std::string error_text(cudaError_t result) {
+    return std::string(cudaGetErrorName(result)) + " (" + cudaGetErrorString(result) + ")";
+}
 
 std::string version_text(int version) { return std::to_string(version / 1000) + "." + std::to_string(version % 1000 / 10); }
 

@@ -31,16 +31,14 @@ void release(Context& c, Memory& memory) {
 // with the GPU), hence the wait.
 Status copy_in(Context& c, const Memory& memory, std::uint64_t offset, std::span<const std::byte> bytes) {
     if (bytes.empty()) return ok_status();
-    const cudaError_t r =
-        cudaMemcpyAsync(memory.data + offset, bytes.data(), bytes.size(), cudaMemcpyHostToDevice, c.stream);
+    const cudaError_t r = cudaMemcpyAsync(memory.data + offset, bytes.data(), bytes.size(), cudaMemcpyHostToDevice, c.stream);
     if (Status s = c.check(r, "write", memory.label); !s) return s;
     return c.check(cudaStreamSynchronize(c.stream), "write", memory.label);
 }
 
 Status copy_out(Context& c, const Memory& memory, std::uint64_t offset, std::span<std::byte> bytes) {
     if (bytes.empty()) return ok_status();
-    const cudaError_t r =
-        cudaMemcpyAsync(bytes.data(), memory.data + offset, bytes.size(), cudaMemcpyDeviceToHost, c.stream);
+    const cudaError_t r = cudaMemcpyAsync(bytes.data(), memory.data + offset, bytes.size(), cudaMemcpyDeviceToHost, c.stream);
     if (Status s = c.check(r, "read", memory.label); !s) return s;
     return c.check(cudaStreamSynchronize(c.stream), "read", memory.label);
 }

@@ -6,6 +6,7 @@
 //   stagec embed IN.spv OUT.inc                    a module as the words of a C++ array
 //   stagec table EFFECTS_H OUT.cpp SPIRV_DIR|- STAGES...   the stage table that the engine reads
 //   stagec cpurows OUT.cpp ISAS STAGES...          the CPU backend's index of the compiled stages
+//   stagec cudarows OUT.cpp STAGES...              the CUDA backend's index of the compiled kernels
 #include <cctype>
 #include <cstdint>
 #include <cstdio>
@@ -221,17 +222,33 @@ std::string cpp(const Stage& s, const std::string& isa, unsigned tested) {
     return o.str();
 }
 
+// Group sizes with kernels of their own: the compiler then knows the limits of the indices and may use more registers.
+// {0, 0} takes any group. The defaults of backends/cuda are among them.
+struct CudaGroup {
+    int x, y;
+};
+const CudaGroup cuda_groups[] = {{64, 4}, {256, 1}, {0, 0}};
+
+// A namespace per stage: kernels of two files that had one name would be one function to the linker.
 std::string cuda(const Stage& s, unsigned tested) {
+    const std::string space = "wadi_stage_cuda_" + s.name;
     std::ostringstream o;
-    o << "// Written by stagec from " << s.name << ".stage.\nnamespace wadi_stage_cuda {\n#include \"stage_cuda.h\"\n#include \"stages/" << s.name << ".stage\"\n"
+    o << "// Written by stagec from " << s.name << ".stage.\nnamespace " << space << " {\n#include \"stage_cuda.h\"\n#include \"stages/" << s.name << ".stage\"\n"
       << "struct Slots { void* at[" << (s.bindings.empty() ? 1 : s.bindings.size()) << "]; };\n"
-      << "template <unsigned E> __global__ void run(const WorldParams P, const StepInput* input, const Slots b) {\n    const " << s.struct_name << "<E> stage{P, *input";
+      << "template <unsigned E, int X, int Y> __global__ void __launch_bounds__(X > 0 ? X * Y : 1024)\n"
+      << "run(const WorldParams P, const StepInput* __restrict__ input, const Slots b) {\n    const " << s.struct_name << "<E> stage{P, *input";
     for (const auto& b : s.bindings) o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << b.type << "*>(b.at[" << b.slot << "])";
-    o << "};\n    const int i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x)" << origin(s.extent, "i")
-      << ";\n    const int j = static_cast<int>(blockIdx.y * blockDim.y + threadIdx.y)" << origin(s.extent, "j") << ";\n    if (" << guard(s.extent)
-      << ") stage.kernel(i, j);\n}\n} // namespace wadi_stage_cuda\n"
-      << "extern \"C\" const void* wadi_cuda_" << s.name << "(unsigned effects) {\n    switch (effects & " << tested << "u) {\n";
-    for (const unsigned mask : masks(tested)) o << "    case " << mask << "u: return reinterpret_cast<const void*>(&wadi_stage_cuda::run<" << mask << "u>);\n";
+    o << "};\n    const int i = static_cast<int>(blockIdx.x * (X > 0 ? X : blockDim.x) + threadIdx.x)" << origin(s.extent, "i")
+      << ";\n    const int j = static_cast<int>(blockIdx.y * (Y > 0 ? Y : blockDim.y) + threadIdx.y)" << origin(s.extent, "j") << ";\n    if ("
+      << guard(s.extent) << ") stage.kernel(i, j);\n}\n"
+      << "template <unsigned E> static const void* select(int x, int y) {\n";
+    for (const auto& g : cuda_groups) {
+        if (g.x > 0) o << "    if (x == " << g.x << " && y == " << g.y << ")\n    ";
+        o << "    return reinterpret_cast<const void*>(&run<E, " << g.x << ", " << g.y << ">);\n";
+    }
+    o << "}\n} // namespace " << space << "\nextern \"C\" const void* wadi_cuda_" << s.name
+      << "(unsigned effects, int x, int y) {\n    switch (effects) {\n";
+    for (const unsigned mask : masks(tested)) o << "    case " << mask << "u: return " << space << "::select<" << mask << "u>(x, y);\n";
     o << "    default: return nullptr;\n    }\n}\n";
     return o.str();
 }
@@ -329,6 +346,17 @@ std::string cpurows(const std::string& isas, const std::vector<std::string>& sta
     return o.str();
 }
 
+std::string cudarows(const std::vector<std::string>& stages) {
+    std::ostringstream o;
+    o << "// Written by stagec: which function selects a stage's kernel; in the order of the stage table.\n"
+      << "#include \"backends/cuda/cuda_stages.hpp\"\nextern \"C\" {\n";
+    for (const auto& s : stages) o << "const void* wadi_cuda_" << s << "(unsigned effects, int group_x, int group_y);\n";
+    o << "}\nnamespace wadi::cuda {\nstd::span<const KernelSelect> kernels() {\n    static constexpr KernelSelect list[] = {\n";
+    for (const auto& s : stages) o << "        wadi_cuda_" << s << ",\n";
+    o << "    };\n    return list;\n}\n} // namespace wadi::cuda\n";
+    return o.str();
+}
+
 } // namespace
 
 int main(int argc, char** argv) {
@@ -354,8 +382,12 @@ int main(int argc, char** argv) {
         std::vector<std::string> names;
         for (std::size_t i = 3; i < a.size(); ++i) names.push_back(stem(a[i]));
         write_text(a[1], cpurows(a[2], names));
+    } else if (mode == "cudarows" && a.size() >= 3) {
+        std::vector<std::string> names;
+        for (std::size_t i = 2; i < a.size(); ++i) names.push_back(stem(a[i]));
+        write_text(a[1], cudarows(names));
     } else {
-        fail("usage: glsl|cpp|cuda|nocontract|embed|table|cpurows ... (see the top of stagec.cpp)");
+        fail("usage: glsl|cpp|cuda|nocontract|embed|table|cpurows|cudarows ... (see the top of stagec.cpp)");
     }
     return 0;
 }

@@ -12,13 +12,20 @@ template <class Real> double Solver<Real>::quanta(double& total, double amount) 
     return Q > 0 ? (std::floor(total / Q) - std::floor(before / Q)) * Q : amount;
 }
 
-/// Adds to a cell, or removes what is there at most; refuses to pass the declared largest column.
+/// Adds to a cell, or removes what is there at most; refuses to pass the declared largest column. Sand that is added is
+/// unstrained: V - I of the cell is diluted by it.
 template <class Real> void Solver<Real>::add_depth(Field<Real>& field, std::size_t cell, Real amount, double& ledger) {
-    if (amount > Real(0) && P.quantum > Real(0) && terrain[cell] + sand[cell] + water[cell] + amount > P.largest_height) {
+    if (amount > Real(0) && terrain[cell] + sand[cell] + water[cell] + amount > P.largest_height) {
         ++refused;
         return;
     }
     const Real change = std::max(amount, -field[cell]);
+    if (&field == &sand && change > Real(0)) {
+        const Real keep = sand[cell] / (sand[cell] + change);
+        Vxx[cell] = Real(1) + keep * (Vxx[cell] - Real(1));
+        Vxy[cell] = keep * Vxy[cell];
+        Vyy[cell] = Real(1) + keep * (Vyy[cell] - Real(1));
+    }
     field[cell] += change;
     ledger += static_cast<double>(change);
 }
@@ -30,7 +37,7 @@ template <class Real> void Solver<Real>::apply_source(const Source& source, doub
         const double rx = px - source.center[0];
         const double ry = py - source.center[1];
         if (source.shape == SourceShape::disc) return rx * rx + ry * ry <= source.radius * source.radius;
-        return px >= source.box[0] && px <= source.box[2] && py >= source.box[1] && py <= source.box[3];
+        return px >= source.box[0] && px < source.box[2] && py >= source.box[1] && py < source.box[3];
     };
     const bool is_point = source.shape == SourceShape::point;
     const int point_i = static_cast<int>(std::floor(source.center[0] / dx));
@@ -40,6 +47,7 @@ template <class Real> void Solver<Real>::apply_source(const Source& source, doub
     const double rate = sample(source.rate, time());
     const Real amount = static_cast<Real>(quanta(total, rate * settings.dt));
     const bool is_water = source.material == SourceMaterial::water;
+    if (!has(is_water ? EFFECT_WATER : EFFECT_SAND)) return;
     for (int j = 0; j < x.ny; ++j)
         for (int i = 0; i < x.nx; ++i) {
             const bool in = is_point ? i == point_i && j == point_j : inside((i + 0.5) * dx, (j + 0.5) * dx);
@@ -56,7 +64,6 @@ template <class Real> void Solver<Real>::apply_source(const Source& source, doub
         if (!(is_point ? beside : ax.is_y ? inside(across, along) : inside(along, across))) return;
         const Real u = static_cast<Real>(source.velocity[ax.is_y ? 1 : 0]);
         pure_velocity.along(ax)[ax.face(a, b)] = u;
-        if (has(EFFECT_MIXTURE)) mixed_velocity.along(ax)[ax.face(a, b)] = u;
     });
 }
 
@@ -80,7 +87,7 @@ template <class Real> void Solver<Real>::level_face(const Axis& ax, int a, int b
     const bool far_end = a != 0;
     const std::size_t f = ax.face(a, b);
     const std::size_t inner = ax.cell(far_end ? a - 1 : 0, b);
-    const Real ghost = whole_quanta(std::max(level - terrain[inner], Real(0)), P.quantum);
+    const Real ghost = std::max(level - terrain[inner], Real(0));
     ghost_water.along(ax)[f] = ghost;
     const Real eta_in = terrain[inner] + water[inner];
     const Real eta_out = terrain[inner] + ghost;
@@ -92,30 +99,34 @@ template <class Real> void Solver<Real>::level_face(const Axis& ax, int a, int b
     u = clamped(u, P.clamp);
 }
 
-/// Velocities and outer depths of one side's faces. Positive `outward` points out of the domain.
+/// Whether face b of a side lies between its ends.
+template <class Real> bool Solver<Real>::in_span(const Side& side, int b) const {
+    const double centre = (b + 0.5) * settings.grid.dx;
+    return centre >= side.from && centre <= side.to;
+}
+
+/// Outflow: the outer face takes the next face's outward velocity; a domain one cell wide has no inner face.
+template <class Real> void Solver<Real>::leave(Faces<Real>& velocity, const Axis& ax, bool far_end, int b) const {
+    const Real outward = far_end ? Real(1) : Real(-1);
+    Field<Real>& u = velocity.along(ax);
+    const Real next = ax.along() > 1 ? u[ax.face(far_end ? ax.along() - 1 : 1, b)] : Real(0);
+    u[ax.face(far_end ? ax.along() : 0, b)] = outward * std::max(outward * next, Real(0));
+}
+
+/// The water's velocities and outer depths of one side's faces. Positive `outward` points out of the domain.
 template <class Real> void Solver<Real>::update_side(const Side& side, const Axis& ax, bool far_end) {
     const int a = far_end ? ax.along() : 0;
-    const int a_inner = far_end ? ax.along() - 1 : 1;
     const Real outward = far_end ? Real(1) : Real(-1);
-    const auto in_span = [&](int b) {
-        const double centre = (b + 0.5) * settings.grid.dx;
-        return centre >= side.from && centre <= side.to;
-    };
     int open_faces = 0;
-    for (int b = 0; b < ax.across(); ++b) open_faces += in_span(b) ? 1 : 0;
+    for (int b = 0; b < ax.across(); ++b) open_faces += in_span(side, b) ? 1 : 0;
     const double value = sample(side.value, time());
 
     for (int b = 0; b < ax.across(); ++b) {
         const std::size_t f = ax.face(a, b);
         const std::size_t inner = ax.cell(far_end ? a - 1 : 0, b);
-        const auto leave = [&](Faces<Real>& velocity) {
-            Field<Real>& u = velocity.along(ax);
-            u[f] = outward * std::max(outward * u[ax.face(a_inner, b)], Real(0));
-        };
-        const bool open = side.kind != SideKind::wall && in_span(b);
+        const bool open = side.kind != SideKind::wall && in_span(side, b);
         if (!open || side.kind != SideKind::level) pure_velocity.along(ax)[f] = Real(0);
         mixed_velocity.along(ax)[f] = Real(0);
-        sand_velocity.along(ax)[f] = Real(0);
         ghost_water.along(ax)[f] = Real(0);
         if (!open) continue;
         if (side.kind == SideKind::discharge) {
@@ -126,23 +137,34 @@ template <class Real> void Solver<Real>::update_side(const Side& side, const Axi
             if (depth > Real(0)) pure_velocity.along(ax)[f] = -outward * q / depth;
         } else if (side.kind == SideKind::level) {
             level_face(ax, a, b, static_cast<Real>(value));
-            if (has(EFFECT_MIXTURE)) leave(mixed_velocity);
+            if (has(EFFECT_MIXTURE)) leave(mixed_velocity, ax, far_end, b);
         } else {
-            leave(pure_velocity);
-            if (has(EFFECT_MIXTURE)) leave(mixed_velocity);
-            if (has(EFFECT_SAND)) leave(sand_velocity);
+            leave(pure_velocity, ax, far_end, b);
+            if (has(EFFECT_MIXTURE)) leave(mixed_velocity, ax, far_end, b);
         }
     }
 }
 
-template <class Real> void Solver<Real>::update_open_sides() {
-    if (!has(EFFECT_OPEN_SIDES)) return;
-    split_water();
+template <class Real> template <class F> void Solver<Real>::for_sides(F f) {
     for (const SideName name : {SideName::west, SideName::east, SideName::south, SideName::north}) {
         const bool is_y = name == SideName::south || name == SideName::north;
         const bool far_end = name == SideName::east || name == SideName::north;
-        update_side(settings.sides[static_cast<std::size_t>(name)], axis(is_y), far_end);
+        f(settings.sides[static_cast<std::size_t>(name)], axis(is_y), far_end);
     }
+}
+
+template <class Real> void Solver<Real>::update_open_sides() {
+    if (!has(EFFECT_OPEN_SIDES) || !has(EFFECT_WATER)) return;
+    split_water();
+    for_sides([&](const Side& side, const Axis& ax, bool far_end) { update_side(side, ax, far_end); });
+}
+
+template <class Real> void Solver<Real>::update_open_sand_sides() {
+    if (!has(EFFECT_OPEN_SIDES) || !has(EFFECT_SAND)) return;
+    for_sides([&](const Side& side, const Axis& ax, bool far_end) {
+        for (int b = 0; b < ax.across(); ++b)
+            if (side.kind == SideKind::outflow && in_span(side, b)) leave(sand_velocity, ax, far_end, b);
+    });
 }
 
 } // namespace wadi::reference

@@ -116,6 +116,54 @@ template <class Real> void Solver<Real>::load(const InitialFields& fields) {
     split_water();
 }
 
+template <class Real> template <class Other> void Solver<Real>::copy_from(const Solver<Other>& other) {
+    const auto copy = [](const Field<Other>& from, Field<Real>& to) {
+        for (std::size_t n = 0; n < to.size(); ++n) to[n] = static_cast<Real>(from[n]);
+    };
+    const auto field = [&](Field<Other> Solver<Other>::*from, Field<Real> Solver<Real>::*to) { copy(other.*from, this->*to); };
+    const auto faces = [&](Faces<Other> Solver<Other>::*from, Faces<Real> Solver<Real>::*to) {
+        copy((other.*from).x, (this->*to).x);
+        copy((other.*from).y, (this->*to).y);
+    };
+    using A = Solver<Other>;
+    using B = Solver<Real>;
+    field(&A::terrain, &B::terrain);
+    field(&A::sand, &B::sand);
+    field(&A::water, &B::water);
+    field(&A::Vxx, &B::Vxx);
+    field(&A::Vxy, &B::Vxy);
+    field(&A::Vyy, &B::Vyy);
+    field(&A::pure, &B::pure);
+    field(&A::mixed, &B::mixed);
+    field(&A::pure_predicted, &B::pure_predicted);
+    field(&A::mixed_predicted, &B::mixed_predicted);
+    field(&A::pure_scale, &B::pure_scale);
+    field(&A::mixed_scale, &B::mixed_scale);
+    field(&A::sand_scale, &B::sand_scale);
+    field(&A::saturation, &B::saturation);
+    field(&A::sand_before, &B::sand_before);
+    field(&A::mixed_before, &B::mixed_before);
+    field(&A::sxx, &B::sxx);
+    field(&A::sxy, &B::sxy);
+    field(&A::syy, &B::syy);
+    faces(&A::sand_velocity, &B::sand_velocity);
+    faces(&A::pure_velocity, &B::pure_velocity);
+    faces(&A::mixed_velocity, &B::mixed_velocity);
+    faces(&A::diffusion_flux, &B::diffusion_flux);
+    faces(&A::pure_flux, &B::pure_flux);
+    faces(&A::mixed_flux, &B::mixed_flux);
+    faces(&A::sand_flux, &B::sand_flux);
+    faces(&A::mixed_push, &B::mixed_push);
+    faces(&A::ghost_water, &B::ghost_water);
+    water_added = other.water_added;
+    sand_added = other.sand_added;
+    refused = other.refused;
+    step_index = other.step_index;
+    source_totals_ = other.source_totals_;
+    rain_total_ = other.rain_total_;
+    evaporation_total_ = other.evaporation_total_;
+}
+
 template <class Real> void Solver<Real>::step() {
     apply_sources();
     apply_rain();
@@ -130,6 +178,7 @@ template <class Real> void Solver<Real>::step() {
     }
     if (has(EFFECT_COHESION)) compute_saturation();
     for (int substep = 0; has(EFFECT_SAND) && substep < P.substeps; ++substep) {
+        update_open_sand_sides();
         limit_sand_outflow();
         compute_sand_flux();
         integrate_sand_height();
@@ -146,5 +195,7 @@ template <class Real> void Solver<Real>::step() {
 
 template class Solver<float>;
 template class Solver<double>;
+template void Solver<float>::copy_from(const Solver<float>&);
+template void Solver<double>::copy_from(const Solver<float>&);
 
 } // namespace wadi::reference

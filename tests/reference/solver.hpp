@@ -44,6 +44,8 @@ template <class Real> class Solver {
 
     /// Sets the state; heights are rounded to the nearest quantum, face velocities are means of the two cells.
     void load(const InitialFields& fields);
+    /// Takes over state, intermediate fields and running totals of a solver of the same scene in either precision.
+    template <class Other> void copy_from(const Solver<Other>& other);
     /// Changes the time step (convergence studies); the state stays.
     void set_time_step(double dt);
     /// One water step with its T sand substeps.
@@ -52,7 +54,7 @@ template <class Real> class Solver {
     // Stages, in the order in which step() calls them.
     void apply_sources();
     void apply_rain();
-    void update_open_sides();
+    void update_open_sides();            // 2.9, water
     void split_water();                  // mixed = min(W, hs), pure = W - mixed
     void diffuse_mixed_water();          // 2.1 -> diffusion_flux
     void limit_water_outflow();          // 2.2 -> pure_scale, mixed_scale
@@ -60,6 +62,7 @@ template <class Real> class Solver {
     void integrate_water_height();       // 2.2 -> water, pure_predicted, mixed_predicted, pure, mixed
     void integrate_water_velocity();     // 2.3, 2.4 -> pure_velocity, mixed_velocity, mixed_push
     void compute_saturation();           // 2.7 -> saturation
+    void update_open_sand_sides();       // 2.9, sand: in every substep
     void limit_sand_outflow();           // 2.2 -> sand_scale
     void compute_sand_flux();            // 2.2 -> sand_flux
     void integrate_sand_height();        // 2.5 -> sand, sand_before, pure, mixed, mixed_before
@@ -102,6 +105,7 @@ template <class Real> class Solver {
 
   private:
     using Side = wadi::Side;
+    template <class Other> friend class Solver;
     enum class Layer : std::uint8_t { pure, mixed, sand };
     std::size_t cells() const { return terrain.size(); }
     /// f(axis, a, b) for every face between two cells.
@@ -125,6 +129,10 @@ template <class Real> class Solver {
     double quanta(double& total, double amount) const;
     void add_depth(Field<Real>& field, std::size_t cell, Real amount, double& ledger);
     void apply_source(const Source& source, double& total);
+    /// f(side, axis, far end) for the four sides.
+    template <class F> void for_sides(F f);
+    bool in_span(const Side& side, int b) const;
+    void leave(Faces<Real>& velocity, const Axis& axis, bool far_end, int b) const;
     void update_side(const Side& side, const Axis& axis, bool far_end);
     void level_face(const Axis& axis, int a, int b, Real level);
 
@@ -138,5 +146,7 @@ double sample(const TimeSeries& series, double time);
 
 extern template class Solver<float>;
 extern template class Solver<double>;
+extern template void Solver<float>::copy_from(const Solver<float>&);
+extern template void Solver<double>::copy_from(const Solver<float>&);
 
 } // namespace wadi::reference

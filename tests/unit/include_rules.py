@@ -10,7 +10,7 @@ RULES = {
     "engine": ["engine/", "shaders/step_params.h", "shaders/effects.h"],
     "backends/cpu": ["backends/cpu/", "engine/compute/"],
     "backends/vulkan": ["backends/vulkan/", "engine/compute/", "volk.h", "self_test.inc", "division_"],
-    "backends/cuda": ["backends/cuda/", "engine/compute/", "shaders/"],
+    "backends/cuda": ["backends/cuda/", "engine/compute/", "shaders/", "stage_cuda.h"],
     "backends": ["backends/", "engine/compute/"],
     "plugin": ["plugin/", "engine/", "wadi/"],
     "samples/recorder": ["wadi/", "samples/recorder/", ""],

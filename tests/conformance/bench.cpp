@@ -1,0 +1,86 @@
+#include "tests/conformance/bench.hpp"
+#include "tests/conformance/compare.hpp"
+#include <cmath>
+#include <cstring>
+
+namespace wadi::conformance {
+
+namespace {
+
+std::string word_place(std::size_t word, const FieldLayout& layout) {
+    const auto pitch = static_cast<std::size_t>(layout.pitch());
+    const int i = static_cast<int>(word % pitch) - GHOST, j = static_cast<int>(word / pitch) - GHOST;
+    return "word " + std::to_string(word) + ", in a field cell (" + std::to_string(i) + ", " + std::to_string(j) + ")";
+}
+
+Status dispatch(compute::Device& device, int stage, std::uint32_t effects, const WorldParams& params, const StepInput& input,
+                compute::GroupSize group, std::vector<compute::Buffer> slots) {
+    const auto& info = compute::stage_table()[static_cast<std::size_t>(stage)];
+    auto pipeline = device.create_pipeline(stage, effects, group);
+    if (!pipeline) return pipeline.status();
+    compute::ProgramBuilder builder("bench " + std::string(info.name));
+    builder.dispatch({*pipeline, stage, effects, std::move(slots), compute::extent_range(info.extent, params), std::string(info.name)});
+    auto program = device.compile(builder, params);
+    if (!program) return program.status();
+    auto ticket = device.submit(*program, input);
+    Status status = ticket ? device.wait(*ticket) : ticket.status();
+    device.destroy_program(*program);
+    return status;
+}
+
+Status upload(compute::Device& device, const BenchBuffer& from, compute::Buffer to) {
+    std::vector<std::byte> bytes(from.before.size() * 4 + guard_bytes);
+    std::memcpy(bytes.data(), from.before.data(), from.before.size() * 4);
+    for (std::size_t n = 0; n < guard_bytes; ++n) bytes[from.before.size() * 4 + n] = guard_byte(n);
+    return device.write(to, 0, bytes);
+}
+
+} // namespace
+
+std::span<const float> BenchBuffer::floats() const { return {reinterpret_cast<const float*>(after.data()), before.size()}; }
+std::span<const std::uint32_t> BenchBuffer::words() const { return {reinterpret_cast<const std::uint32_t*>(after.data()), before.size()}; }
+
+Status run_bench(compute::Device& device, int stage, std::uint32_t effects, const WorldParams& params, const StepInput& input,
+                 compute::GroupSize group, std::vector<BenchBuffer>& buffers) {
+    const auto& info = compute::stage_table()[static_cast<std::size_t>(stage)];
+    std::vector<compute::Buffer> slots(buffers.size());
+    Status status;
+    for (std::size_t b = 0; b < buffers.size() && status; ++b) {
+        if (!buffers[b].exists) continue;
+        const std::string label = std::string(info.name) + "." + std::string(info.bindings[b].name);
+        auto made = device.create_buffer({buffers[b].before.size() * 4 + guard_bytes, label});
+        if (made) slots[b] = *made;
+        status = made ? upload(device, buffers[b], *made) : made.status();
+    }
+    if (status) status = dispatch(device, stage, effects, params, input, group, slots);
+    for (std::size_t b = 0; b < buffers.size() && status; ++b) {
+        if (!buffers[b].exists) continue;
+        buffers[b].after.resize(buffers[b].before.size() * 4 + guard_bytes);
+        status = device.read(slots[b], 0, buffers[b].after);
+    }
+    for (const compute::Buffer buffer : slots) device.destroy_buffer(buffer);
+    return status;
+}
+
+Verdict check_guards(const compute::StageInfo& stage, const std::vector<BenchBuffer>& buffers, const FieldLayout& layout) {
+    for (std::size_t b = 0; b < buffers.size(); ++b) {
+        const BenchBuffer& buffer = buffers[b];
+        if (!buffer.exists) continue;
+        const std::string name(stage.bindings[b].name);
+        for (std::size_t n = 0; n < guard_bytes; ++n) {
+            if (buffer.after[buffer.before.size() * 4 + n] != guard_byte(n))
+                return failed(name + ": guard byte " + std::to_string(n) + " behind the buffer was overwritten");
+        }
+        const auto after = buffer.words();
+        const auto values = buffer.floats();
+        for (std::size_t w = 0; w < after.size(); ++w) {
+            if (!buffer.may_change[w] && after[w] != buffer.before[w])
+                return failed(name + ": " + word_place(w, layout) + " was written, where the stage has nothing to write");
+            if (buffer.must_change[w] && std::isnan(values[w]))
+                return failed(name + ": " + word_place(w, layout) + " holds NaN: not written, or computed from what must not be read");
+        }
+    }
+    return {};
+}
+
+} // namespace wadi::conformance

@@ -1,0 +1,81 @@
+#include "tests/conformance/masks.hpp"
+#include "engine/effects.hpp"
+#include "engine/step_plan.hpp"
+#include <algorithm>
+#include <bit>
+#include <map>
+#include <set>
+
+namespace wadi::conformance {
+
+namespace {
+
+using ByTested = std::map<std::uint32_t, std::uint32_t>; // tested bits -> the smallest whole mask that has them
+
+bool smaller(std::uint32_t a, std::uint32_t b) { return std::popcount(a) != std::popcount(b) ? std::popcount(a) < std::popcount(b) : a < b; }
+
+std::vector<ByTested> find_masks() {
+    const auto table = compute::stage_table();
+    std::vector<ByTested> seen(table.size());
+    std::vector<bool> planned(table.size(), false);
+    const auto note = [&](std::size_t stage, std::uint32_t mask) {
+        const auto [at, added] = seen[stage].emplace(mask & table[stage].tested_effects, mask);
+        if (!added && smaller(mask, at->second)) at->second = mask;
+    };
+    std::uint32_t all = 0;
+    for (const auto& effect : effect_table()) all |= effect.bit;
+    std::vector<std::uint32_t> legal;
+    for (std::uint32_t mask = 0; mask <= all; ++mask)
+        if ((mask & ~all) == 0 && is_legal(mask)) legal.push_back(mask);
+    for (const std::uint32_t mask : legal) {
+        const StepPlan plan = make_step_plan(mask, 1);
+        for (const auto* passes : {&plan.water_passes, &plan.substep_passes}) {
+            for (const auto& pass : *passes) {
+                planned[static_cast<std::size_t>(pass.stage)] = true;
+                note(static_cast<std::size_t>(pass.stage), mask);
+            }
+        }
+    }
+    for (std::size_t stage = 0; stage < table.size(); ++stage) {
+        if (planned[stage]) continue;
+        for (const std::uint32_t mask : legal) note(stage, mask);
+    }
+    return seen;
+}
+
+} // namespace
+
+std::string effects_text(std::uint32_t mask) {
+    std::string text;
+    for (const auto& effect : effect_table()) {
+        if ((mask & effect.bit) == 0) continue;
+        if (!text.empty()) text += '+';
+        text += effect.name;
+    }
+    return text.empty() ? "none" : text;
+}
+
+Result<std::uint32_t> parse_effects(const std::string& text) {
+    std::uint32_t mask = 0;
+    for (std::size_t at = 0; text != "none" && at <= text.size();) {
+        const std::size_t end = std::min(text.find('+', at), text.size());
+        const std::string name = text.substr(at, end - at);
+        const auto effects = effect_table();
+        const auto found = std::find_if(effects.begin(), effects.end(), [&](const Effect& e) { return name == e.name; });
+        if (found == effects.end()) return error(Code::bad_argument, "effects=" + text + ": no effect \"" + name + "\"");
+        mask |= found->bit;
+        at = end + 1;
+    }
+    if (!is_legal(mask)) return error(Code::bad_argument, "effects=" + text + ": an effect lacks what it needs");
+    return mask;
+}
+
+std::vector<std::uint32_t> stage_masks(int stage) {
+    static const std::vector<ByTested> found = find_masks();
+    std::vector<std::uint32_t> masks;
+    for (const auto& [tested, mask] : found[static_cast<std::size_t>(stage)]) masks.push_back(mask);
+    std::sort(masks.begin(), masks.end(), smaller);
+    return masks;
+}
+
+} // namespace wadi::conformance

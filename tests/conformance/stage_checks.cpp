@@ -1,0 +1,179 @@
+#include "tests/conformance/stage_checks.hpp"
+#include "tests/conformance/stage_inputs.hpp"
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace wadi::conformance {
+
+namespace {
+
+double wide(float x) { return static_cast<double>(x); }
+
+// Quanta of a depth [m]: exact where heights are whole quanta, within one for each amount that was rounded otherwise.
+struct Count {
+    double least = 0, most = 0;
+    void add(double depth, const WorldParams& params) {
+        const double n = depth * wide(params.inv_ledger_quantum);
+        const bool exact = params.quantum > 0.0F;
+        least += exact ? n : std::floor(n * (1 - 1e-6));
+        most += exact ? n : std::ceil(n * (1 + 1e-6) + 0.5);
+    }
+};
+
+// The growth of one 64-bit count, kept as a low and a high word, against what it should be.
+Verdict check_count(const BenchBuffer& ledger, std::size_t low, std::size_t high, const Count& expected, const std::string& what) {
+    const auto at = [](std::uint32_t l, std::uint32_t h) { return std::uint64_t{l} + (std::uint64_t{h} << 32); };
+    const std::uint64_t grown = at(ledger.words()[low], ledger.words()[high]) - at(ledger.before[low], ledger.before[high]);
+    if (static_cast<double>(grown) >= expected.least && static_cast<double>(grown) <= expected.most) return {};
+    return failed(what + " grew by " + std::to_string(grown) + " quanta, expected " + std::to_string(expected.least) + " to " + std::to_string(expected.most));
+}
+
+Verdict check_side_ledger(const StageRun& run) {
+    const WorldParams& p = run.params;
+    const std::size_t rim = static_cast<std::size_t>(2 * (p.nx + p.ny));
+    const BenchBuffer& ledger = run.buffer("side_ledger");
+    std::size_t n = 0;
+    for (const int side : {SIDE_WEST, SIDE_EAST, SIDE_SOUTH, SIDE_NORTH}) {
+        const bool along_y = side == SIDE_WEST || side == SIDE_EAST, low = side == SIDE_WEST || side == SIDE_SOUTH;
+        for (int b = 0; b < (along_y ? p.ny : p.nx); ++b, ++n) {
+            const int a = low ? 0 : along_y ? p.nx : p.ny;
+            const double flux = wide(along_y ? run.before("flux_x", a, b) : run.before("flux_y", b, a)) * (low ? 1 : -1);
+            Count in, out;
+            in.add(std::max(flux, 0.0), p);
+            out.add(std::max(-flux, 0.0), p);
+            const std::string face = "face " + std::to_string(b) + " of side " + std::to_string(side);
+            if (auto v = check_count(ledger, n, rim + n, in, "inflow of " + face); v.outcome != Outcome::ok) return v;
+            if (auto v = check_count(ledger, 2 * rim + n, 3 * rim + n, out, "outflow of " + face); v.outcome != Outcome::ok) return v;
+        }
+    }
+    return {};
+}
+
+using Counts = std::array<Count, LEDGER_ENTRIES>;
+
+// Adds what sources and sinks do to a cell, in their order, to the counts of its strip.
+void count_sources(const StageRun& run, int i, int j, Counts& counts) {
+    const auto& settings = run.scene.settings;
+    const double dx = settings.grid.dx, x = (i + 0.5) * dx, y = (j + 0.5) * dx;
+    double water = wide(run.before("water_height", i, j)), sand = wide(run.before("sand_height", i, j));
+    for (std::size_t n = 0; n < settings.sources.size(); ++n) {
+        const Source& source = settings.sources[n];
+        const bool point = source.shape == SourceShape::point;
+        const bool here = point ? i == static_cast<int>(source.center[0] / dx) && j == static_cast<int>(source.center[1] / dx)
+                          : source.shape == SourceShape::disc
+                              ? std::hypot(x - source.center[0], y - source.center[1]) <= source.radius
+                              : x >= source.box[0] && y >= source.box[1] && x < source.box[2] && y < source.box[3];
+        if (!here) continue;
+        const bool is_water = source.material == SourceMaterial::water;
+        const double depth = wide(run.pilot.input.source[n].x);
+        if (depth > 0 && wide(run.before("terrain", i, j)) + water + sand + depth > wide(run.params.largest_height)) {
+            counts[LEDGER_REFUSED].add(depth, run.params);
+            continue;
+        }
+        if ((run.scene.effects & (is_water ? EFFECT_WATER : EFFECT_SAND)) == 0) continue;
+        double& held = is_water ? water : sand;
+        const double added = std::max(depth, -held);
+        held += added;
+        const int entry = is_water ? LEDGER_WATER_IN : LEDGER_SAND_IN; // the entry that follows it counts what went out
+        counts[static_cast<std::size_t>(added > 0 ? entry : entry + 1)].add(std::abs(added), run.params);
+    }
+}
+
+void count_rain(const StageRun& run, int i, int j, Counts& counts) {
+    const double rain = wide(run.pilot.input.rain), evaporation = wide(run.pilot.input.evaporation);
+    const double water = wide(run.before("water_height", i, j)), sand = wide(run.before("sand_height", i, j));
+    const bool fits = wide(run.before("terrain", i, j)) + water + sand + rain <= wide(run.params.largest_height);
+    counts[fits ? LEDGER_WATER_IN : LEDGER_REFUSED].add(rain, run.params);
+    counts[LEDGER_WATER_OUT].add(std::min(water + (fits ? rain : 0.0), evaporation), run.params);
+}
+
+Verdict check_source_ledger(const StageRun& run) {
+    const WorldParams& p = run.params;
+    const bool rain = run.stage.name == "apply_rain";
+    const BenchBuffer& ledger = run.buffer("source_ledger");
+    const auto row = static_cast<std::size_t>(p.strips * p.pitch);
+    for (int strip = 0; strip < p.strips; ++strip) {
+        for (int i = 0; i < p.pitch; ++i) {
+            Counts counts;
+            for (int j = strip * STRIP; i < p.nx && j < std::min((strip + 1) * STRIP, p.ny); ++j)
+                rain ? count_rain(run, i, j, counts) : count_sources(run, i, j, counts);
+            const auto at = static_cast<std::size_t>(strip * p.pitch + i);
+            for (std::size_t entry = 0; entry < LEDGER_ENTRIES; ++entry) {
+                const std::string what = "ledger entry " + std::to_string(entry) + " of column " + std::to_string(i) + ", strip " + std::to_string(strip);
+                auto v = check_count(ledger, 2 * entry * row + at, (2 * entry + 1) * row + at, counts[entry], what);
+                if (v.outcome != Outcome::ok) return v;
+            }
+        }
+    }
+    return {};
+}
+
+// A published field in either precision, from a cell's inputs.
+template <class Real> Real published(const StageRun& run, const std::string& name, int i, int j) {
+    const auto in = [&](const char* binding, int a, int b) { return static_cast<Real>(run.before(binding, a, b)); };
+    if (name == "centre_velocity_x") return Real(0.5) * (in("velocity_x", i, j) + in("velocity_x", i + 1, j));
+    if (name == "centre_velocity_y") return Real(0.5) * (in("velocity_y", i, j) + in("velocity_y", i, j + 1));
+    const Real water = in("water_height", i, j), sand = in("sand_height", i, j);
+    if (name == "water_depth") return std::max(water - sand, Real(0));
+    if (name == "free_surface") return in("terrain", i, j) + std::max(water, sand);
+    return sand > static_cast<Real>(run.params.dry_threshold) ? water / (water + sand) : Real(0);
+}
+
+Verdict check_published(const StageRun& run) {
+    const FieldLayout layout{run.params.nx, run.params.ny};
+    Verdict verdict;
+    for (const auto& binding : run.stage.bindings) {
+        if (binding.access != compute::Access::out) continue;
+        const std::string name(binding.name);
+        std::vector<float> narrow(layout.size(), 0.0F);
+        std::vector<double> exact(layout.size(), 0.0);
+        for (int j = 0; j < layout.ny; ++j) {
+            for (int i = 0; i < layout.nx; ++i) {
+                narrow[layout.index(i, j)] = published<float>(run, name, i, j);
+                exact[layout.index(i, j)] = published<double>(run, name, i, j);
+            }
+        }
+        FieldCheck check{name, {0, 0, layout.nx, layout.ny}, run.buffer(name.c_str()).floats(), narrow, exact, {}};
+        verdict = worse(verdict, compare_fields({check}, layout, 0));
+    }
+    return verdict;
+}
+
+// A cell without sand has no saturation.
+Verdict check_saturation(const StageRun& run) {
+    const FieldLayout layout{run.params.nx, run.params.ny};
+    for (int j = 0; j < layout.ny; ++j) {
+        for (int i = 0; i < layout.nx; ++i) {
+            const float phi = run.buffer("saturation").floats()[layout.index(i, j)];
+            if (run.before("sand_height", i, j) <= run.params.dry_threshold && std::abs(phi) > 0.0F)
+                return failed("saturation(" + std::to_string(i) + ", " + std::to_string(j) + ") is " + std::to_string(phi) + " without sand");
+        }
+    }
+    return {};
+}
+
+} // namespace
+
+const BenchBuffer& StageRun::buffer(const char* binding) const {
+    static const BenchBuffer none;
+    for (std::size_t b = 0; b < buffers.size(); ++b)
+        if (stage.bindings[b].name == binding) return buffers[b];
+    return none;
+}
+
+float StageRun::before(const char* binding, int i, int j) const {
+    const BenchBuffer& from = buffer(binding);
+    return from.exists ? std::bit_cast<float>(from.before[FieldLayout{params.nx, params.ny}.index(i, j)]) : 0.0F;
+}
+
+Verdict check_definition(const StageRun& run) {
+    if (run.stage.name == "account_sides") return check_side_ledger(run);
+    if (run.stage.name == "apply_rain" || run.stage.name == "apply_sources") return check_source_ledger(run);
+    if (run.stage.name.starts_with("publish_")) return check_published(run);
+    if (run.stage.name == "compute_saturation") return check_saturation(run);
+    if (run.stage.name == "mark_limits") return check_marks(run);
+    return {};
+}
+
+} // namespace wadi::conformance

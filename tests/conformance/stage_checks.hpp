@@ -1,0 +1,27 @@
+// Stages and outputs that the reference solver does not have: ledgers, published fields and limit marks, checked by their
+// definitions in double precision.
+#pragma once
+#include "tests/conformance/bench.hpp"
+#include "tests/conformance/compare.hpp"
+#include "tests/conformance/stage_reference.hpp"
+
+namespace wadi::conformance {
+
+/// What a check sees of a case: the buffers before and after, and both references in front of the stage.
+struct StageRun {
+    const compute::StageInfo& stage;
+    const Scene& scene;
+    const Pilot& pilot; // as it was before the stage
+    const WorldParams& params;
+    const std::vector<BenchBuffer>& buffers;
+
+    const BenchBuffer& buffer(const char* binding) const;
+    float before(const char* binding, int i, int j) const; // 0 where the mask lacks the binding
+};
+
+/// The direct checks of a stage; ok where it has none.
+Verdict check_definition(const StageRun& run);
+
+Verdict check_marks(const StageRun& run); // marks_check.cpp
+
+} // namespace wadi::conformance

@@ -1,0 +1,132 @@
+#include "tests/conformance/stage_layer.hpp"
+#include "engine/world_params.hpp"
+#include "tests/conformance/compare.hpp"
+#include "tests/conformance/fields.hpp"
+#include "tests/conformance/masks.hpp"
+#include "tests/conformance/stage_checks.hpp"
+#include "tests/conformance/stage_inputs.hpp"
+#include <algorithm>
+#include <map>
+
+namespace wadi::conformance {
+
+namespace {
+
+using compute::Access;
+
+// "stretch_xx" -> "stretch": the components of one field share a scale.
+std::string vector_of(const std::string& base) {
+    for (const char* suffix : {"_x", "_y", "_xx", "_xy", "_yy"})
+        if (base.ends_with(suffix)) return base.substr(0, base.size() - std::string(suffix).size());
+    return base;
+}
+
+bool truncates(const std::string& stage) { return stage == "compute_water_flux" || stage == "compute_sand_flux"; }
+
+// Runs the stage in both precisions and compares every output the reference has.
+Verdict compare_with_reference(const StageRun& run) {
+    const std::string stage(run.stage.name);
+    const FieldLayout layout{run.params.nx, run.params.ny};
+    auto& narrow = *run.pilot.narrow;
+    auto& wide = *run.pilot.wide;
+    run_reference_stage(narrow, stage);
+    run_reference_stage(wide, stage);
+    struct Output {
+        FieldName name;
+        std::vector<float> narrow;
+        std::vector<double> wide;
+        std::vector<bool> skip;
+        std::size_t binding;
+    };
+    std::map<std::string, std::vector<Output>> vectors;
+    for (std::size_t b = 0; b < run.buffers.size(); ++b) {
+        const auto& binding = run.stage.bindings[b];
+        if (!run.buffers[b].exists || binding.access == Access::in || binding.type != compute::Scalar::f32) continue;
+        Output out{field_of(stage, std::string(binding.name), run.scene.effects), {}, {}, {}, b};
+        out.narrow = reference_field(narrow, stage, out.name, true);
+        out.wide = reference_field(wide, stage, out.name, true);
+        if (stage == "open_sides") {
+            fill_ghosts(out.narrow, out.name.base, narrow);
+            fill_ghosts(out.wide, out.name.base, wide);
+        }
+        if (stage == "compute_saturation") { // without sand the stage says 0 and the reference its neighbours' value
+            out.skip.assign(layout.size(), false);
+            for (int j = 0; j < layout.ny; ++j)
+                for (int i = 0; i < layout.nx; ++i)
+                    out.skip[layout.index(i, j)] = run.before("sand_height", i, j) <= run.params.dry_threshold;
+        }
+        vectors[vector_of(out.name.base)].push_back(std::move(out));
+    }
+    Verdict verdict;
+    for (const auto& [name, outputs] : vectors) {
+        std::vector<FieldCheck> components;
+        for (const Output& out : outputs)
+            components.push_back({std::string(run.stage.bindings[out.binding].name), written_range(stage, out.name.base, run.params),
+                                  run.buffers[out.binding].floats(), out.narrow, out.wide, out.skip});
+        const double quanta = truncates(stage) ? static_cast<double>(run.params.quantum) : 0.0;
+        verdict = worse(verdict, compare_fields(components, layout, quanta));
+    }
+    return verdict;
+}
+
+std::vector<CaseSpec> list() {
+    std::vector<CaseSpec> cases;
+    const auto grids = grid_names(), scenes = scene_names(), methods = method_names_of_cases();
+    const auto stages = compute::stage_table();
+    for (std::size_t stage = 0; stage < stages.size(); ++stage) {
+        auto masks = stage_masks(static_cast<int>(stage));
+        if (stages[stage].tested_effects == 0 && masks.front() == 0) masks.front() = EFFECT_WATER; // a stage that publishes any layer
+        // Every mask meets every scene, every stage every grid and method; not the full product.
+        const std::size_t rounds = masks.size() < 3 ? 2 * scenes.size() : scenes.size();
+        std::size_t turn = 0;
+        for (const std::uint32_t mask : masks) {
+            const auto add = [&](const char* grid, const std::string& scene, const std::string& method) {
+                cases.push_back({std::string(stages[stage].name), {{"grid", grid}, {"effects", effects_text(mask)}, {"scene", scene}, {"method", method}}});
+            };
+            add("33x17", "random", "default");
+            for (std::size_t n = 0; n < rounds; ++n, ++turn) {
+                const std::string scene = scenes[(turn + 1) % scenes.size()], method = methods[(turn + 2 * stage) % methods.size()];
+                // A lake without a quantum is nothing but rounding: no reference says what it should be.
+                const bool rounding_only = scene == "lake" && (method == "plain" || method == "bare");
+                add(grids[(turn + stage) % grids.size()], scene, rounding_only ? "tapered" : method);
+            }
+        }
+        if (stages[stage].name == "apply_sources") {
+            cases.push_back({"apply_sources", {{"grid", "33x17"}, {"effects", "water+sources"}, {"scene", "point_jet"}, {"method", "default"}}});
+        }
+    }
+    return cases;
+}
+
+Verdict run(const CaseSpec& spec, Session& session) {
+    auto device = session.device();
+    return device ? run_stage_case(spec, **device, {}) : verdict_of(device.status());
+}
+
+} // namespace
+
+Verdict run_stage_case(const CaseSpec& spec, compute::Device& device, const Tamper& tamper) {
+    const int stage = compute::find_stage(spec.name);
+    auto mask = parse_effects(spec.get("effects", "none"));
+    if (!mask) return verdict_of(mask.status());
+    auto scene = make_scene(spec.get("grid", "33x17"), spec.get("scene", "random"), spec.get("method", "default"), *mask);
+    if (!scene) return verdict_of(scene.status());
+    const auto& info = compute::stage_table()[static_cast<std::size_t>(stage)];
+    const WorldParams params = derive_params(scene->settings);
+    const Pilot pilot = make_pilot(*scene, spec.name);
+    auto buffers = stage_buffers(info, *scene, pilot, params);
+    if (auto status = run_bench(device, stage, *mask, params, pilot.input, {}, buffers); !status) return verdict_of(status);
+    if (tamper) tamper(info, buffers);
+    Verdict guards = check_guards(info, buffers, {params.nx, params.ny});
+    if (guards.outcome != Outcome::ok) return guards;
+    const StageRun run{info, *scene, pilot, params, buffers};
+    const Verdict definition = check_definition(run);
+    return has_counterpart(spec.name) ? worse(definition, compare_with_reference(run)) : definition;
+}
+
+const Layer& stage_layer() {
+    static const Layer layer = {"stage", "each stage under each mask it can tell apart, against the reference solver", list, run};
+    return layer;
+}
+
+} // namespace wadi::conformance

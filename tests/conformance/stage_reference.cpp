@@ -1,0 +1,115 @@
+#include "tests/conformance/stage_reference.hpp"
+#include "shaders/effects.h"
+#include <algorithm>
+#include <cmath>
+
+namespace wadi::conformance {
+
+namespace {
+
+using reference::Solver;
+
+template <class Real> struct Step {
+    const char* stage;
+    void (Solver<Real>::*run)();
+    std::uint32_t needs;
+};
+
+// In the order of the step plan. The splits of the water are the reference's own: the stages derive them where they read.
+template <class Real> constexpr Step<Real> steps[] = {
+    {"apply_sources", &Solver<Real>::apply_sources, EFFECT_SOURCES},
+    {"apply_rain", &Solver<Real>::apply_rain, EFFECT_RAIN},
+    {"open_sides", &Solver<Real>::update_open_sides, EFFECT_OPEN_SIDES | EFFECT_WATER},
+    {"split_water", &Solver<Real>::split_water, 0},
+    {"diffuse_mixed_water", &Solver<Real>::diffuse_mixed_water, EFFECT_DIFFUSION},
+    {"limit_water_outflow", &Solver<Real>::limit_water_outflow, EFFECT_WATER},
+    {"compute_water_flux", &Solver<Real>::compute_water_flux, EFFECT_WATER},
+    {"account_sides", nullptr, EFFECT_OPEN_SIDES},
+    {"integrate_water_height", &Solver<Real>::integrate_water_height, EFFECT_WATER},
+    {"integrate_water_velocity", &Solver<Real>::integrate_water_velocity, EFFECT_WATER},
+    {"compute_saturation", &Solver<Real>::compute_saturation, EFFECT_COHESION},
+    {"open_sand_sides", &Solver<Real>::update_open_sand_sides, EFFECT_OPEN_SIDES | EFFECT_SAND},
+    {"limit_sand_outflow", &Solver<Real>::limit_sand_outflow, EFFECT_SAND},
+    {"compute_sand_flux", &Solver<Real>::compute_sand_flux, EFFECT_SAND},
+    {"integrate_sand_height", &Solver<Real>::integrate_sand_height, EFFECT_SAND},
+    {"evolve_deformation_gradient", &Solver<Real>::evolve_deformation_gradient, EFFECT_ELASTOPLASTIC},
+    {"compute_momentum_exchange", &Solver<Real>::compute_momentum_exchange, EFFECT_MIXTURE},
+    {"project_deformation_gradient", &Solver<Real>::project_deformation_gradient, EFFECT_ELASTOPLASTIC},
+    {"integrate_sand_velocity", &Solver<Real>::integrate_sand_velocity, EFFECT_SAND},
+    {"apply_friction", &Solver<Real>::apply_friction, EFFECT_SAND},
+};
+
+// V on a grid of 2^-22, so that V - I is exact in float; a strain that reaches the yield surface and beyond where wanted.
+void settle_stretch(Solver<float>& s, bool rough) {
+    if (!s.has(EFFECT_ELASTOPLASTIC)) return;
+    const auto snap = [](float v) { return std::nearbyint(v * 4194304.0F) / 4194304.0F; };
+    const auto axis = s.axis(false);
+    for (int j = 0; j < axis.ny; ++j) {
+        for (int i = 0; i < axis.nx; ++i) {
+            const std::size_t c = axis.cell(i, j);
+            const float size = s.sand[c] > 0.0F ? 0.02F : 0.0F;
+            if (rough) {
+                s.Vxx[c] += size * band_limited(21, i, j);
+                s.Vxy[c] += size * band_limited(22, i, j);
+                s.Vyy[c] += size * band_limited(23, i, j);
+            }
+            s.Vxx[c] = snap(s.Vxx[c]);
+            s.Vxy[c] = snap(s.Vxy[c]);
+            s.Vyy[c] = snap(s.Vyy[c]);
+        }
+    }
+}
+
+// The device gets the diffusive part as a depth, both solvers keep it as a rate: all three start from the same float.
+void settle_diffusion(Pilot& pilot) {
+    const auto settle = [&](const reference::Field<float>& narrow, reference::Field<double>& wide) {
+        for (std::size_t n = 0; n < narrow.size(); ++n) {
+            const float depth = pilot.narrow->P.k * narrow[n];
+            wide[n] = static_cast<double>(depth) / pilot.wide->P.k;
+        }
+    };
+    settle(pilot.narrow->diffusion_flux.x, pilot.wide->diffusion_flux.x);
+    settle(pilot.narrow->diffusion_flux.y, pilot.wide->diffusion_flux.y);
+}
+
+} // namespace
+
+bool has_counterpart(const std::string& stage) {
+    return std::any_of(std::begin(steps<float>), std::end(steps<float>),
+                       [&](const Step<float>& step) { return stage == step.stage && step.run != nullptr; });
+}
+
+template <class Real> void run_reference_stage(Solver<Real>& solver, const std::string& stage) {
+    for (const auto& step : steps<Real>) {
+        if (stage == step.stage && step.run != nullptr) (solver.*step.run)();
+    }
+}
+
+template void run_reference_stage(Solver<float>&, const std::string&);
+template void run_reference_stage(Solver<double>&, const std::string&);
+
+Pilot make_pilot(const Scene& scene, const std::string& stage) {
+    Pilot pilot;
+    pilot.narrow = std::make_unique<Solver<float>>(scene.settings, scene.effects);
+    pilot.wide = std::make_unique<Solver<double>>(scene.settings, scene.effects);
+    Solver<float>& s = *pilot.narrow;
+    StepInputs inputs(scene.settings);
+    s.load(scene.fields);
+    for (int n = 0; n < scene.pilot_steps; ++n) {
+        s.step();
+        inputs.next(n);
+    }
+    pilot.input = inputs.next(scene.pilot_steps);
+    if (scene.rough_stretch) settle_stretch(s, true);
+    const bool in_step = std::any_of(std::begin(steps<float>), std::end(steps<float>), [&](const auto& step) { return stage == step.stage; });
+    for (const auto& step : steps<float>) {
+        if (!in_step || stage == step.stage) break;
+        if (step.run != nullptr && (scene.effects & step.needs) == step.needs) (s.*step.run)();
+    }
+    settle_stretch(s, false);
+    pilot.wide->copy_from(s);
+    settle_diffusion(pilot);
+    return pilot;
+}
+
+} // namespace wadi::conformance

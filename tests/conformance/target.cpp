@@ -1,0 +1,104 @@
+#include "tests/conformance/target.hpp"
+#include <set>
+
+namespace wadi::conformance {
+
+namespace {
+
+class BorrowedDevice final : public compute::Device {
+  public:
+    explicit BorrowedDevice(compute::Device& device) : device_(device) {}
+    ~BorrowedDevice() override {
+        for (const auto id : programs_) device_.destroy_program({id});
+        for (const auto id : buffers_) device_.destroy_buffer({id});
+    }
+
+    const compute::Capabilities& capabilities() const override { return device_.capabilities(); }
+    compute::DeviceCounters counters() const override { return device_.counters(); }
+    Result<compute::Buffer> create_buffer(const compute::BufferDesc& desc) override {
+        auto made = device_.create_buffer(desc);
+        if (made) buffers_.insert(made->id);
+        return made;
+    }
+    void destroy_buffer(compute::Buffer buffer) override {
+        buffers_.erase(buffer.id);
+        device_.destroy_buffer(buffer);
+    }
+    Status write(compute::Buffer buffer, std::uint64_t offset, std::span<const std::byte> bytes) override {
+        return device_.write(buffer, offset, bytes);
+    }
+    Status read(compute::Buffer buffer, std::uint64_t offset, std::span<std::byte> bytes) override {
+        return device_.read(buffer, offset, bytes);
+    }
+    Result<compute::Pipeline> create_pipeline(int stage, std::uint32_t effects, compute::GroupSize group) override {
+        return device_.create_pipeline(stage, effects, group);
+    }
+    Result<compute::Program> compile(const compute::ProgramBuilder& builder, const WorldParams& params) override {
+        auto made = device_.compile(builder, params);
+        if (made) programs_.insert(made->id);
+        return made;
+    }
+    void destroy_program(compute::Program program) override {
+        programs_.erase(program.id);
+        device_.destroy_program(program);
+    }
+    Result<compute::Ticket> submit(compute::Program program, const StepInput& input) override { return device_.submit(program, input); }
+    bool finished(compute::Ticket ticket) override { return device_.finished(ticket); }
+    Status wait(compute::Ticket ticket) override { return device_.wait(ticket); }
+    Result<std::vector<compute::Timing>> timings(compute::Ticket ticket) override { return device_.timings(ticket); }
+    void inject_device_lost() override { device_.inject_device_lost(); }
+
+  private:
+    compute::Device& device_;
+    std::set<std::uint32_t> buffers_, programs_;
+};
+
+} // namespace
+
+std::vector<Target> all_targets() {
+    std::vector<Target> targets;
+    for (const auto& backend : compute::backends()) {
+        std::string why;
+        for (const auto& info : backend.enumerate(why)) targets.push_back({&backend, info});
+    }
+    return targets;
+}
+
+Session::Session(Target target, const compute::DeviceOptions& options)
+    : target_(std::move(target)), options_(options), messages_(std::make_shared<std::vector<std::string>>()) {
+    compute::apply_environment(options_);
+    options_.log = [messages = messages_](int level, const std::string& message) {
+        if (level <= 1) messages->push_back(message);
+    };
+}
+
+Result<std::unique_ptr<compute::Device>> Session::fresh(compute::DeviceOptions options) {
+    options.log = options_.log;
+    return target_.backend->open(target_.info.index, options);
+}
+
+Result<compute::Device*> Session::device() {
+    if (!device_) {
+        auto opened = fresh(options_);
+        if (!opened) return opened.status();
+        device_ = std::move(*opened);
+    }
+    return device_.get();
+}
+
+Result<std::unique_ptr<compute::Device>> Session::borrow() {
+    auto shared = device();
+    if (!shared) return shared.status();
+    return std::unique_ptr<compute::Device>(new BorrowedDevice(**shared));
+}
+
+std::vector<std::string> Session::take_messages() { return std::exchange(*messages_, {}); }
+
+Result<std::unique_ptr<compute::Device>> open_plain_cpu() {
+    compute::DeviceOptions options;
+    options.threads = 1;
+    options.instruction_set = "base";
+    return compute::open_device("cpu", 0, options);
+}
+
+} // namespace wadi::conformance

@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# All tests: installs what is missing, builds, runs. Usage: tests/run.sh [PRESET ...], default: release asan.
+# release: every backend that this machine has. asan: the CPU backend under the address and undefined-behaviour sanitizers with
+# every stage index checked. tsan, dev, cpu-only, vulkan-lavapipe and cuda work as well.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+presets=("$@")
+if [ ${#presets[@]} -eq 0 ]; then
+    presets=(release asan)
+fi
+say() { printf '\n== %s (%d s)\n' "$1" "$SECONDS"; }
+
+say "packages"
+./samples/install_packages.sh
+jobs=$(nproc)
+failed=()
+for preset in "${presets[@]}"; do
+    say "configure $preset"
+    cmake --preset "$preset"
+    say "build $preset"
+    cmake --build --preset "$preset" -j "$jobs"
+    say "test $preset"
+    ctest --preset "$preset" -j "$jobs" || failed+=("$preset")
+done
+say "done"
+if [ ${#failed[@]} -ne 0 ]; then
+    echo "FAILED: ${failed[*]}"
+    exit 1
+fi
+echo "all tests passed: ${presets[*]}"
