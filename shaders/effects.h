@@ -11,7 +11,7 @@
 #define EFFECT_DRAG 16u         // momentum exchange between mixed water and sand
 #define EFFECT_ELASTOPLASTIC 32u // deformation gradient, stress and yield of the sand
 #define EFFECT_COHESION 64u     // cohesion that depends on saturation
-#define EFFECT_SOURCES 128u     // point, disc and strip sources and sinks
+#define EFFECT_SOURCES 128u     // point, disc and box sources and sinks
 #define EFFECT_RAIN 256u        // rain and evaporation
 #define EFFECT_OPEN_SIDES 512u  // sides that are not walls
 #define EFFECT_BED_FRICTION 1024u // Manning-like friction of pure water on its bed

@@ -1,6 +1,6 @@
 // The two parameter blocks of every stage, shared by the host and by all three stage compilers.
 // Only 4-byte scalars, and vec4 arrays at 16-byte offsets, so that the C++ struct and the std140 block
-// have the same layout (checked by static_assert in engine/compute/device.hpp).
+// have the same layout (checked by static_assert in engine/compute/params.hpp).
 #ifndef WADI_STEP_PARAMS_H
 #define WADI_STEP_PARAMS_H
 
@@ -62,7 +62,7 @@ struct WorldParams {
     float rest_surface;         // eta_rest [m]; negative = rule off
     float rest_velocity;        // v_rest [m/s]; negative = rule off
     float diffusion_number;     // min(c_d, 0.2 dx^2/dt) dt/dx^2
-    float bed_friction_dt;      // dt c, Manning-like [m/s * s/m]
+    float bed_friction_dt;      // dt c of the Manning-like friction, c dimensionless [s]
     float limiter;              // 1 = outflow limiter on, 0 = off
     float inv_substeps;         // 1/T
 
@@ -70,7 +70,7 @@ struct WorldParams {
     float ks;                   // dts/dx [s/m]
     float dts;                  // dt/T [s]
     float sand_velocity_clamp;  // alpha dx/dts [m/s]
-    float sand_gravity_cap;     // 0.25/ks^2 [m2/s2]; 1e9 = no cap
+    float sand_gravity_cap;     // 0.25/ks^2 [m2/s2]; 1e30 = no cap
     float density_ratio;        // rho_w/rho_s
     float water_density;        // [kg/m3]
     float sand_density;         // [kg/m3]

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
+#include <exception>
 #include <new>
 
 namespace wadi::cpu {
@@ -296,7 +297,11 @@ const compute::Backend& cpu_backend() {
             const auto* set = choose_instruction_set(options.instruction_set);
             if (set == nullptr) return error(Code::not_supported, "this processor or build has no instruction set '" + options.instruction_set + "'");
             const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-            return std::unique_ptr<compute::Device>(new CpuDevice(*set, options.threads == 0 ? std::min(cores, most_threads) : options.threads, options));
+            try {
+                return std::unique_ptr<compute::Device>(new CpuDevice(*set, options.threads == 0 ? std::min(cores, most_threads) : options.threads, options));
+            } catch (const std::exception& e) { // the system refuses threads or memory
+                return error(Code::out_of_memory, std::string("the CPU device cannot start: ") + e.what());
+            }
         }};
     return backend;
 }

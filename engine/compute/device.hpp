@@ -33,7 +33,7 @@ struct DeviceOptions {
     std::string instruction_set;      // CPU backend: "" = best, "avx2", "base"
     bool validate = false;            // Vulkan: validation and synchronization validation layers
     bool full_barriers = false;       // a barrier before every operation
-    bool no_replay = false;           // record anew for each submit
+    bool no_replay = false;           // record anew for each submit (GPU backends; the CPU has nothing recorded)
     /// Messages from drivers and validation layers; level 0 = error, 1 = warning, 2 = information.
     std::function<void(int level, const std::string& message)> log;
 };
@@ -70,7 +70,8 @@ struct Ticket {
     std::uint64_t value = 0;
 };
 
-/// A device runs programs. Calls come from one thread at a time. No exception leaves any call.
+/// A device runs programs. Calls come from one thread at a time. Nothing is thrown but std::bad_alloc when the host itself has
+/// no memory left, which the plugin turns into an error.
 /// After device_lost every call that needs the device returns device_lost.
 class Device {
   public:

@@ -33,9 +33,9 @@ Result<Level> load_level(const std::string& path, const LevelOverrides& override
 /// The same from text; map paths are relative to `folder`.
 Result<Level> parse_level(const std::string& text, const std::string& folder, const LevelOverrides& overrides);
 
-/// A level from a terrain map alone (PNG, r16, NPY): the map's size unless overridden, cell size 1 m, heights scaled so that
-/// the range is `height_range` [m] for integer maps and as stored for NPY, with a water source at the highest point's
-/// neighbourhood and outflow on the sides.
+/// A level from a terrain map alone (PNG, r16, NPY): the map's size unless overridden, cell size 1 m. Integer maps are scaled
+/// so that their relief is 1/8 of the longer side, NPY heights are metres as stored. A water source stands at the highest
+/// ground and every side is an outflow.
 Result<Level> level_from_terrain(const std::string& map_path, const LevelOverrides& overrides);
 
 /// Advice with numbers: waves slower than they should be for this dx and dt, cohesion too weak to hold a wall, columns near

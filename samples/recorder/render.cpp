@@ -2,45 +2,37 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <glm/common.hpp>
 
 namespace recorder {
 namespace {
 
 // Towards the sun: north-west, 40 degrees above the horizon.
-constexpr float SUN_X = -0.5417f, SUN_Y = 0.5417f, SUN_Z = 0.6428f;
+const glm::vec3 SUN(-0.5417f, 0.5417f, 0.6428f);
 constexpr float AMBIENT = 0.34f;        // share of sky light on level ground
 constexpr float STEEPEST_SHADED = 1.6f; // slopes are compressed towards this, so that cliffs keep some shape
 constexpr float WATER_GAIN = 5.0f;      // waves are slight: their slopes are exaggerated by this
 constexpr float STEEPEST_WAVE = 0.9f;
 
-struct Slope {
-    float x = 0, y = 0;
-};
-
-float smooth_step(float low, float high, float x) {
-    const float t = std::clamp((x - low) / (high - low), 0.0f, 1.0f);
-    return t * t * (3.0f - 2.0f * t);
-}
+using Slope = glm::vec2; // rise per run, east and north
 
 Slope compressed(Slope slope, float gain, float steepest) {
-    const Slope s = {slope.x * gain, slope.y * gain};
-    const float shrink = 1.0f / std::sqrt(1.0f + (s.x * s.x + s.y * s.y) / (steepest * steepest));
-    return {s.x * shrink, s.y * shrink};
+    const Slope s = slope * gain;
+    return s / std::sqrt(1.0f + glm::dot(s, s) / (steepest * steepest));
 }
 
+glm::vec3 normal_of(Slope slope) { return glm::normalize(glm::vec3(-slope, 1.0f)); }
+
 /// Sun light on a slope relative to level ground: 1 when level, 0 in its own shadow.
-float sun_on(Slope slope) {
-    const float length = std::sqrt(slope.x * slope.x + slope.y * slope.y + 1.0f);
-    return std::max((-slope.x * SUN_X - slope.y * SUN_Y + SUN_Z) / (length * SUN_Z), 0.0f);
-}
+float sun_on(Slope slope) { return std::max(glm::dot(normal_of(slope), SUN) / SUN.z, 0.0f); }
 
 /// Blinn's highlight, seen from straight above.
 float glint_on(Slope slope) {
-    constexpr float half_z = 0.9063f; // cosine of half the angle between sun and zenith
-    constexpr float half_x = SUN_X / (2.0f * half_z), half_y = SUN_Y / (2.0f * half_z);
-    const float length = std::sqrt(slope.x * slope.x + slope.y * slope.y + 1.0f);
-    const float cosine = std::max((-slope.x * half_x - slope.y * half_y + half_z) / length, 0.0f);
-    return std::pow(cosine, 60.0f);
+    static const glm::vec3 half = glm::normalize(SUN + glm::vec3(0, 0, 1));
+    return std::pow(std::max(glm::dot(normal_of(slope), half), 0.0f), 60.0f);
 }
 
 /// Per cell, what is interpolated to pixels. Ratios are interpolated as their two parts (saturation: mixed and sand; depth at
@@ -48,20 +40,20 @@ float glint_on(Slope slope) {
 struct Cell {
     float height = 0, sand = 0, mixed = 0, water = 0; // H, hs, water within the sand, water above it [m]
     float sandy = 0, wet = 0;                         // 1 where there is sand or water; the outline is where 0.5 is crossed
-    Slope ground, surface;
+    Slope ground{0}, surface{0};
     float openness = 1; // 1 on open ground, less in hollows
 };
 
 Cell blend(const Cell& a, const Cell& b, float t) {
-    const auto lerp = [t](float p, float q) { return p + (q - p) * t; };
+    const auto lerp = [t](auto p, auto q) { return glm::mix(p, q, t); };
     return {lerp(a.height, b.height),
             lerp(a.sand, b.sand),
             lerp(a.mixed, b.mixed),
             lerp(a.water, b.water),
             lerp(a.sandy, b.sandy),
             lerp(a.wet, b.wet),
-            {lerp(a.ground.x, b.ground.x), lerp(a.ground.y, b.ground.y)},
-            {lerp(a.surface.x, b.surface.x), lerp(a.surface.y, b.surface.y)},
+            lerp(a.ground, b.ground),
+            lerp(a.surface, b.surface),
             lerp(a.openness, b.openness)};
 }
 
@@ -126,8 +118,8 @@ std::vector<Cell> make_cells(const MapFields& fields, const Look& look) {
             const float phi = fields.saturation[k];
             cell.mixed = phi < 0.5f ? cell.sand * phi / (1.0f - phi) : cell.sand;
             cell.water = fields.water[k];
-            cell.sandy = smooth_step(0.25f * sand_threshold, sand_threshold, cell.sand);
-            cell.wet = smooth_step(0.0f, film, cell.water);
+            cell.sandy = glm::smoothstep(0.25f * sand_threshold, sand_threshold, cell.sand);
+            cell.wet = glm::smoothstep(0.0f, film, cell.water);
             cell.openness = openness[k];
             cell.ground = {(ground[at(nx, east, j)] - ground[at(nx, west, j)]) / spacing_x,
                            (ground[at(nx, i, north)] - ground[at(nx, i, south)]) / spacing_y};
@@ -145,19 +137,19 @@ std::vector<Cell> make_cells(const MapFields& fields, const Look& look) {
 Linear shade(const Cell& cell, const Look& look, float blur) {
     const Slope ground_slope = compressed(cell.ground, look.relief_gain, STEEPEST_SHADED);
     const float light = AMBIENT * cell.openness + (1.0f - AMBIENT) * sun_on(ground_slope) * std::min(cell.openness + 0.15f, 1.1f);
-    const float wet = smooth_step(0.5f - blur, 0.5f + blur, cell.wet), sandy = smooth_step(0.5f - blur, 0.5f + blur, cell.sandy);
+    const float wet = glm::smoothstep(0.5f - blur, 0.5f + blur, cell.wet), sandy = glm::smoothstep(0.5f - blur, 0.5f + blur, cell.sandy);
     const float depth = cell.wet > 0 ? cell.water / cell.wet : 0.0f;
 
     Linear ground = terrain_colour(look.high > look.low ? (cell.height - look.low) / (look.high - look.low) : 0.5f);
     // A wet film darkens rock without covering it.
-    ground = ground * (1.0f - 0.35f * wet * smooth_step(0.0f, 0.01f * look.water_scale, depth));
+    ground = ground * (1.0f - 0.35f * wet * glm::smoothstep(0.0f, 0.01f * look.water_scale, depth));
     if (sandy > 0) ground = mix(ground, sand_colour(cell.mixed / std::max(cell.mixed + cell.sand, 1e-20f)), sandy);
     ground = ground * light;
     if (wet <= 0) return ground;
 
     const Slope wave = compressed(cell.surface, WATER_GAIN, STEEPEST_WAVE);
     const Linear water = under_water(ground, depth, look.water_scale, 0.3f + 0.7f * sun_on(wave));
-    const float body = smooth_step(0.01f, 0.08f, depth / look.water_scale);
+    const float body = glm::smoothstep(0.01f, 0.08f, depth / look.water_scale);
     const float glint = std::max(glint_on(wave) - glint_on({0, 0}), 0.0f);
     return mix(ground, water + Linear{0.85f, 0.95f, 1.0f} * (0.4f * body * glint), wet);
 }
@@ -274,7 +266,7 @@ Linear under_water(Linear ground, float depth, float water_scale, float light) {
     while (upper + 1 < stops.size() && root > stops[upper].root) ++upper;
     const Stop &a = stops[upper - 1], &b = stops[upper];
     const float t = std::clamp((root - a.root) / (b.root - a.root), 0.0f, 1.0f);
-    const float film = smooth_step(0.0f, 0.004f, depth / water_scale);
+    const float film = glm::smoothstep(0.0f, 0.004f, depth / water_scale);
     return mix(ground, mix(a.colour, b.colour, t) * light, film * (a.cover + (b.cover - a.cover) * t));
 }
 

@@ -4,7 +4,7 @@
 #define PHYSICS_DRAG
 #include "../physics/scalar.glsl"
 
-// Coupling kappa of two layers, and the sand's share r = h_m/(rho_s h_s) of it.
+// Coupling kappa of mixed water and sand with velocities of their own.
 FN float drag_coupling(float mixed_height, float sand_height, float water_density, float sand_density, float kd, float dry) {
     float r = divide_or_zero(mixed_height, sand_density * sand_height);
     float kappa = r * wdiv(water_density * kd, water_density + kd);

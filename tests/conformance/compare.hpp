@@ -17,17 +17,22 @@ struct FieldCheck {
     std::span<const float> narrow;  // reference<float>
     std::span<const double> wide;   // reference<double>
     std::vector<bool> skip;         // cells not compared; empty = none
+    std::span<const double> unrounded; // reference<double> with the quantum off; empty = not needed
 };
 
 /// ARCHITECTURE 7: passes where max|got - wide| <= 8 max|narrow - wide| + 16 eps S, S = max|wide| over the fields given (the
-/// components of one vector). `quanta` more are allowed where volumes are truncated to whole quanta, which turns a difference
-/// of one rounding into one quantum. Fails as well where the two references differ so much (another branch taken) that the
-/// case would prove nothing.
+/// components of one vector). Truncating volumes to whole quanta turns a difference of one rounding into one quantum: a stage
+/// that truncates is allowed `quanta` more; after whole steps the allowance grows by what all truncations together did to the
+/// field, max|wide - unrounded|. Fails as well where the references differ so much (another branch taken) that the case would
+/// prove nothing.
 Verdict compare_fields(const std::vector<FieldCheck>& components, const FieldLayout& layout, double quanta);
 
 /// Fields with values equal to the bit; the detail names the first cell that is not.
 Verdict compare_bits(const std::string& name, std::span<const float> got, std::span<const float> expected, const FieldLayout& layout,
                      compute::Range2 range);
+
+/// All cells of a field, ghosts included.
+compute::Range2 whole_layout(const FieldLayout& layout);
 
 /// The worse of two; their errors and allowances stay with the worse (or, both passing, the one nearer its allowance).
 Verdict worse(const Verdict& a, const Verdict& b);

@@ -10,12 +10,14 @@ int main(int c, char** v) {
         if (c > 1 && t.info.backend != v[1]) continue;
         compute::DeviceOptions o; o.validate = c > 3;
         Session s(t, o);
-        auto specs = stage_layer().list();
-        if (c > 2 && v[2][0]) { auto p = parse_case(v[2]); if (p->parameters.empty()) { std::vector<CaseSpec> k; for (auto& q : specs) if (q.name == p->name) k.push_back(q); specs = k; } else specs = {*p}; }
+        for (const Layer* l : {&stage_layer(), &step_layer()}) {
+        auto specs = l->list();
+        if (c > 2 && v[2][0]) { auto p = parse_case(v[2]); std::vector<CaseSpec> k; for (auto& q : specs) if (q.name == p->name) k.push_back(q); if (!p->parameters.empty() && !k.empty()) k = {*p}; specs = k; }
         for (auto& spec : specs) {
             auto a = std::chrono::steady_clock::now();
-            auto verdict = stage_layer().run(spec, s);
-            r.add(t.label(), "stage", spec.text(), verdict, std::chrono::duration<double>(std::chrono::steady_clock::now() - a).count());
+            auto verdict = l->run(spec, s);
+            r.add(t.label(), l->name, spec.text(), verdict, std::chrono::duration<double>(std::chrono::steady_clock::now() - a).count());
+        }
         }
     }
     r.finish();

@@ -62,7 +62,7 @@ Verdict compare_with_reference(const StageRun& run) {
         std::vector<FieldCheck> components;
         for (const Output& out : outputs)
             components.push_back({std::string(run.stage.bindings[out.binding].name), written_range(stage, out.name.base, run.params),
-                                  run.buffers[out.binding].floats(), out.narrow, out.wide, out.skip});
+                                  run.buffers[out.binding].floats(), out.narrow, out.wide, out.skip, {}});
         const double quanta = truncates(stage) ? static_cast<double>(run.params.quantum) : 0.0;
         verdict = worse(verdict, compare_fields(components, layout, quanta));
     }

@@ -72,7 +72,41 @@ void settle_diffusion(Pilot& pilot) {
     settle(pilot.narrow->diffusion_flux.y, pilot.wide->diffusion_flux.y);
 }
 
+Settings without_quantum(Settings settings) {
+    settings.method.quantum = 0;
+    return settings;
+}
+
 } // namespace
+
+References::References(const Scene& scene)
+    : narrow(scene.settings, scene.effects), wide(scene.settings, scene.effects), unrounded(without_quantum(scene.settings), scene.effects) {
+    narrow.load(scene.fields);
+    wide.copy_from(narrow);
+    unrounded.copy_from(narrow);
+}
+
+void References::run_stage(const std::string& stage) {
+    const auto run = [&](auto& solver) {
+        if (stage == "diffuse_mixed_water" || stage == "limit_water_outflow") solver.split_water();
+        run_reference_stage(solver, stage);
+    };
+    run(narrow);
+    run(wide);
+    run(unrounded);
+}
+
+void References::step() {
+    narrow.step();
+    wide.step();
+    unrounded.step();
+}
+
+void References::finish_step() {
+    ++narrow.step_index;
+    ++wide.step_index;
+    ++unrounded.step_index;
+}
 
 bool has_counterpart(const std::string& stage) {
     return std::any_of(std::begin(steps<float>), std::end(steps<float>),

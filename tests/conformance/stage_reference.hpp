@@ -25,6 +25,18 @@ struct Pilot {
 /// floats. Stages outside the step (publish_*, mark_limits) see the state after the pilot steps.
 Pilot make_pilot(const Scene& scene, const std::string& stage);
 
+/// Both precisions side by side over whole steps, and the double solver once more without a quantum, all from the same floats.
+struct References {
+    explicit References(const Scene& scene);
+    /// One stage of the plan, with the split of the water where the solver needs it as a step of its own.
+    void run_stage(const std::string& stage);
+    void step();
+    void finish_step(); // after the stages of a step were run one by one
+
+    reference::Solver<float> narrow;
+    reference::Solver<double> wide, unrounded;
+};
+
 extern template void run_reference_stage(reference::Solver<float>&, const std::string&);
 extern template void run_reference_stage(reference::Solver<double>&, const std::string&);
 

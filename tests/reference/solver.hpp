@@ -1,4 +1,4 @@
-// The reference solver: the equations of the design's NUMERICS page (section numbers in the comments are its sections),
+// The reference solver: the equations of engine/NUMERICS.md (section numbers in the comments are its sections),
 // written without looking at the stages, in float or double. Plain loops, every intermediate field public, so that a
 // single stage can be compared with a backend's. Choices where the page is silent: README.md.
 #pragma once

@@ -1,4 +1,4 @@
-// The reference solver's water against exact solutions, with the figures of the design's NUMERICS page, item 8.
+// The reference solver's water against exact solutions, with the figures of engine/NUMERICS.md, item 8.
 #include "tests/reference/test_support.hpp"
 #include <doctest/doctest.h>
 

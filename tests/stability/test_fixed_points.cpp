@@ -1,5 +1,5 @@
 // What should rest, rests for ever: one step of each parity leaves every bit of a lake and of a pile unchanged
-// (VALIDATION sections 1, 2, 4). On every backend there is.
+// On every backend there is.
 #include "tests/support/worlds.hpp"
 #include <cmath>
 #include <doctest/doctest.h>
@@ -57,7 +57,7 @@ TEST_CASE("a lake over dunes, an island and a shore keeps every bit") {
     }
 }
 
-TEST_CASE("negative control: a lake that is not level moves, and without the rest rule bits change") {
+TEST_CASE("negative control: a lake that is not level moves, and without quantum and rest rule it only nearly rests") {
     auto tilted = lake();
     for (auto& w : tilted.fields.water) w = w > 0.5F ? w + 0.001F : w;
     CHECK_FALSE(unchanged_after(*make_world(tilted), 2));

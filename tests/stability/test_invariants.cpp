@@ -1,4 +1,4 @@
-// Exact mass, heights that stay positive and finite, speeds within the clamp, at any time step (VALIDATION section 4).
+// Exact mass, heights that stay positive and finite, speeds within the clamp, at any time step.
 #include "tests/support/worlds.hpp"
 #include <cmath>
 #include <doctest/doctest.h>

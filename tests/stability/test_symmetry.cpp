@@ -1,4 +1,4 @@
-// Mirrored and transposed scenes give mirrored and transposed bits (ARCHITECTURE section 4 rule 9).
+// Mirrored and transposed scenes give mirrored and transposed bits (the rule of paired sums: shaders/README.md).
 #include "tests/support/worlds.hpp"
 #include <algorithm>
 #include <doctest/doctest.h>

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Who may include whom (ARCHITECTURE: section 2). Usage: include_rules.py SOURCE_DIR. Exit status 1 names every breach."""
+"""Who may include whom. Usage: include_rules.py SOURCE_DIR. Exit status 1 names every breach."""
 import pathlib
 import re
 import sys

@@ -31,7 +31,7 @@ struct Material {
     std::array<double, 3> saturation = {0.2, 0.25, 0.33}; // phi1 < phi2 < phi3, 0 ... 1
     double exchange_rate = 1e5;         // c_e [kg/(m3 s)], 0 ... 1e15: momentum exchange between mixed water and sand
     double diffusion_rate = 0.01;       // c_d [m2/s], 0 ... 1e6
-    double bed_friction = 0;            // Manning-like friction of pure water [s/m * m/s], 0 ... 10; 0 = off
+    double bed_friction = 0;            // c of u/(1 + dt c |u|/h) for pure water, dimensionless, 0 ... 10; 0 = off
 };
 
 /// How water and sand are stepped. Every guard is off at a neutral value, so that any one can be studied alone.

@@ -2,7 +2,7 @@
  *
  * Units: metres, seconds, kilograms. Fields are row-major, nx * ny floats, x fastest; row 0 is the south side (y = 0),
  * column 0 the west side (x = 0); heights point up.
- * Every struct begins with struct_size: call the wadi_default_*() function, then change what you need.
+ * A struct that the caller fills begins with struct_size: call its wadi_default_*() function, then change what you need.
  * Every function that can fail returns a wadi_result; wadi_get_last_error() then has one line of text for this thread.
  * No function aborts, throws or prints. A world is used by one thread at a time; different worlds are independent.
  */
@@ -175,9 +175,9 @@ typedef struct wadi_world_stats {
     double water_volume;
     double sand_initial;          /* [m3] at creation */
     double water_initial;
-    double sand_in, sand_out;     /* [m3] by sources, sinks and sides since creation */
+    double sand_in, sand_out;     /* [m3] by sources, sinks, rain, evaporation and sides since creation */
     double water_in, water_out;
-    double refused;               /* [m3] that sources could not place below the declared largest height */
+    double refused;               /* [m3] of sources and rain that found no room below the declared largest height */
     int64_t sand_drift_quanta;    /* now - (initial + in - out) in quanta of height x cell area; 0 = exact */
     int64_t water_drift_quanta;
     double quantum;               /* [m] */

@@ -1,0 +1,121 @@
+#include "tests/conformance/pass_runner.hpp"
+#include "engine/step_inputs.hpp"
+#include "engine/world_params.hpp"
+#include "tests/conformance/fields.hpp"
+
+namespace wadi::conformance {
+
+PassRunner::PassRunner(compute::Device& device, const Scene& scene)
+    : device_(device), scene_(scene), plan_(make_step_plan(scene.effects, scene.settings.method.substeps)), params_(derive_params(scene.settings)) {}
+
+PassRunner::~PassRunner() {
+    for (const auto& [name, pair] : buffers_)
+        for (const compute::Buffer buffer : pair) device_.destroy_buffer(buffer);
+}
+
+std::size_t PassRunner::words_of(const PlanField& field) const {
+    if (field.role == FieldRole::shapes) return std::size_t{2 * MAX_SOURCES * 4};
+    if (field.role != FieldRole::ledger) return layout().size();
+    if (field.name != "source_ledger") return 4 * static_cast<std::size_t>(layout().rim());
+    return std::size_t{2 * LEDGER_ENTRIES} * static_cast<std::size_t>(params_.strips * params_.pitch);
+}
+
+Status PassRunner::open() {
+    for (const auto& field : plan_.fields) {
+        for (std::size_t n = 0; n < (field.ping_pong ? 2u : 1u); ++n) {
+            auto made = device_.create_buffer({words_of(field) * 4, field.name});
+            if (!made) return made.status();
+            buffers_[field.name][n] = *made;
+        }
+    }
+    reference::Solver<float> solver(scene_.settings, scene_.effects);
+    solver.load(scene_.fields);
+    for (const auto& field : plan_.fields) {
+        if (field.role != FieldRole::state) continue;
+        auto values = reference_field(solver, "", {field.name, false}, false);
+        fill_ghosts(values, field.name, solver);
+        if (auto status = device_.write(buffer(field.name), 0, std::as_bytes(std::span(values))); !status) return status;
+    }
+    if (plan_.find("source_shapes") == nullptr) return ok_status();
+    const auto shapes = source_shapes(scene_.settings);
+    return device_.write(buffer("source_shapes"), 0, std::as_bytes(std::span(shapes)));
+}
+
+std::vector<const PlanPass*> PassRunner::passes() const {
+    std::vector<const PlanPass*> all;
+    for (const auto& pass : plan_.water_passes) all.push_back(&pass);
+    for (int t = 0; t < plan_.substeps; ++t)
+        for (const auto& pass : plan_.substep_passes) all.push_back(&pass);
+    return all;
+}
+
+compute::Buffer PassRunner::buffer(const std::string& field) const {
+    const bool next = field.ends_with("_next");
+    const std::string base = next ? field.substr(0, field.size() - 5) : field;
+    const auto found = buffers_.find(base);
+    return found == buffers_.end() ? compute::Buffer{} : found->second[next != flipped_.contains(base) ? 1 : 0];
+}
+
+Status PassRunner::append(compute::ProgramBuilder& builder, const PlanPass& pass) {
+    const auto& stage = compute::stage_table()[static_cast<std::size_t>(pass.stage)];
+    auto pipeline = device_.create_pipeline(pass.stage, plan_.effects, {});
+    if (!pipeline) return pipeline.status();
+    compute::Dispatch dispatch{*pipeline, pass.stage, plan_.effects, {}, compute::extent_range(stage.extent, params_), std::string(stage.name)};
+    for (const auto& field : pass.fields) dispatch.slots.push_back(field.empty() ? compute::Buffer{} : buffer(field));
+    builder.dispatch(std::move(dispatch));
+    for (const auto& name : pass.flips)
+        if (flipped_.erase(name) == 0) flipped_.insert(name);
+    return ok_status();
+}
+
+Status PassRunner::run(const PlanPass& pass, const StepInput& input) {
+    compute::ProgramBuilder builder("one pass");
+    if (auto status = append(builder, pass); !status) return status;
+    auto program = device_.compile(builder, params_);
+    if (!program) return program.status();
+    auto ticket = device_.submit(*program, input);
+    Status status = ticket ? device_.wait(*ticket) : ticket.status();
+    device_.destroy_program(*program);
+    return status;
+}
+
+Result<std::vector<std::uint32_t>> PassRunner::read(compute::Buffer from, const std::string& field) {
+    const std::string base = field.ends_with("_next") ? field.substr(0, field.size() - 5) : field;
+    std::vector<std::uint32_t> words(words_of(*plan_.find(base)));
+    if (auto status = device_.read(from, 0, std::as_writable_bytes(std::span(words))); !status) return status;
+    return words;
+}
+
+Result<std::vector<std::uint32_t>> PassRunner::read(const std::string& field) { return read(buffer(field), field); }
+
+Status PassRunner::write(const std::string& field, const std::vector<std::uint32_t>& words) {
+    return device_.write(buffer(field), 0, std::as_bytes(std::span(words)));
+}
+
+double PassRunner::bytes_of(const PlanPass& pass) const {
+    const auto& stage = compute::stage_table()[static_cast<std::size_t>(pass.stage)];
+    const auto range = compute::extent_range(stage.extent, params_);
+    const double threads = static_cast<double>(range.i1 - range.i0) * static_cast<double>(range.j1 - range.j0);
+    const bool columns = stage.extent == compute::Extent::strips || stage.extent == compute::Extent::source_box;
+    double bytes = 0;
+    for (std::size_t b = 0; b < pass.fields.size(); ++b) {
+        if (pass.fields[b].empty()) continue;
+        const auto& binding = stage.bindings[b];
+        if (binding.name == "source_shapes") continue; // a few hundred bytes that every thread shares
+        // A strip thread walks STRIP rows of a field, and adds once to its counts in the ledger.
+        const double each = columns && binding.type == compute::Scalar::f32 ? STRIP : 1;
+        bytes += threads * each * (binding.access == compute::Access::inout ? 8 : 4);
+    }
+    return bytes;
+}
+
+std::string pass_label(const StepPlan& plan, std::size_t pass) {
+    const bool water = pass < plan.water_passes.size();
+    const std::size_t in_sand = water ? 0 : pass - plan.water_passes.size();
+    const PlanPass& found = water ? plan.water_passes[pass] : plan.substep_passes[in_sand % plan.substep_passes.size()];
+    std::string label(compute::stage_table()[static_cast<std::size_t>(found.stage)].name);
+    if (!water) label += " of substep " + std::to_string(in_sand / plan.substep_passes.size());
+    return label;
+}
+
+} // namespace wadi::conformance

@@ -1,0 +1,198 @@
+// The C ABI against the shared library: good calls, bad handles, bad sizes, bad files; nothing crashes and every error has a text.
+#include <cmath>
+#include <cstring>
+#include <doctest/doctest.h>
+#include <fstream>
+#include <string>
+#include <vector>
+#include <wadi/wadi.h>
+
+namespace {
+
+const std::string levels = WADI_SOURCE_DIR "/samples/levels/";
+
+wadi_device_options cpu() {
+    auto options = wadi_default_device_options();
+    options.backend = "cpu";
+    return options;
+}
+
+constexpr const char* settings = R"({"format_version": 1, "grid": {"nx": 16, "ny": 12, "dx": 0.5}, "dt": 0.01})";
+
+wadi_world_arrays pond(std::vector<float>& terrain, std::vector<float>& water) {
+    terrain.assign(16 * 12, 0.0F);
+    water.assign(16 * 12, 0.0F);
+    for (std::size_t k = 0; k < water.size(); ++k) water[k] = k % 16 < 5 ? 1.0F : 0.0F;
+    auto arrays = wadi_default_world_arrays();
+    arrays.settings_json = settings;
+    arrays.nx = 16;
+    arrays.ny = 12;
+    arrays.terrain = terrain.data();
+    arrays.water = water.data();
+    return arrays;
+}
+
+struct World {
+    wadi_world_id id{};
+    World() {
+        std::vector<float> terrain, water;
+        const auto arrays = pond(terrain, water);
+        const auto options = cpu();
+        REQUIRE_MESSAGE(wadi_create_world_from_arrays(&arrays, &options, &id) == WADI_OK, wadi_get_last_error());
+    }
+    ~World() { wadi_destroy_world(id); }
+};
+
+bool error_mentions(const char* text) { return std::string(wadi_get_last_error()).find(text) != std::string::npos; }
+
+} // namespace
+
+TEST_CASE("a world from arrays steps, reads back and keeps its books") {
+    const World world;
+    CHECK(wadi_get_abi_version() == WADI_ABI_VERSION);
+    REQUIRE(wadi_world_step(world.id, 100) == WADI_OK);
+    double seconds = 0;
+    uint64_t steps = 0;
+    REQUIRE(wadi_world_get_time(world.id, &seconds, &steps) == WADI_OK);
+    CHECK(steps == 100);
+    CHECK(seconds == doctest::Approx(1.0));
+    std::vector<float> w(16 * 12);
+    REQUIRE(wadi_world_read_field(world.id, WADI_FIELD_WATER_HEIGHT, w.data(), w.size()) == WADI_OK);
+    CHECK(w[15] > 0.0F);
+    auto stats = wadi_default_world_stats();
+    REQUIRE(wadi_world_get_stats(world.id, &stats) == WADI_OK);
+    CHECK(stats.water_drift_quanta == 0);
+    CHECK(stats.water_volume == doctest::Approx(stats.water_initial));
+    CHECK(stats.water_initial == doctest::Approx(5 * 12 * 0.25));
+    auto info = wadi_default_world_info();
+    REQUIRE(wadi_world_get_info(world.id, &info) == WADI_OK);
+    CHECK(info.nx == 16);
+    CHECK(info.passes_per_sand_substep == 0);
+    CHECK(info.bytes_per_cell <= 56);
+    const size_t length = wadi_world_describe_plan(world.id, nullptr, 0);
+    std::vector<char> plan(length + 1);
+    CHECK(wadi_world_describe_plan(world.id, plan.data(), plan.size()) == length);
+    CHECK(std::strlen(plan.data()) == length);
+    for (int field = 0; field < WADI_FIELD_COUNT; ++field) {
+        CHECK(wadi_field_name(static_cast<wadi_field>(field)) != nullptr);
+        CHECK(wadi_world_read_field(world.id, static_cast<wadi_field>(field), w.data(), w.size()) == WADI_OK);
+    }
+}
+
+TEST_CASE("same level, same hash; profiling names every stage and changes nothing") {
+    const auto options = cpu();
+    auto overrides = wadi_default_level_overrides();
+    overrides.nx = overrides.ny = 48;
+    uint64_t hashes[2];
+    for (int n = 0; n < 2; ++n) {
+        wadi_world_id id{};
+        REQUIRE_MESSAGE(wadi_create_world_from_level((levels + "dam_break/level.json").c_str(), &overrides, &options, &id) == WADI_OK, wadi_get_last_error());
+        CHECK(wadi_world_set_profiling(id, n) == WADI_OK);
+        REQUIRE(wadi_world_step(id, 20) == WADI_OK);
+        auto stats = wadi_default_world_stats();
+        REQUIRE(wadi_world_get_stats(id, &stats) == WADI_OK);
+        hashes[n] = stats.hash;
+        uint32_t count = 0;
+        REQUIRE(wadi_world_get_stage_timings(id, nullptr, &count) == WADI_OK);
+        CHECK(count == 14);
+        std::vector<wadi_stage_timing> timings(count);
+        REQUIRE(wadi_world_get_stage_timings(id, timings.data(), &count) == WADI_OK);
+        CHECK((timings[0].milliseconds > 0) == (n == 1));
+        CHECK(wadi_destroy_world(id) == WADI_OK);
+    }
+    CHECK(hashes[0] == hashes[1]);
+}
+
+TEST_CASE("null and destroyed ids are refused by every call") {
+    World world;
+    const auto dead = world.id;
+    REQUIRE(wadi_destroy_world(dead) == WADI_OK);
+    float value;
+    auto stats = wadi_default_world_stats();
+    auto info = wadi_default_world_info();
+    uint32_t count = 0;
+    for (const auto id : {wadi_world_id{0, 0}, dead, wadi_world_id{1000, 1}}) {
+        CHECK(wadi_destroy_world(id) == WADI_ERROR_BAD_ARGUMENT);
+        CHECK(wadi_world_step(id, 1) == WADI_ERROR_BAD_ARGUMENT);
+        CHECK(error_mentions("destroyed"));
+        CHECK(wadi_world_read_field(id, WADI_FIELD_TERRAIN, &value, 1) == WADI_ERROR_BAD_ARGUMENT);
+        CHECK(wadi_world_get_stats(id, &stats) == WADI_ERROR_BAD_ARGUMENT);
+        CHECK(wadi_world_get_info(id, &info) == WADI_ERROR_BAD_ARGUMENT);
+        CHECK(wadi_world_get_time(id, nullptr, nullptr) == WADI_ERROR_BAD_ARGUMENT);
+        CHECK(wadi_world_set_profiling(id, 1) == WADI_ERROR_BAD_ARGUMENT);
+        CHECK(wadi_world_get_stage_timings(id, nullptr, &count) == WADI_ERROR_BAD_ARGUMENT);
+        CHECK(wadi_world_describe_plan(id, nullptr, 0) == 0);
+        CHECK(wadi_world_get_warning(id, 0) == nullptr);
+    }
+    const World reborn; // takes the freed slot; the old id must not reach it
+    CHECK(reborn.id.index == dead.index);
+    CHECK(wadi_world_step(dead, 1) == WADI_ERROR_BAD_ARGUMENT);
+}
+
+TEST_CASE("bad arguments get a code and a text, and leave the world as it was") {
+    const World world;
+    auto stats = wadi_default_world_stats();
+    REQUIRE(wadi_world_get_stats(world.id, &stats) == WADI_OK);
+    const auto hash = stats.hash;
+    std::vector<float> values(16 * 12);
+    CHECK(wadi_world_read_field(world.id, WADI_FIELD_TERRAIN, values.data(), 5) == WADI_ERROR_BAD_ARGUMENT);
+    CHECK(error_mentions("192"));
+    CHECK(wadi_world_read_field(world.id, WADI_FIELD_TERRAIN, nullptr, 192) == WADI_ERROR_BAD_ARGUMENT);
+    CHECK(wadi_world_read_field(world.id, WADI_FIELD_COUNT, values.data(), 192) == WADI_ERROR_BAD_ARGUMENT);
+    wadi_world_stats unsized{};
+    CHECK(wadi_world_get_stats(world.id, &unsized) == WADI_ERROR_BAD_ARGUMENT);
+    CHECK(error_mentions("struct_size"));
+    CHECK(wadi_world_get_stats(world.id, nullptr) == WADI_ERROR_BAD_ARGUMENT);
+    CHECK(wadi_list_devices(nullptr, nullptr, nullptr, 0) == WADI_ERROR_BAD_ARGUMENT);
+    REQUIRE(wadi_world_get_stats(world.id, &stats) == WADI_OK);
+    CHECK(stats.hash == hash);
+}
+
+TEST_CASE("bad worlds are refused before anything is made") {
+    const auto options = cpu();
+    wadi_world_id id{};
+    std::vector<float> terrain, water;
+    auto arrays = pond(terrain, water);
+    water[7 * 16 + 3] = std::nanf("");
+    CHECK(wadi_create_world_from_arrays(&arrays, &options, &id) == WADI_ERROR_BAD_ARGUMENT);
+    CHECK_MESSAGE(error_mentions("3"), wadi_get_last_error());
+    water[7 * 16 + 3] = -1;
+    CHECK(wadi_create_world_from_arrays(&arrays, &options, &id) == WADI_ERROR_BAD_ARGUMENT);
+    water[7 * 16 + 3] = 1;
+    arrays.nx = 15;
+    CHECK(wadi_create_world_from_arrays(&arrays, &options, &id) == WADI_ERROR_BAD_ARGUMENT);
+    CHECK(error_mentions("16 x 12"));
+    arrays.nx = 16;
+    arrays.settings_json = "{";
+    CHECK(wadi_create_world_from_arrays(&arrays, &options, &id) == WADI_ERROR_BAD_FILE);
+    CHECK(wadi_create_world_from_level("no/such/level.json", nullptr, &options, &id) == WADI_ERROR_NOT_FOUND);
+    CHECK(wadi_create_world_from_level(nullptr, nullptr, &options, &id) == WADI_ERROR_BAD_ARGUMENT);
+    auto nowhere = cpu();
+    nowhere.backend = "abacus";
+    CHECK(wadi_create_world_from_level((levels + "dam_break/level.json").c_str(), nullptr, &nowhere, &id) == WADI_ERROR_NOT_FOUND);
+    CHECK(error_mentions("abacus"));
+    nowhere.backend = "cpu";
+    nowhere.device = 7;
+    CHECK(wadi_create_world_from_level((levels + "dam_break/level.json").c_str(), nullptr, &nowhere, &id) == WADI_ERROR_NOT_FOUND);
+    nowhere.device = -1;
+    nowhere.threads = 100000;
+    CHECK(wadi_create_world_from_level((levels + "dam_break/level.json").c_str(), nullptr, &nowhere, &id) == WADI_ERROR_BAD_ARGUMENT);
+    auto overrides = wadi_default_level_overrides();
+    overrides.nx = overrides.ny = 1 << 20;
+    CHECK(wadi_create_world_from_level((levels + "dam_break/level.json").c_str(), &overrides, &options, &id) == WADI_ERROR_BAD_ARGUMENT);
+    CHECK(id.index == 0);
+}
+
+TEST_CASE("devices are listed, and a small buffer is filled no further") {
+    uint32_t count = 0;
+    REQUIRE(wadi_list_devices(nullptr, &count, nullptr, 0) == WADI_OK);
+    REQUIRE(count >= 1);
+    std::vector<wadi_device_info> infos(count + 1);
+    infos[1].index = -77;
+    uint32_t one = 1;
+    char notes[8];
+    REQUIRE(wadi_list_devices(infos.data(), &one, notes, sizeof notes) == WADI_OK);
+    CHECK(one == count);
+    CHECK(std::string(infos[0].backend) == "cpu");
+    CHECK(infos[1].index == -77);
+}
