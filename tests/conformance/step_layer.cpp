@@ -40,7 +40,7 @@ constexpr Row against_reference[] = {
     {"33x17", EFFECT_SAND | ELASTIC | EFFECT_OPEN_SIDES, "flat", "default", 3},
     {"33x17", EFFECT_SAND | ELASTIC | EFFECT_SOURCES, "slope", "tapered", 3},
     {"9x1", EFFECT_SAND | ELASTIC, "one_wet_cell", "default", 4},
-    {"33x17", EFFECT_WATER | EFFECT_SAND, "islands", "default", 3},
+    {"33x17", EFFECT_WATER | EFFECT_SAND, "cliff", "default", 3},
     {"33x17", EFFECT_WATER | EFFECT_SAND | EFFECT_DRAG, "slope", "default", 3},
     {"33x17", EFFECT_WATER | EFFECT_SAND | EFFECT_MIXTURE, "slope", "default", 3},
     {"33x17", WET, "slope", "default", 3},

@@ -17,7 +17,7 @@ wadi_device_options cpu() {
     return options;
 }
 
-constexpr const char* settings = R"({"format_version": 1, "grid": {"nx": 16, "ny": 12, "dx": 0.5}, "dt": 0.01})";
+constexpr const char* settings = R"({"format_version": 1, "name": "pond", "grid": {"nx": 16, "ny": 12, "dx": 0.5}, "dt": 0.01})";
 
 wadi_world_arrays pond(std::vector<float>& terrain, std::vector<float>& water) {
     terrain.assign(16 * 12, 0.0F);
@@ -38,7 +38,7 @@ struct World {
         std::vector<float> terrain, water;
         const auto arrays = pond(terrain, water);
         const auto options = cpu();
-        REQUIRE_MESSAGE(wadi_create_world_from_arrays(&arrays, &options, &id) == WADI_OK, wadi_get_last_error());
+        REQUIRE_MESSAGE(wadi_create_world_from_arrays(&arrays, &options, &id) == WADI_OK, std::string(wadi_get_last_error()));
     }
     ~World() { wadi_destroy_world(id); }
 };
@@ -86,7 +86,7 @@ TEST_CASE("same level, same hash; profiling names every stage and changes nothin
     uint64_t hashes[2];
     for (int n = 0; n < 2; ++n) {
         wadi_world_id id{};
-        REQUIRE_MESSAGE(wadi_create_world_from_level((levels + "dam_break/level.json").c_str(), &overrides, &options, &id) == WADI_OK, wadi_get_last_error());
+        REQUIRE_MESSAGE(wadi_create_world_from_level((levels + "dam_break/level.json").c_str(), &overrides, &options, &id) == WADI_OK, std::string(wadi_get_last_error()));
         CHECK(wadi_world_set_profiling(id, n) == WADI_OK);
         REQUIRE(wadi_world_step(id, 20) == WADI_OK);
         auto stats = wadi_default_world_stats();
@@ -155,7 +155,7 @@ TEST_CASE("bad worlds are refused before anything is made") {
     auto arrays = pond(terrain, water);
     water[7 * 16 + 3] = std::nanf("");
     CHECK(wadi_create_world_from_arrays(&arrays, &options, &id) == WADI_ERROR_BAD_ARGUMENT);
-    CHECK_MESSAGE(error_mentions("3"), wadi_get_last_error());
+    CHECK_MESSAGE(error_mentions("3"), std::string(wadi_get_last_error()));
     water[7 * 16 + 3] = -1;
     CHECK(wadi_create_world_from_arrays(&arrays, &options, &id) == WADI_ERROR_BAD_ARGUMENT);
     water[7 * 16 + 3] = 1;

@@ -1,0 +1,272 @@
+// Programs: what compile refuses, copies and fills, order, replay, tickets and timings.
+#include "tests/conformance/contracts.hpp"
+#include <functional>
+#include <limits>
+
+namespace wadi::conformance {
+
+namespace {
+
+using compute::Buffer;
+using compute::Device;
+using compute::Dispatch;
+using compute::ProgramBuilder;
+
+constexpr auto bad = {Code::bad_argument};
+
+// Buffers of a rain dispatch: fields of zeros and a ledger.
+struct Rain {
+    explicit Rain(Device& d) : device(d) {
+        const FieldLayout layout{small_params().nx, small_params().ny};
+        terrain = buffer_of(device, std::vector<std::uint32_t>(layout.size(), 0));
+        water = buffer_of(device, std::vector<std::uint32_t>(layout.size(), 0));
+        ledger = buffer_of(device, std::vector<std::uint32_t>(std::size_t{2 * LEDGER_ENTRIES} * static_cast<std::size_t>(layout.strips() * layout.pitch()), 0));
+    }
+    ~Rain() {
+        for (const Buffer buffer : {terrain, water, ledger}) device.destroy_buffer(buffer);
+    }
+    Rain(const Rain&) = delete;
+    Rain& operator=(const Rain&) = delete;
+    float depth() { // of the cell (2, 3)
+        float value = -1;
+        const FieldLayout layout{small_params().nx, small_params().ny};
+        return device.read(water, layout.index(2, 3) * 4, std::as_writable_bytes(std::span(&value, 1))) ? value : -1;
+    }
+    Device& device;
+    Buffer terrain, water, ledger;
+};
+
+void refuse(Device& device, Expect& expect, const std::string& what, const std::function<void(Dispatch&)>& change) {
+    Rain rain(device);
+    auto dispatch = rain_dispatch(device, rain.terrain, rain.water, rain.ledger);
+    expect.ok(dispatch.status(), "create_pipeline");
+    if (!dispatch) return;
+    change(*dispatch);
+    ProgramBuilder builder("refused");
+    builder.dispatch(*dispatch);
+    auto program = device.compile(builder, small_params());
+    expect.code(program.status(), bad, what);
+    if (program) device.destroy_program(*program);
+}
+
+void bad_dispatches(Session&, Device& device, Expect& expect) {
+    const Buffer gone = buffer_of(device, {0});
+    device.destroy_buffer(gone);
+    refuse(device, expect, "a dispatch with a slot too few", [](Dispatch& d) { d.slots.pop_back(); });
+    refuse(device, expect, "a dispatch with a slot too many", [](Dispatch& d) { d.slots.emplace_back(); });
+    refuse(device, expect, "null where a buffer must be", [](Dispatch& d) { d.slots[1] = {}; });
+    refuse(device, expect, "a destroyed buffer", [&](Dispatch& d) { d.slots[1] = gone; });
+    refuse(device, expect, "a buffer never made", [](Dispatch& d) { d.slots[0] = {4'000'000'000u}; });
+    refuse(device, expect, "one buffer read and written", [](Dispatch& d) { d.slots[0] = d.slots[1]; });
+    refuse(device, expect, "a null pipeline", [](Dispatch& d) { d.pipeline = {}; });
+    refuse(device, expect, "a pipeline never made", [](Dispatch& d) { d.pipeline = {4'000'000'000u}; });
+    refuse(device, expect, "stage -1", [](Dispatch& d) { d.stage = -1; });
+    refuse(device, expect, "a stage past the table", [](Dispatch& d) { d.stage = static_cast<int>(compute::stage_table().size()); });
+    auto other = device.create_pipeline(compute::find_stage("publish_velocity"), EFFECT_WATER, {});
+    expect.ok(other.status(), "create_pipeline");
+    if (other) refuse(device, expect, "the pipeline of another stage", [&](Dispatch& d) { d.pipeline = *other; });
+    auto with_sand = device.create_pipeline(compute::find_stage("apply_rain"), EFFECT_WATER | EFFECT_SAND | EFFECT_RAIN, {});
+    expect.ok(with_sand.status(), "create_pipeline");
+    if (with_sand) refuse(device, expect, "a pipeline of other effects", [&](Dispatch& d) { d.pipeline = *with_sand; });
+}
+
+void bad_transfers(Session&, Device& device, Expect& expect) {
+    const Buffer a = buffer_of(device, std::vector<std::uint32_t>(16, 1)), b = buffer_of(device, std::vector<std::uint32_t>(8, 2));
+    const Buffer gone = buffer_of(device, {0});
+    device.destroy_buffer(gone);
+    const auto copy = [&](compute::Copy c, const std::string& what) {
+        ProgramBuilder builder("copy");
+        builder.copy(c);
+        expect.code(run_once(device, builder), bad, what);
+    };
+    constexpr std::uint64_t most = std::numeric_limits<std::uint64_t>::max();
+    copy({{}, b, 0, 0, 4}, "a copy from null");
+    copy({a, {}, 0, 0, 4}, "a copy to null");
+    copy({a, gone, 0, 0, 4}, "a copy to a destroyed buffer");
+    copy({gone, b, 0, 0, 4}, "a copy from a destroyed buffer");
+    copy({a, a, 0, 32, 4}, "a copy within one buffer");
+    copy({a, b, 0, 0, 36}, "a copy past the target's end");
+    copy({b, a, 4, 0, 32}, "a copy past the source's end");
+    copy({a, b, most - 3, 0, 8}, "a copy from an offset that overflows");
+    for (const Buffer buffer : {Buffer{}, gone}) {
+        ProgramBuilder builder("fill");
+        builder.fill({buffer, 1});
+        expect.code(run_once(device, builder), bad, buffer.id == 0 ? "a fill of null" : "a fill of a destroyed buffer");
+    }
+    expect.that(words_of(device, b, 8) == std::vector<std::uint32_t>(8, 2), "a refused copy changed its target");
+    device.destroy_buffer(a);
+    device.destroy_buffer(b);
+}
+
+void transfers(Session&, Device& device, Expect& expect) {
+    std::vector<std::uint32_t> count(16);
+    for (std::uint32_t n = 0; n < 16; ++n) count[n] = n;
+    const Buffer a = buffer_of(device, count), b = buffer_of(device, std::vector<std::uint32_t>(16, 9)), c = buffer_of(device, std::vector<std::uint32_t>(16, 8));
+    ProgramBuilder builder("transfers");
+    builder.fill({b, 0xABCD1234u});
+    builder.copy({a, b, 8, 20, 12});
+    builder.copy({b, c, 0, 0, 64});
+    builder.fill({b, 3});
+    builder.copy({a, b, 0, 0, 0});
+    expect.ok(run_once(device, builder), "fills and copies");
+    std::vector<std::uint32_t> wanted(16, 0xABCD1234u);
+    for (std::uint32_t n = 0; n < 3; ++n) wanted[5 + n] = 2 + n;
+    expect.that(words_of(device, c, 16) == wanted, "fill, copy at offsets, copy on: wrong content");
+    expect.that(words_of(device, b, 16) == std::vector<std::uint32_t>(16, 3), "a fill after a copy from the same buffer: wrong content");
+    expect.that(words_of(device, a, 16) == count, "a copy changed its source");
+    for (const Buffer buffer : {a, b, c}) device.destroy_buffer(buffer);
+}
+
+void order(Session&, Device& device, Expect& expect) {
+    const Buffer a = buffer_of(device, std::vector<std::uint32_t>(4096, 1)), b = buffer_of(device, std::vector<std::uint32_t>(4096, 0)), c = buffer_of(device, std::vector<std::uint32_t>(4096, 0));
+    ProgramBuilder to_b("to b"), to_c("to c");
+    to_b.copy({a, b, 0, 0, 16384});
+    to_c.copy({a, c, 0, 0, 16384});
+    auto first = device.compile(to_b, small_params()), second = device.compile(to_c, small_params());
+    expect.ok(first.status(), "compile");
+    expect.ok(second.status(), "compile");
+    if (!first || !second) return;
+    const std::vector<std::uint32_t> two(4096, 2);
+    expect.ok(device.submit(*first, StepInput{}).status(), "submit");
+    expect.ok(device.write(a, 0, std::as_bytes(std::span(two))), "write between submissions");
+    expect.ok(device.submit(*second, StepInput{}).status(), "submit");
+    expect.that(words_of(device, b, 4096) == std::vector<std::uint32_t>(4096, 1), "a write overtook an earlier submission");
+    expect.that(words_of(device, c, 4096) == two, "a submission did not see an earlier write, or a read did not wait for it");
+    device.destroy_program(*first);
+    device.destroy_program(*second);
+    for (const Buffer buffer : {a, b, c}) device.destroy_buffer(buffer);
+}
+
+// More submissions than any ring, each with its own input, none waited for.
+void replay(Session& session, Device& device, Expect& expect) {
+    Rain rain(device);
+    auto dispatch = rain_dispatch(device, rain.terrain, rain.water, rain.ledger);
+    expect.ok(dispatch.status(), "create_pipeline");
+    if (!dispatch) return;
+    ProgramBuilder builder("rain");
+    builder.dispatch(*dispatch);
+    auto program = device.compile(builder, small_params());
+    expect.ok(program.status(), "compile");
+    if (!program) return;
+    const auto before = device.counters();
+    const float quantum = small_params().quantum;
+    float expected = 0;
+    std::uint64_t last = 0;
+    for (int n = 1; n <= 100; ++n) {
+        StepInput input{};
+        input.rain = static_cast<float>(n) * quantum;
+        expected += input.rain;
+        auto ticket = device.submit(*program, input);
+        expect.ok(ticket.status(), "submit");
+        if (!ticket) return;
+        expect.that(ticket->value > last, "tickets do not increase");
+        last = ticket->value;
+    }
+    expect.ok(device.wait({last}), "wait");
+    expect.that(device.finished({last}) && device.finished({1}), "a ticket waited for, or an older one, is not finished");
+    expect.ok(device.wait({1}), "wait for an old ticket");
+    const auto after = device.counters();
+    expect.that(rain.depth() == expected, "100 replays with their own inputs do not add up");
+    expect.that(after.allocations == before.allocations, "a submission allocates");
+    expect.that(after.descriptor_writes == before.descriptor_writes, "a submission writes descriptors");
+    expect.that(after.recordings == before.recordings || session.options().no_replay, "a submission records anew");
+    expect.that(after.submits >= before.submits + 100, "submits are not counted");
+    device.destroy_program(*program);
+}
+
+void frozen_params(Session&, Device& device, Expect& expect) {
+    Rain rain(device);
+    auto dispatch = rain_dispatch(device, rain.terrain, rain.water, rain.ledger);
+    if (!dispatch) return expect.ok(dispatch.status(), "create_pipeline");
+    ProgramBuilder builder("rain");
+    builder.dispatch(*dispatch);
+    WorldParams low = small_params();
+    low.largest_height = 0; // no rain fits under it
+    auto wet = device.compile(builder, small_params()), dry = device.compile(builder, low);
+    expect.ok(wet.status(), "compile");
+    expect.ok(dry.status(), "compile");
+    if (!wet || !dry) return;
+    StepInput input{};
+    input.rain = small_params().quantum;
+    for (const auto program : {*wet, *dry, *wet, *dry}) expect.ok(device.submit(program, input).status(), "submit");
+    expect.that(rain.depth() == 2 * input.rain, "programs do not keep the parameters they were compiled with");
+    device.destroy_program(*wet);
+    device.destroy_program(*dry);
+}
+
+void program_handles(Session&, Device& device, Expect& expect) {
+    ProgramBuilder builder("nothing");
+    auto program = device.compile(builder, small_params());
+    expect.ok(program.status(), "compile of an empty program");
+    if (!program) return;
+    auto ticket = device.submit(*program, StepInput{});
+    expect.ok(ticket.status(), "submit of an empty program");
+    if (ticket) expect.ok(device.wait(*ticket), "wait for an empty program");
+    device.destroy_program(*program);
+    device.destroy_program(*program);
+    device.destroy_program({});
+    for (const compute::Program p : {compute::Program{}, compute::Program{4'000'000'000u}, *program})
+        expect.code(device.submit(p, StepInput{}).status(), bad, "submit of program " + std::to_string(p.id) + ", which does not exist");
+    expect.that(!device.finished({1'000'000'000'000ull}), "a ticket never given out is finished");
+}
+
+void pipelines(Session&, Device& device, Expect& expect) {
+    const int stages = static_cast<int>(compute::stage_table().size());
+    for (const int stage : {-1, stages, std::numeric_limits<int>::max()})
+        expect.code(device.create_pipeline(stage, 0, {}).status(), bad, "a pipeline of stage " + std::to_string(stage));
+    const int rain = compute::find_stage("apply_rain");
+    auto a = device.create_pipeline(rain, EFFECT_WATER, {}), b = device.create_pipeline(rain, EFFECT_WATER, {});
+    auto untested = device.create_pipeline(rain, EFFECT_WATER | EFFECT_BED_FRICTION, {}), other = device.create_pipeline(rain, EFFECT_WATER | EFFECT_SAND, {});
+    expect.that(a && b && a->id == b->id, "equal requests do not share a pipeline");
+    expect.that(a && untested && a->id == untested->id, "an effect that the stage does not test makes another pipeline");
+    expect.that(a && other && a->id != other->id, "a tested effect makes no other pipeline");
+    for (int stage = 0; stage < stages; ++stage) expect.ok(device.create_pipeline(stage, ~0u, {}).status(), "all effects of " + std::string(compute::stage_table()[static_cast<std::size_t>(stage)].name));
+}
+
+void timings(Session&, Device& device, Expect& expect) {
+    Rain rain(device);
+    auto dispatch = rain_dispatch(device, rain.terrain, rain.water, rain.ledger);
+    if (!dispatch) return expect.ok(dispatch.status(), "create_pipeline");
+    ProgramBuilder timed("timed"), plain("plain");
+    timed.timestamp("start");
+    timed.dispatch(*dispatch);
+    timed.timestamp("rain");
+    timed.fill({rain.water, 0});
+    timed.timestamp("fill");
+    plain.dispatch(*dispatch);
+    auto with = device.compile(timed, small_params()), without = device.compile(plain, small_params());
+    expect.ok(with.status(), "compile with timestamps");
+    expect.ok(without.status(), "compile without timestamps");
+    if (!with || !without) return;
+    for (int n = 0; n < 20; ++n) { // every slot of a ring, and again
+        auto ticket = device.submit(*with, StepInput{});
+        if (!ticket) return expect.ok(ticket.status(), "submit");
+        expect.ok(device.wait(*ticket), "wait");
+        auto times = device.timings(*ticket);
+        if (!device.capabilities().timestamps) {
+            expect.code(times.status(), {Code::not_supported, Code::ok}, "timings without timestamps");
+            continue;
+        }
+        if (!times) return expect.ok(times.status(), "timings");
+        expect.that(times->size() == 2 && (*times)[0].label == "rain" && (*times)[1].label == "fill", "three timestamps do not give the times of two labels");
+        for (const auto& t : *times) expect.that(t.milliseconds >= 0 && t.milliseconds < 60000, "a time of " + std::to_string(t.milliseconds) + " ms");
+    }
+    auto ticket = device.submit(*without, StepInput{});
+    if (!ticket) return expect.ok(ticket.status(), "submit");
+    expect.ok(device.wait(*ticket), "wait");
+    auto times = device.timings(*ticket);
+    expect.that(times && times->empty(), "a program without timestamps has timings");
+    device.destroy_program(*with);
+    device.destroy_program(*without);
+}
+
+constexpr Contract contracts[] = {
+    {"bad_dispatches", bad_dispatches}, {"bad_transfers", bad_transfers}, {"transfers", transfers}, {"order", order}, {"replay", replay},
+    {"frozen_params", frozen_params}, {"program_handles", program_handles}, {"pipelines", pipelines}, {"timings", timings},
+};
+
+} // namespace
+
+std::span<const Contract> program_contracts() { return contracts; }
+
+} // namespace wadi::conformance
