@@ -89,9 +89,9 @@ bool is_legal(std::uint32_t mask) {
 }
 
 Result<EffectChoice> effects_required(const Settings& settings, const InitialFields& fields) {
-    for (const auto& [name, force] : settings.effects) {
-        if (std::none_of(table.begin(), table.end(), [&](const Effect& e) { return name == e.name; })) {
-            return error(Code::bad_argument, "effects." + name + ": no such effect; known: " + names_of(~0u));
+    for (const auto& forced : settings.effects) {
+        if (std::none_of(table.begin(), table.end(), [&](const Effect& e) { return forced.first == e.name; })) {
+            return error(Code::bad_argument, "effects." + forced.first + ": no such effect; known: " + names_of(~0u));
         }
     }
     EffectChoice choice;

@@ -6,7 +6,7 @@
 namespace wadi {
 
 StepInputs::StepInputs(const Settings& settings)
-    : settings_(settings), quantum_(height_quantum(settings.method)), sources_(settings.sources.size()) {}
+    : settings_(settings), quantum_(height_quantum(settings.method)), totals_(settings.sources.size() + 2) {}
 
 float StepInputs::advance(Total& total, double rate) const {
     const double depth = rate * settings_.dt;
@@ -41,13 +41,14 @@ StepInput StepInputs::next(int step) {
     StepInput input{};
     const double time = step * settings_.dt;
     input.step = step;
-    input.rain = advance(rain_, settings_.rain.at(time));
-    input.evaporation = advance(evaporation_, settings_.evaporation.at(time));
-    for (std::size_t n = 0; n < sources_.size(); ++n) {
+    const std::size_t sources = settings_.sources.size();
+    input.rain = advance(totals_[sources], settings_.rain.at(time));
+    input.evaporation = advance(totals_[sources + 1], settings_.evaporation.at(time));
+    for (std::size_t n = 0; n < sources; ++n) {
         const auto& source = settings_.sources[n];
         const double rate = source.rate.at(time);
         const bool velocity = source.set_velocity && rate > 0;
-        input.source[n] = {advance(sources_[n], rate), static_cast<float>(source.velocity[0]), static_cast<float>(source.velocity[1]),
+        input.source[n] = {advance(totals_[n], rate), static_cast<float>(source.velocity[0]), static_cast<float>(source.velocity[1]),
                            velocity ? 1.0F : 0.0F};
     }
     set_sides(input, time);

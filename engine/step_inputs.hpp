@@ -10,22 +10,26 @@ namespace wadi {
 /// down to whole quanta and each step gets the difference.
 class StepInputs {
   public:
-    explicit StepInputs(const Settings& settings);
-    /// The input of step `step`, which must be one more than at the last call.
-    StepInput next(int step);
-
-  private:
     /// Running total of one rate.
     struct Total {
         double metres = 0, quanta = 0;
     };
+    /// Of every source, then rain, then evaporation.
+    using Totals = std::vector<Total>;
+
+    explicit StepInputs(const Settings& settings);
+    /// The input of step `step`, which must be one more than at the last call.
+    StepInput next(int step);
+    const Totals& totals() const { return totals_; }
+    void set_totals(const Totals& totals) { totals_ = totals; }
+
+  private:
     float advance(Total& total, double rate) const;
     void set_sides(StepInput& input, double time) const;
 
     const Settings settings_;
     const double quantum_;
-    std::vector<Total> sources_;
-    Total rain_, evaporation_;
+    Totals totals_;
 };
 
 /// Shapes as apply_sources reads them: two vec4 per source, MAX_SOURCES of them.

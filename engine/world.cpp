@@ -49,17 +49,19 @@ std::span<const std::byte> bytes_of(const auto& values) { return std::as_bytes(s
 
 } // namespace
 
-World::World(const Settings& settings, std::unique_ptr<compute::Device> device)
-    : settings_(settings), layout_{settings.grid.nx, settings.grid.ny}, params_(derive_params(settings)), device_(std::move(device)), inputs_(settings) {}
+World::World(const Settings& settings, std::unique_ptr<compute::Device> device, compute::GroupSize group)
+    : settings_(settings), layout_{settings.grid.nx, settings.grid.ny}, params_(derive_params(settings)), device_(std::move(device)), group_(group),
+      inputs_(settings) {}
 
 World::~World() = default;
 
-Result<std::unique_ptr<World>> World::create(const Settings& settings, const InitialFields& fields, std::unique_ptr<compute::Device> device) {
+Result<std::unique_ptr<World>> World::create(const Settings& settings, const InitialFields& fields, std::unique_ptr<compute::Device> device,
+                                             compute::GroupSize group) {
     if (auto status = validate(settings); !status) return status;
     if (auto status = validate(fields, settings); !status) return status;
     auto effects = effects_required(settings, fields);
     if (!effects) return effects.status();
-    std::unique_ptr<World> world(new World(settings, std::move(device)));
+    std::unique_ptr<World> world(new World(settings, std::move(device), group));
     world->effects_ = *effects;
     world->plan_ = make_step_plan(effects->mask, settings.method.substeps);
     const std::uint64_t field_bytes = world->layout_.size() * 4, limit = world->device_->capabilities().largest_buffer_bytes;
@@ -80,17 +82,18 @@ Result<compute::Buffer> World::make_buffer(const std::string& label, std::uint64
     return made;
 }
 
+std::uint64_t World::field_bytes(const PlanField& field) const {
+    if (field.role == FieldRole::shapes) return 2 * MAX_SOURCES * sizeof(vec4);
+    if (field.role != FieldRole::ledger) return layout_.size() * 4;
+    if (field.name != "source_ledger") return static_cast<std::uint64_t>(layout_.rim()) * 4 * 4;
+    return std::uint64_t{2 * LEDGER_ENTRIES} * static_cast<std::uint64_t>(layout_.strips()) * static_cast<std::uint64_t>(layout_.pitch()) * 4;
+}
+
 Status World::allocate() {
-    const auto bytes_of_role = [&](const PlanField& field) -> std::uint64_t {
-        if (field.role == FieldRole::shapes) return 2 * MAX_SOURCES * sizeof(vec4);
-        if (field.role != FieldRole::ledger) return layout_.size() * 4;
-        if (field.name != "source_ledger") return static_cast<std::uint64_t>(layout_.rim()) * 4 * 4;
-        return std::uint64_t{2 * LEDGER_ENTRIES} * static_cast<std::uint64_t>(layout_.strips()) * static_cast<std::uint64_t>(layout_.pitch()) * 4;
-    };
     for (const auto& field : plan_.fields) {
         if (field.role == FieldRole::scratch) continue;
         for (std::size_t n = 0; n < (field.ping_pong ? 2u : 1u); ++n) {
-            auto made = make_buffer(field.name + (n == 1 ? "_next" : ""), bytes_of_role(field));
+            auto made = make_buffer(field.name + (n == 1 ? "_next" : ""), field_bytes(field));
             if (!made) return made.status();
             buffers_[field.name][n] = *made;
         }
@@ -146,7 +149,7 @@ compute::Buffer World::buffer(const std::string& name, const Parity& parity) con
 
 Status World::append(compute::ProgramBuilder& builder, const PlanPass& pass, Parity& parity) {
     const auto& stage = compute::stage_table()[static_cast<std::size_t>(pass.stage)];
-    auto pipeline = device_->create_pipeline(pass.stage, plan_.effects, {});
+    auto pipeline = device_->create_pipeline(pass.stage, plan_.effects, group_);
     if (!pipeline) return pipeline.status();
     compute::Dispatch dispatch{*pipeline, pass.stage, plan_.effects, {}, compute::extent_range(stage.extent, params_), std::string(stage.name)};
     for (const auto& name : pass.fields) dispatch.slots.push_back(name.empty() ? compute::Buffer{} : buffer(name, parity));

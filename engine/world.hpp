@@ -35,11 +35,21 @@ struct StageTime {
     int passes = 0;
 };
 
+/// The state of a world between two steps: current buffers of all state fields with their ghosts, ledgers, running totals.
+struct Snapshot {
+    std::uint64_t steps = 0;
+    std::uint32_t effects = 0;
+    std::map<std::string, std::vector<std::uint32_t>> fields; // words as they lie on the device
+    StepInputs::Totals totals;
+};
+
 class World {
   public:
     /// Checks settings and fields, derives the effects, allocates and records. Errors: bad_argument, out_of_memory, and
     /// not_supported for a grid larger than the device's buffers.
-    static Result<std::unique_ptr<World>> create(const Settings& settings, const InitialFields& fields, std::unique_ptr<compute::Device> device);
+    /// `group`: threads per group on GPU backends, 0 = the backend's choice; it changes no bit.
+    static Result<std::unique_ptr<World>> create(const Settings& settings, const InitialFields& fields, std::unique_ptr<compute::Device> device,
+                                                 compute::GroupSize group = {});
     ~World();
 
     /// Submits water steps; returns before the device has finished them.
@@ -51,6 +61,11 @@ class World {
     /// field ("water_depth", "free_surface", "surface_saturation"). A field the mask lacks is zero. Waits for the device.
     Status read(const std::string& name, std::span<float> values);
     Result<WorldStats> stats();
+
+    /// Everything that the next step depends on, to the bit. Survives the loss of the device.
+    Result<Snapshot> snapshot();
+    /// Goes back (or on) to a snapshot of a world with the same settings and fields. Errors: bad_argument where it does not fit.
+    Status restore(const Snapshot& snapshot);
 
     Status set_profiling(bool on);
     /// Mean over the steps since profiling was switched on.
@@ -71,8 +86,9 @@ class World {
   private:
     using Parity = std::set<std::string>; // ping-pong fields whose second buffer is the current one
 
-    World(const Settings& settings, std::unique_ptr<compute::Device> device);
+    World(const Settings& settings, std::unique_ptr<compute::Device> device, compute::GroupSize group);
     Status allocate();
+    std::uint64_t field_bytes(const PlanField& field) const;
     Status upload(const InitialFields& fields);
     Status record_steps();
     Result<compute::Buffer> make_buffer(const std::string& label, std::uint64_t bytes);
@@ -94,6 +110,7 @@ class World {
     EffectChoice effects_;
     StepPlan plan_;
     std::unique_ptr<compute::Device> device_;
+    compute::GroupSize group_;
     StepInputs inputs_;
     std::map<std::string, std::array<compute::Buffer, 2>> buffers_; // state, ledger, shapes
     std::vector<compute::Buffer> scratch_;

@@ -50,7 +50,7 @@ Status World::read_cells(compute::Buffer from, std::span<float> values) {
 Status World::append_stage(compute::ProgramBuilder& builder, const char* stage_name, const std::map<std::string, std::string>& names) {
     const int index = compute::find_stage(stage_name);
     const auto& stage = compute::stage_table()[static_cast<std::size_t>(index)];
-    auto pipeline = device_->create_pipeline(index, plan_.effects, {});
+    auto pipeline = device_->create_pipeline(index, plan_.effects, group_);
     if (!pipeline) return pipeline.status();
     const auto& parity = start_parity_[static_cast<std::size_t>(parity_)];
     compute::Dispatch dispatch{*pipeline, index, plan_.effects, {}, compute::extent_range(stage.extent, params_), stage_name};

@@ -23,10 +23,13 @@ FN void exchange_split(REF(float) pure, REF(float) mixed, float gained_low, floa
     float keep_pure = wmax(pure_height - to_mixed, 0.0f);
     float mixed_total = keep_mixed + to_mixed;
     float pure_total = keep_pure + to_pure;
-    float new_mixed = divide_or_zero(keep_mixed * mixed + to_mixed * pure, mixed_total);
-    float new_pure = divide_or_zero(keep_pure * pure + to_pure * mixed, pure_total);
-    mixed = mixed_total > dry ? new_mixed : mixed;
-    pure = pure_total > dry ? new_pure : pure;
+    // As increments: where nothing is exchanged both keep every bit, so a scene without sand has the same bits whether the
+    // mixture is compiled in or not.
+    float difference = pure - mixed;
+    float to_mixed_share = divide_or_zero(to_mixed * difference, mixed_total);
+    float to_pure_share = divide_or_zero(to_pure * difference, pure_total);
+    mixed = mixed_total > dry ? mixed + to_mixed_share : mixed;
+    pure = pure_total > dry ? pure - to_pure_share : pure;
 }
 
 // Gravity as a face may use it at this time step (NUMERICS 2.4b): the cap keeps the wave CFL number where the scheme

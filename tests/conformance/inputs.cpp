@@ -167,7 +167,7 @@ void add_sources(Scene& scene) {
     Source box;
     box.shape = SourceShape::box;
     box.material = SourceMaterial::sand;
-    box.box = {0.29 * lx, 0.23 * ly, 0.83 * lx + 0.11 * dx, 0.79 * ly + 0.11 * dx};
+    box.box = {0.29 * lx, 0.23 * ly, 0.83 * lx + 0.16 * dx, 0.79 * ly + 0.16 * dx};
     box.rate = constant(0.11);
     Source sink = box;
     sink.material = SourceMaterial::water;
@@ -201,6 +201,15 @@ void open_sides(Scene& scene) {
     if (!water) return;
     s.sides[SIDE_EAST] = {SideKind::discharge, 0, 0.8 * ly, {{{0, 0.8 * deep * ly}, {1, 1.2 * deep * ly}}}};
     s.sides[SIDE_SOUTH] = {SideKind::level, 0.2 * lx, 1e30, constant(scene.name == "lake" ? 1.000008 : 1.03 * deep)};
+}
+
+// What enters and leaves, for the grid that the settings have.
+void add_rim(Scene& scene) {
+    if ((scene.effects & EFFECT_SOURCES) != 0) add_sources(scene);
+    if ((scene.effects & EFFECT_OPEN_SIDES) != 0) open_sides(scene);
+    if ((scene.effects & EFFECT_RAIN) == 0) return;
+    scene.settings.rain = constant(3e-3);
+    scene.settings.evaporation = constant(1e-3);
 }
 
 } // namespace
@@ -252,16 +261,28 @@ Result<Scene> make_scene(const std::string& grid, const std::string& name, const
     } else if (!make_heights(scene)) {
         return error(Code::bad_argument, "scene=" + name + ": no such scene");
     }
-    if ((effects & EFFECT_SOURCES) != 0) add_sources(scene);
-    if ((effects & EFFECT_OPEN_SIDES) != 0) open_sides(scene);
-    if ((effects & EFFECT_RAIN) != 0) {
-        s.rain = constant(3e-3);
-        s.evaporation = constant(1e-3);
-    }
+    add_rim(scene);
     for (const auto& effect : effect_table())
         s.effects.emplace_back(effect.name, (effects & effect.bit) != 0 ? Force::on : Force::off);
     if (auto status = validate(s); !status) return status;
     if (auto status = validate(scene.fields, s); !status) return status;
+    return scene;
+}
+
+Result<Scene> make_large_scene(int size, std::uint32_t effects) {
+    constexpr int tile = 256;
+    auto scene = make_scene("256x256", "random", "default", effects);
+    if (!scene) return scene;
+    scene->settings.grid.nx = scene->settings.grid.ny = size;
+    add_rim(*scene);
+    auto& f = scene->fields;
+    for (auto* field : {&f.terrain, &f.sand, &f.water, &f.velocity_x, &f.velocity_y, &f.sand_velocity_x, &f.sand_velocity_y}) {
+        const std::vector<float> small = std::move(*field);
+        field->clear();
+        field->reserve(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));
+        for (int j = 0; j < size; ++j)
+            for (int i = 0; i < size; ++i) field->push_back(small[static_cast<std::size_t>(j % tile * tile + i % tile)]);
+    }
     return scene;
 }
 

@@ -4,7 +4,6 @@
 #include "engine/compute/device.hpp"
 #include "engine/step_plan.hpp"
 #include "tests/conformance/inputs.hpp"
-#include "tests/reference/solver.hpp"
 #include <array>
 #include <map>
 #include <set>

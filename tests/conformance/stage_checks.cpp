@@ -153,6 +153,17 @@ Verdict check_saturation(const StageRun& run) {
     return {};
 }
 
+struct Definition {
+    const char* stage;
+    Verdict (*check)(const StageRun& run);
+};
+
+constexpr Definition definitions[] = {
+    {"account_sides", check_side_ledger},   {"apply_rain", check_source_ledger},  {"apply_sources", check_source_ledger},
+    {"publish_heights", check_published},   {"publish_velocity", check_published}, {"compute_saturation", check_saturation},
+    {"mark_limits", check_marks},
+};
+
 } // namespace
 
 const BenchBuffer& StageRun::buffer(const char* binding) const {
@@ -167,12 +178,13 @@ float StageRun::before(const char* binding, int i, int j) const {
     return from.exists ? std::bit_cast<float>(from.before[FieldLayout{params.nx, params.ny}.index(i, j)]) : 0.0F;
 }
 
+bool has_definition(const std::string& stage) {
+    return std::any_of(std::begin(definitions), std::end(definitions), [&](const Definition& d) { return stage == d.stage; });
+}
+
 Verdict check_definition(const StageRun& run) {
-    if (run.stage.name == "account_sides") return check_side_ledger(run);
-    if (run.stage.name == "apply_rain" || run.stage.name == "apply_sources") return check_source_ledger(run);
-    if (run.stage.name.starts_with("publish_")) return check_published(run);
-    if (run.stage.name == "compute_saturation") return check_saturation(run);
-    if (run.stage.name == "mark_limits") return check_marks(run);
+    for (const Definition& definition : definitions)
+        if (run.stage.name == definition.stage) return definition.check(run);
     return {};
 }
 

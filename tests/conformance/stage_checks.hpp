@@ -19,7 +19,8 @@ struct StageRun {
     float before(const char* binding, int i, int j) const; // 0 where the mask lacks the binding
 };
 
-/// The direct checks of a stage; ok where it has none.
+bool has_definition(const std::string& stage);
+/// The direct check of a stage; ok where it has none.
 Verdict check_definition(const StageRun& run);
 
 Verdict check_marks(const StageRun& run); // marks_check.cpp

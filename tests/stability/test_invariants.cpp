@@ -39,7 +39,7 @@ void check_exact(World& world, const WorldStats& stats) {
 TEST_CASE("initial + in - out = now to the last bit, with every effect on, on every backend") {
     for (const auto& backend : available_backends()) {
         CAPTURE(backend);
-        auto world = make_world(everything(48, 40), {backend, {}});
+        auto world = make_world(everything(48, 40), {backend});
         CHECK(world->plan().effects == 2047);
         step(*world, 300);
         auto stats = world->stats();
@@ -72,7 +72,8 @@ TEST_CASE("any time step from 1e-5 to 1 s: exact, positive, finite") {
 }
 
 TEST_CASE("one-cell and one-row grids run") {
-    for (const auto& [nx, ny] : {std::pair{1, 1}, {1, 40}, {40, 1}, {2, 2}}) {
+    for (const auto& [columns, rows] : {std::pair{1, 1}, {1, 40}, {40, 1}, {2, 2}}) {
+        const int nx = columns, ny = rows;
         CAPTURE(nx);
         CAPTURE(ny);
         auto scene = everything(nx, ny);

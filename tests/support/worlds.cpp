@@ -52,7 +52,7 @@ Scene shipped_level(const std::string& name, int nx, int ny) {
 std::unique_ptr<World> make_world(const Scene& scene, const Target& target) {
     auto device = compute::open_device(target.backend, -1, target.options);
     REQUIRE_MESSAGE(device, device.status().message);
-    auto world = World::create(scene.settings, scene.fields, std::move(*device));
+    auto world = World::create(scene.settings, scene.fields, std::move(*device), target.group);
     REQUIRE_MESSAGE(world, world.status().message);
     return std::move(*world);
 }

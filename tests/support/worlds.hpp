@@ -26,7 +26,8 @@ Scene shipped_level(const std::string& name, int nx, int ny);
 
 struct Target {
     std::string backend = "cpu";
-    compute::DeviceOptions options;
+    compute::DeviceOptions options = {};
+    compute::GroupSize group = {};
 };
 
 /// Fails the running test when the world cannot be made.

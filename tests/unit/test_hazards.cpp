@@ -63,7 +63,7 @@ TEST_CASE("validate refuses what no backend may run, and names it") {
     const auto message = [](const Op& op) {
         ProgramBuilder builder("test");
         if (const auto* dispatch = std::get_if<Dispatch>(&op)) builder.dispatch(*dispatch);
-        if (const auto* c = std::get_if<Copy>(&op)) builder.copy(*c);
+        if (const auto* copied = std::get_if<Copy>(&op)) builder.copy(*copied);
         return validate(builder).message;
     };
     CHECK(message(velocity(a, b, c, d)).empty());

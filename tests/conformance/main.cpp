@@ -1,0 +1,189 @@
+// The conformance suite. Quick start for a new backend: register it, run `conformance --backend NAME`, read README.md here.
+#include "tests/conformance/coverage.hpp"
+#include "tests/conformance/perf.hpp"
+#include "tests/conformance/report.hpp"
+#include "tests/conformance/self_check.hpp"
+#include "tests/conformance/target.hpp"
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+
+namespace wadi::conformance {
+namespace {
+
+constexpr int exit_failed = 1, exit_usage = 2;
+
+struct Options {
+    std::vector<std::string> backends, required, layers;
+    std::string stage, chosen_case, output = "console";
+    bool validate = false;
+    PerfOptions perf;
+};
+
+const Layer* const layers[] = {&contract_layer(), &stage_layer(), &step_layer(), &invariant_layer()};
+
+struct Job {
+    const Layer* layer;
+    CaseSpec spec;
+};
+
+// The cases that the options choose. A case with parameters need not be a listed one: any that its layer can make is run.
+Result<std::vector<Job>> choose(const Options& options) {
+    CaseSpec wanted;
+    if (!options.chosen_case.empty()) {
+        auto parsed = parse_case(options.chosen_case);
+        if (!parsed) return parsed.status();
+        wanted = *parsed;
+    }
+    if (!options.stage.empty() && compute::find_stage(options.stage) < 0)
+        return error(Code::bad_argument, "--stage " + options.stage + ": no such stage; `conformance coverage` lists them");
+    std::vector<Job> jobs;
+    bool known = wanted.name.empty();
+    for (const Layer* layer : layers) {
+        if (!options.layers.empty() && std::find(options.layers.begin(), options.layers.end(), layer->name) == options.layers.end()) continue;
+        for (CaseSpec& spec : layer->list()) {
+            if (!options.stage.empty() && spec.name != options.stage) continue;
+            if (!wanted.name.empty() && spec.name != wanted.name) continue;
+            if (known && !wanted.parameters.empty()) continue;
+            known = true;
+            jobs.push_back({layer, wanted.parameters.empty() ? std::move(spec) : wanted});
+        }
+    }
+    if (!known) return error(Code::bad_argument, "--case " + wanted.name + ": no such case; `conformance list` prints all");
+    if (jobs.empty()) return error(Code::bad_argument, "no case is left by --layer, --stage and --case");
+    return jobs;
+}
+
+Result<std::vector<Target>> choose_targets(const Options& options) {
+    const auto targets = all_targets();
+    if (options.backends.empty()) return targets;
+    std::vector<Target> chosen;
+    for (const std::string& name : options.backends) {
+        const std::size_t before = chosen.size();
+        for (const Target& target : targets)
+            if (name == target.label() || name == target.info.backend) chosen.push_back(target);
+        if (chosen.size() > before) continue;
+        std::string known;
+        for (const Target& target : targets) known += (known.empty() ? "" : ", ") + target.label() + " (" + target.info.name + ")";
+        return error(Code::not_found, "--backend " + name + ": no such device; there are: " + known);
+    }
+    return chosen;
+}
+
+int usage(const Status& status) {
+    std::fprintf(stderr, "conformance: %s\n", status.message.c_str());
+    return exit_usage;
+}
+
+void run_job(Session& session, const Job& job, bool validate, Report& report) {
+    const auto start = std::chrono::steady_clock::now();
+    Verdict verdict = job.layer->run(job.spec, session);
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const auto messages = session.take_messages();
+    if (validate && !messages.empty() && verdict.outcome != Outcome::fail)
+        verdict = failed(std::to_string(messages.size()) + " validation messages, the first: " + messages.front());
+    report.add(session.target().label(), job.layer->name, job.spec.text(), verdict, seconds);
+}
+
+// A missing required backend is a failure of its own.
+void check_required(const Options& options, const std::vector<Target>& targets, Report& report) {
+    for (const std::string& name : options.required) {
+        const bool found = std::any_of(targets.begin(), targets.end(), [&](const Target& t) { return name == t.info.backend || name == t.label(); });
+        if (!found) report.add(name, "contract", "required", failed("this build or machine has no such device"), 0);
+    }
+}
+
+int run_tests(const Options& options) {
+    auto jobs = choose(options);
+    auto targets = choose_targets(options);
+    if (!jobs) return usage(jobs.status());
+    if (!targets) return usage(targets.status());
+    const auto start = std::chrono::steady_clock::now();
+    Report report(options.output == "csv");
+    report.start();
+    check_required(options, *targets, report);
+    for (const Target& target : *targets) {
+        compute::DeviceOptions device_options;
+        device_options.validate = options.validate;
+        Session session(target, device_options);
+        auto device = session.device();
+        if (!device) {
+            report.add(target.label(), "contract", "open", failed(device.status().message), 0);
+            continue;
+        }
+        for (const Job& job : *jobs) run_job(session, job, session.options().validate, report);
+        session.close(); // what is left over shows in the layers' messages
+        const auto messages = session.take_messages();
+        if (session.options().validate && !messages.empty()) report.add(target.label(), "contract", "close", failed(messages.front()), 0);
+    }
+    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (options.output != "csv") std::printf("\n%d cases in %.1f s\n", report.total(), seconds);
+    report.finish();
+    return report.failures() > 0 || report.total() == 0 ? exit_failed : 0;
+}
+
+int run_list(const Options& options) {
+    auto jobs = choose(options);
+    if (!jobs) return usage(jobs.status());
+    for (const Job& job : *jobs) std::printf("%-9s %s\n", job.layer->name, job.spec.text().c_str());
+    for (const Target& target : all_targets()) std::printf("# %s: %s\n", target.label().c_str(), target.info.name.c_str());
+    return 0;
+}
+
+int run_perf_mode(const Options& options) {
+    auto targets = choose_targets(options);
+    if (!targets) return usage(targets.status());
+    if (!options.stage.empty() && compute::find_stage(options.stage) < 0) return usage(error(Code::bad_argument, "--stage " + options.stage + ": no such stage"));
+    PerfOptions perf = options.perf;
+    perf.stage = options.stage;
+    perf.csv = options.output == "csv";
+    bool first = true;
+    for (const Target& target : *targets) {
+        Session session(target, {});
+        if (auto status = run_perf(session, perf, first); !status) {
+            std::fprintf(stderr, "%s: %s\n", target.label().c_str(), status.message.c_str());
+            return exit_failed;
+        }
+        first = false;
+    }
+    return 0;
+}
+
+int run(int argc, char** argv) {
+    Options options;
+    CLI::App app{"Tests every backend of this build against the compute interface's contract, the reference solver and the CPU.", "conformance"};
+    app.require_subcommand(0, 1);
+    app.fallthrough();
+    app.add_option("--backend", options.backends, "devices to test: cpu, vulkan, vulkan1, ...; without it all there are")->delimiter(',');
+    app.add_option("--require", options.required, "backends whose absence is a failure")->delimiter(',');
+    app.add_option("--layer", options.layers, "contract, stage, step or invariant")->delimiter(',')->check(CLI::IsMember({"contract", "stage", "step", "invariant"}));
+    app.add_option("--stage", options.stage, "only the cases of this stage");
+    app.add_option("--case", options.chosen_case, "NAME, or NAME(key=value,...) as a failure prints it");
+    app.add_option("--output", options.output, "console or csv")->check(CLI::IsMember({"console", "csv"}));
+    app.add_flag("--validate", options.validate, "validation layers on; any message fails its case");
+    app.add_subcommand("test", "run the cases (the default)");
+    CLI::App* perf = app.add_subcommand("perf", "time every stage and whole steps");
+    perf->add_option("--max-size", options.perf.max_size, "largest grid side, from 256 by doubling")->check(CLI::Range(256, 16384));
+    perf->add_option("--repeats", options.perf.repeats, "runs per row")->check(CLI::Range(1, 10000));
+    const CLI::App* list = app.add_subcommand("list", "print the cases and devices");
+    const CLI::App* coverage = app.add_subcommand("coverage", "print which masks, grids, scenes and methods each stage meets");
+    const CLI::App* self_check = app.add_subcommand("self-check", "tamper with results; the suite must notice");
+    CLI11_PARSE(app, argc, argv);
+    if (perf->parsed()) return run_perf_mode(options);
+    if (list->parsed()) return run_list(options);
+    if (coverage->parsed()) return print_coverage();
+    if (self_check->parsed()) {
+        Report report(options.output == "csv");
+        report.start();
+        run_self_check(report);
+        report.finish();
+        return report.failures() > 0 ? exit_failed : 0;
+    }
+    return run_tests(options);
+}
+
+} // namespace
+} // namespace wadi::conformance
+
+int main(int argc, char** argv) { return wadi::conformance::run(argc, argv); }

@@ -1,0 +1,19 @@
+// Measurements: time per stage and per whole step, the bytes they move, and how near that is to what the device can copy.
+#pragma once
+#include "tests/conformance/target.hpp"
+#include <string>
+#include <vector>
+
+namespace wadi::conformance {
+
+struct PerfOptions {
+    int max_size = 1024;
+    int repeats = 20;
+    std::string stage; // "" = all stages and whole steps
+    bool csv = false;
+};
+
+/// Measures one device and prints its rows; CSV with a header when `first`.
+Status run_perf(Session& session, const PerfOptions& options, bool first);
+
+} // namespace wadi::conformance
