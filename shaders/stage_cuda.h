@@ -30,8 +30,13 @@ typedef unsigned int uint;
 #define HAS(BITS) ((EFFECTS & (BITS)) == (BITS))
 #define IDX(I, J) (((J) + GHOST) * P.pitch + (I) + GHOST)
 
+#ifdef WADI_RELAXED_FLOAT
+FN float wdiv(float a, float b) { return a / b; }
+FN float wsqrt(float x) { return sqrtf(x); }
+#else
 FN float wdiv(float a, float b) { return __fdiv_rn(a, b); }
 FN float wsqrt(float x) { return __fsqrt_rn(x); }
+#endif
 FN float wabs(float x) { return fabsf(x); }
 FN float wtrunc(float x) { return truncf(x); }
 FN float wfloor(float x) { return floorf(x); }

@@ -19,7 +19,8 @@ Status dispatch(compute::Device& device, int stage, std::uint32_t effects, const
     auto pipeline = device.create_pipeline(stage, effects, group);
     if (!pipeline) return pipeline.status();
     compute::ProgramBuilder builder("bench " + std::string(info.name));
-    builder.dispatch({*pipeline, stage, effects, std::move(slots), compute::extent_range(info.extent, params), std::string(info.name)});
+    builder.dispatch(
+        {*pipeline, stage, effects, std::move(slots), compute::extent_range(info.extent, params), std::string(info.name)});
     auto program = device.compile(builder, params);
     if (!program) return program.status();
     auto ticket = device.submit(*program, input);
@@ -38,7 +39,9 @@ Status upload(compute::Device& device, const BenchBuffer& from, compute::Buffer 
 } // namespace
 
 std::span<const float> BenchBuffer::floats() const { return {reinterpret_cast<const float*>(after.data()), before.size()}; }
-std::span<const std::uint32_t> BenchBuffer::words() const { return {reinterpret_cast<const std::uint32_t*>(after.data()), before.size()}; }
+std::span<const std::uint32_t> BenchBuffer::words() const {
+    return {reinterpret_cast<const std::uint32_t*>(after.data()), before.size()};
+}
 
 Status run_bench(compute::Device& device, int stage, std::uint32_t effects, const WorldParams& params, const StepInput& input,
                  compute::GroupSize group, std::vector<BenchBuffer>& buffers) {
@@ -77,7 +80,8 @@ Verdict check_guards(const compute::StageInfo& stage, const std::vector<BenchBuf
             if (!buffer.may_change[w] && after[w] != buffer.before[w])
                 return failed(name + ": " + word_place(w, layout) + " was written, where the stage has nothing to write");
             if (buffer.must_change[w] && std::isnan(values[w]))
-                return failed(name + ": " + word_place(w, layout) + " holds NaN: not written, or computed from what must not be read");
+                return failed(name + ": " + word_place(w, layout) +
+                              " holds NaN: not written, or computed from what must not be read");
         }
     }
     return {};

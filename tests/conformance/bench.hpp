@@ -12,11 +12,11 @@ namespace wadi::conformance {
 /// One binding's buffer as the host prepares it and as the device left it; 4 KiB of guard bytes follow the values. Buffers are
 /// bound whole, so the guard ahead of a field's cells is its own ghost rows.
 struct BenchBuffer {
-    bool exists = false;                // false: the mask lacks the binding
-    std::vector<std::uint32_t> before;  // values as words, without the guard
-    std::vector<bool> may_change;       // words that the stage may write
-    std::vector<bool> must_change;      // words that held NaN and must hold a number afterwards
-    std::vector<std::byte> after;       // values and guard, as read back
+    bool exists = false;               // false: the mask lacks the binding
+    std::vector<std::uint32_t> before; // values as words, without the guard
+    std::vector<bool> may_change;      // words that the stage may write
+    std::vector<bool> must_change;     // words that held NaN and must hold a number afterwards
+    std::vector<std::byte> after;      // values and guard, as read back
 
     std::span<const float> floats() const;
     std::span<const std::uint32_t> words() const;

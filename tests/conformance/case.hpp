@@ -15,7 +15,7 @@ const char* outcome_name(Outcome outcome);
 struct Verdict {
     Outcome outcome = Outcome::ok;
     std::string detail;
-    double error = -1;   // largest difference found, in the field's unit; -1 = the case compares no numbers
+    double error = -1; // largest difference found, in the field's unit; -1 = the case compares no numbers
     double allowed = -1;
 };
 

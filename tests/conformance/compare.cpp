@@ -56,7 +56,8 @@ Verdict compare_fields(const std::vector<FieldCheck>& components, const FieldLay
         const double difference = std::abs(got - field.wide[at]);
         if (difference > error) {
             error = difference;
-            place = field.name + cell(i, j) + " is " + number(got) + ", expected " + number(field.wide[at]) + " +- " + number(allowed);
+            place = field.name + cell(i, j) + " is " + number(got) + ", expected " + number(field.wide[at]) + " +- " +
+                    number(allowed);
         }
     });
     Verdict verdict{Outcome::ok, {}, error, allowed};
@@ -67,14 +68,14 @@ Verdict compare_fields(const std::vector<FieldCheck>& components, const FieldLay
         verdict.detail = place;
     } else if (8 * e0 + truncation > 0.05 * scale + 9 * quanta) {
         verdict.outcome = Outcome::fail;
-        verdict.detail = "proves nothing: the float and the double reference differ by " + number(e0) + " of " + number(scale) + " at " + branch +
-                         ", truncation by " + number(truncation);
+        verdict.detail = "proves nothing: the float and the double reference differ by " + number(e0) + " of " + number(scale) +
+                         " at " + branch + ", truncation by " + number(truncation);
     }
     return verdict;
 }
 
-Verdict compare_bits(const std::string& name, std::span<const float> got, std::span<const float> expected, const FieldLayout& layout,
-                     compute::Range2 range) {
+Verdict compare_bits(const std::string& name, std::span<const float> got, std::span<const float> expected,
+                     const FieldLayout& layout, compute::Range2 range) {
     for (int j = range.j0; j < range.j1; ++j) {
         for (int i = range.i0; i < range.i1; ++i) {
             const std::size_t at = layout.index(i, j);
@@ -86,9 +87,7 @@ Verdict compare_bits(const std::string& name, std::span<const float> got, std::s
     return {};
 }
 
-compute::Range2 whole_layout(const FieldLayout& layout) {
-    return {-GHOST, -GHOST, layout.nx + 1 + GHOST, layout.ny + 1 + GHOST};
-}
+compute::Range2 whole_layout(const FieldLayout& layout) { return {-GHOST, -GHOST, layout.nx + 1 + GHOST, layout.ny + 1 + GHOST}; }
 
 Verdict worse(const Verdict& a, const Verdict& b) {
     if (a.outcome == Outcome::fail || b.outcome == Outcome::fail) return a.outcome == Outcome::fail ? a : b;

@@ -12,11 +12,11 @@ namespace wadi::conformance {
 /// One field of a comparison, all in Wadi's layout.
 struct FieldCheck {
     std::string name;
-    compute::Range2 range{};        // where it has values
+    compute::Range2 range{}; // where it has values
     std::span<const float> got;
-    std::span<const float> narrow;  // reference<float>
-    std::span<const double> wide;   // reference<double>
-    std::vector<bool> skip;         // cells not compared; empty = none
+    std::span<const float> narrow;     // reference<float>
+    std::span<const double> wide;      // reference<double>
+    std::vector<bool> skip;            // cells not compared; empty = none
     std::span<const double> unrounded; // reference<double> with the quantum off; empty = not needed
 };
 
@@ -28,8 +28,8 @@ struct FieldCheck {
 Verdict compare_fields(const std::vector<FieldCheck>& components, const FieldLayout& layout, double quanta);
 
 /// Fields with values equal to the bit; the detail names the first cell that is not.
-Verdict compare_bits(const std::string& name, std::span<const float> got, std::span<const float> expected, const FieldLayout& layout,
-                     compute::Range2 range);
+Verdict compare_bits(const std::string& name, std::span<const float> got, std::span<const float> expected,
+                     const FieldLayout& layout, compute::Range2 range);
 
 /// All cells of a field, ghosts included.
 compute::Range2 whole_layout(const FieldLayout& layout);

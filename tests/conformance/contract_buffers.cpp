@@ -16,9 +16,11 @@ void sizes(Session&, Device& device, Expect& expect) {
     const std::uint64_t largest = device.capabilities().largest_buffer_bytes;
     expect.that(largest > 0, "largest_buffer_bytes is 0");
     expect.code(device.create_buffer({0, "empty"}).status(), bad, "a buffer of 0 bytes");
-    expect.that(device.create_buffer({0, "empty"}).status().message.find("empty") != std::string::npos, "the message does not name the buffer");
+    expect.that(device.create_buffer({0, "empty"}).status().message.find("empty") != std::string::npos,
+                "the message does not name the buffer");
     expect.code(device.create_buffer({largest + 4, "huge"}).status(), bad, "a buffer above largest_buffer_bytes");
-    expect.code(device.create_buffer({std::numeric_limits<std::uint64_t>::max(), "absurd"}).status(), bad, "a buffer of 2^64 - 1 bytes");
+    expect.code(device.create_buffer({std::numeric_limits<std::uint64_t>::max(), "absurd"}).status(), bad,
+                "a buffer of 2^64 - 1 bytes");
     for (const std::uint64_t bytes : {4u, 256u, 4100u}) {
         auto made = device.create_buffer({bytes, "small"});
         expect.ok(made.status(), "a buffer of " + std::to_string(bytes) + " bytes");
@@ -92,13 +94,14 @@ void many(Session&, Device& device, Expect& expect) {
     for (std::uint32_t n = 0; n < 200; ++n) buffers.push_back(buffer_of(device, {n, ~n}));
     for (std::uint32_t n = 0; n < 200; n += 2) device.destroy_buffer(buffers[n]);
     for (std::uint32_t n = 1; n < 200; n += 2)
-        expect.that(words_of(device, buffers[n], 2) == std::vector<std::uint32_t>{n, ~n}, "buffer " + std::to_string(n) + " of 200 lost its content");
+        expect.that(words_of(device, buffers[n], 2) == std::vector<std::uint32_t>{n, ~n},
+                    "buffer " + std::to_string(n) + " of 200 lost its content");
     for (std::uint32_t n = 1; n < 200; n += 2) device.destroy_buffer(buffers[n]);
 }
 
 constexpr Contract contracts[] = {
-    {"buffer_sizes", sizes}, {"buffer_starts_zero", zeros}, {"buffer_round_trip", round_trip},
-    {"buffer_ranges", ranges}, {"buffer_handles", handles}, {"many_buffers", many},
+    {"buffer_sizes", sizes},   {"buffer_starts_zero", zeros}, {"buffer_round_trip", round_trip},
+    {"buffer_ranges", ranges}, {"buffer_handles", handles},   {"many_buffers", many},
 };
 
 } // namespace

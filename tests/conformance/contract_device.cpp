@@ -78,7 +78,8 @@ void two_devices(Session& session, Device&, Expect& expect) {
     if (!a || !b) return;
     const Buffer on_a = buffer_of(**a, {1, 2, 3}), on_b = buffer_of(**b, {4, 5, 6});
     a->reset();
-    expect.that(on_a.id != 0 && words_of(**b, on_b, 3) == std::vector<std::uint32_t>{4, 5, 6}, "closing one device disturbs another");
+    expect.that(on_a.id != 0 && words_of(**b, on_b, 3) == std::vector<std::uint32_t>{4, 5, 6},
+                "closing one device disturbs another");
 }
 
 // A program whose operations read and write a few buffers in every order, the same on the device, on the device with a barrier
@@ -120,9 +121,11 @@ class RandomProgram {
         return (state_ >> 8) % below;
     }
 
-    Status add(Device& device, ProgramBuilder& builder, const std::vector<Buffer>& buffers, const WorldParams& params, const FieldLayout& layout) {
+    Status add(Device& device, ProgramBuilder& builder, const std::vector<Buffer>& buffers, const WorldParams& params,
+               const FieldLayout& layout) {
         std::vector<Buffer> shuffled = buffers;
-        for (std::size_t n = shuffled.size(); n > 1; --n) std::swap(shuffled[n - 1], shuffled[next(static_cast<std::uint32_t>(n))]);
+        for (std::size_t n = shuffled.size(); n > 1; --n)
+            std::swap(shuffled[n - 1], shuffled[next(static_cast<std::uint32_t>(n))]);
         const std::uint32_t kind = next(10);
         if (kind == 0) {
             builder.fill({shuffled[0], 0});
@@ -134,7 +137,12 @@ class RandomProgram {
             const int stage = compute::find_stage(name);
             auto pipeline = device.create_pipeline(stage, EFFECT_SAND, {});
             if (!pipeline) return pipeline.status();
-            builder.dispatch({*pipeline, stage, EFFECT_SAND, {shuffled[0], shuffled[1], shuffled[2], shuffled[3]}, compute::extent_range(compute::Extent::cells, params), name});
+            builder.dispatch({*pipeline,
+                              stage,
+                              EFFECT_SAND,
+                              {shuffled[0], shuffled[1], shuffled[2], shuffled[3]},
+                              compute::extent_range(compute::Extent::cells, params),
+                              name});
         }
         return ok_status();
     }
@@ -150,7 +158,8 @@ void planned_barriers(Session& session, Device& device, Expect& expect) {
     if (!cpu) return expect.ok(cpu.status(), "open the CPU");
     if (!other) return expect.ok(other.status(), "open with other barriers");
     for (const std::uint32_t seed : {1u, 2u, 3u}) {
-        auto expected = RandomProgram(seed).run(**cpu), got = RandomProgram(seed).run(device), barriers = RandomProgram(seed).run(**other);
+        auto expected = RandomProgram(seed).run(**cpu), got = RandomProgram(seed).run(device),
+             barriers = RandomProgram(seed).run(**other);
         expect.ok(expected.status(), "a random program on the CPU");
         expect.ok(got.status(), "a random program");
         expect.ok(barriers.status(), "a random program with other barriers");
@@ -172,14 +181,17 @@ void group_sizes(Session& session, Device& device, Expect& expect) {
         std::vector<BenchBuffer> first;
         for (const compute::GroupSize group : {compute::GroupSize{0, 0}, {1, 1}, {8, 8}, {128, 1}, {3, 5}}) {
             auto buffers = stage_buffers(info, *scene, pilot, params);
-            expect.ok(run_bench(device, stage, scene->effects, params, pilot.input, group, buffers), "group size " + std::to_string(group.x) + " x " + std::to_string(group.y));
+            expect.ok(run_bench(device, stage, scene->effects, params, pilot.input, group, buffers),
+                      "group size " + std::to_string(group.x) + " x " + std::to_string(group.y));
             if (first.empty()) first = buffers;
             for (std::size_t b = 0; b < buffers.size(); ++b)
-                expect.that(buffers[b].after == first[b].after, std::string(name) + ": group size " + std::to_string(group.x) + " x " + std::to_string(group.y) + " changes a bit");
+                expect.that(buffers[b].after == first[b].after, std::string(name) + ": group size " + std::to_string(group.x) +
+                                                                    " x " + std::to_string(group.y) + " changes a bit");
         }
         if (session.target().info.kind == compute::DeviceKind::cpu) continue; // it has no groups
         for (const compute::GroupSize group : {compute::GroupSize{-1, 1}, {1 << 20, 1}, {1 << 15, 1 << 15}})
-            expect.code(device.create_pipeline(stage, scene->effects, group).status(), {Code::bad_argument}, "group size " + std::to_string(group.x) + " x " + std::to_string(group.y));
+            expect.code(device.create_pipeline(stage, scene->effects, group).status(), {Code::bad_argument},
+                        "group size " + std::to_string(group.x) + " x " + std::to_string(group.y));
     }
 }
 
@@ -199,8 +211,13 @@ void steps_allocate_nothing(Session& session, Device&, Expect& expect) {
 }
 
 constexpr Contract contracts[] = {
-    {"capabilities", capabilities}, {"device_lost", device_lost}, {"world_after_loss", world_after_loss}, {"two_devices", two_devices},
-    {"planned_barriers", planned_barriers}, {"group_sizes", group_sizes}, {"steps_allocate_nothing", steps_allocate_nothing},
+    {"capabilities", capabilities},
+    {"device_lost", device_lost},
+    {"world_after_loss", world_after_loss},
+    {"two_devices", two_devices},
+    {"planned_barriers", planned_barriers},
+    {"group_sizes", group_sizes},
+    {"steps_allocate_nothing", steps_allocate_nothing},
 };
 
 } // namespace

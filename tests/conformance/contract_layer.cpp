@@ -59,12 +59,17 @@ WorldParams small_params() {
     return params;
 }
 
-Result<compute::Dispatch> rain_dispatch(compute::Device& device, compute::Buffer terrain, compute::Buffer water, compute::Buffer ledger) {
+Result<compute::Dispatch> rain_dispatch(compute::Device& device, compute::Buffer terrain, compute::Buffer water,
+                                        compute::Buffer ledger) {
     const int stage = compute::find_stage("apply_rain");
     auto pipeline = device.create_pipeline(stage, EFFECT_WATER | EFFECT_RAIN, {});
     if (!pipeline) return pipeline.status();
-    return compute::Dispatch{*pipeline, stage, EFFECT_WATER | EFFECT_RAIN, {terrain, water, ledger, {}},
-                             compute::extent_range(compute::Extent::strips, small_params()), "rain"};
+    return compute::Dispatch{*pipeline,
+                             stage,
+                             EFFECT_WATER | EFFECT_RAIN,
+                             {terrain, water, ledger, {}},
+                             compute::extent_range(compute::Extent::strips, small_params()),
+                             "rain"};
 }
 
 const Layer& contract_layer() {

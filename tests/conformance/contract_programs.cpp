@@ -20,7 +20,9 @@ struct Rain {
         const FieldLayout layout{small_params().nx, small_params().ny};
         terrain = buffer_of(device, std::vector<std::uint32_t>(layout.size(), 0));
         water = buffer_of(device, std::vector<std::uint32_t>(layout.size(), 0));
-        ledger = buffer_of(device, std::vector<std::uint32_t>(std::size_t{2 * LEDGER_ENTRIES} * static_cast<std::size_t>(layout.strips() * layout.pitch()), 0));
+        ledger = buffer_of(device,
+                           std::vector<std::uint32_t>(
+                               std::size_t{2 * LEDGER_ENTRIES} * static_cast<std::size_t>(layout.strips() * layout.pitch()), 0));
     }
     ~Rain() {
         for (const Buffer buffer : {terrain, water, ledger}) device.destroy_buffer(buffer);
@@ -61,7 +63,8 @@ void bad_dispatches(Session&, Device& device, Expect& expect) {
     refuse(device, expect, "a null pipeline", [](Dispatch& d) { d.pipeline = {}; });
     refuse(device, expect, "a pipeline never made", [](Dispatch& d) { d.pipeline = {4'000'000'000u}; });
     refuse(device, expect, "stage -1", [](Dispatch& d) { d.stage = -1; });
-    refuse(device, expect, "a stage past the table", [](Dispatch& d) { d.stage = static_cast<int>(compute::stage_table().size()); });
+    refuse(device, expect, "a stage past the table",
+           [](Dispatch& d) { d.stage = static_cast<int>(compute::stage_table().size()); });
     auto other = device.create_pipeline(compute::find_stage("publish_velocity"), EFFECT_WATER, {});
     expect.ok(other.status(), "create_pipeline");
     if (other) refuse(device, expect, "the pipeline of another stage", [&](Dispatch& d) { d.pipeline = *other; });
@@ -71,7 +74,8 @@ void bad_dispatches(Session&, Device& device, Expect& expect) {
 }
 
 void bad_transfers(Session&, Device& device, Expect& expect) {
-    const Buffer a = buffer_of(device, std::vector<std::uint32_t>(16, 1)), b = buffer_of(device, std::vector<std::uint32_t>(8, 2));
+    const Buffer a = buffer_of(device, std::vector<std::uint32_t>(16, 1)),
+                 b = buffer_of(device, std::vector<std::uint32_t>(8, 2));
     const Buffer gone = buffer_of(device, {0});
     device.destroy_buffer(gone);
     const auto copy = [&](compute::Copy c, const std::string& what) {
@@ -101,7 +105,8 @@ void bad_transfers(Session&, Device& device, Expect& expect) {
 void transfers(Session&, Device& device, Expect& expect) {
     std::vector<std::uint32_t> count(16);
     for (std::uint32_t n = 0; n < 16; ++n) count[n] = n;
-    const Buffer a = buffer_of(device, count), b = buffer_of(device, std::vector<std::uint32_t>(16, 9)), c = buffer_of(device, std::vector<std::uint32_t>(16, 8));
+    const Buffer a = buffer_of(device, count), b = buffer_of(device, std::vector<std::uint32_t>(16, 9)),
+                 c = buffer_of(device, std::vector<std::uint32_t>(16, 8));
     ProgramBuilder builder("transfers");
     builder.fill({b, 0xABCD1234u});
     builder.copy({a, b, 8, 20, 12});
@@ -112,13 +117,16 @@ void transfers(Session&, Device& device, Expect& expect) {
     std::vector<std::uint32_t> wanted(16, 0xABCD1234u);
     for (std::uint32_t n = 0; n < 3; ++n) wanted[5 + n] = 2 + n;
     expect.that(words_of(device, c, 16) == wanted, "fill, copy at offsets, copy on: wrong content");
-    expect.that(words_of(device, b, 16) == std::vector<std::uint32_t>(16, 3), "a fill after a copy from the same buffer: wrong content");
+    expect.that(words_of(device, b, 16) == std::vector<std::uint32_t>(16, 3),
+                "a fill after a copy from the same buffer: wrong content");
     expect.that(words_of(device, a, 16) == count, "a copy changed its source");
     for (const Buffer buffer : {a, b, c}) device.destroy_buffer(buffer);
 }
 
 void order(Session&, Device& device, Expect& expect) {
-    const Buffer a = buffer_of(device, std::vector<std::uint32_t>(4096, 1)), b = buffer_of(device, std::vector<std::uint32_t>(4096, 0)), c = buffer_of(device, std::vector<std::uint32_t>(4096, 0));
+    const Buffer a = buffer_of(device, std::vector<std::uint32_t>(4096, 1)),
+                 b = buffer_of(device, std::vector<std::uint32_t>(4096, 0)),
+                 c = buffer_of(device, std::vector<std::uint32_t>(4096, 0));
     ProgramBuilder to_b("to b"), to_c("to c");
     to_b.copy({a, b, 0, 0, 16384});
     to_c.copy({a, c, 0, 0, 16384});
@@ -206,7 +214,8 @@ void program_handles(Session&, Device& device, Expect& expect) {
     device.destroy_program(*program);
     device.destroy_program({});
     for (const compute::Program p : {compute::Program{}, compute::Program{4'000'000'000u}, *program})
-        expect.code(device.submit(p, StepInput{}).status(), bad, "submit of program " + std::to_string(p.id) + ", which does not exist");
+        expect.code(device.submit(p, StepInput{}).status(), bad,
+                    "submit of program " + std::to_string(p.id) + ", which does not exist");
     expect.that(!device.finished({1'000'000'000'000ull}), "a ticket never given out is finished");
 }
 
@@ -216,11 +225,14 @@ void pipelines(Session&, Device& device, Expect& expect) {
         expect.code(device.create_pipeline(stage, 0, {}).status(), bad, "a pipeline of stage " + std::to_string(stage));
     const int rain = compute::find_stage("apply_rain");
     auto a = device.create_pipeline(rain, EFFECT_WATER, {}), b = device.create_pipeline(rain, EFFECT_WATER, {});
-    auto untested = device.create_pipeline(rain, EFFECT_WATER | EFFECT_BED_FRICTION, {}), other = device.create_pipeline(rain, EFFECT_WATER | EFFECT_SAND, {});
+    auto untested = device.create_pipeline(rain, EFFECT_WATER | EFFECT_BED_FRICTION, {}),
+         other = device.create_pipeline(rain, EFFECT_WATER | EFFECT_SAND, {});
     expect.that(a && b && a->id == b->id, "equal requests do not share a pipeline");
     expect.that(a && untested && a->id == untested->id, "an effect that the stage does not test makes another pipeline");
     expect.that(a && other && a->id != other->id, "a tested effect makes no other pipeline");
-    for (int stage = 0; stage < stages; ++stage) expect.ok(device.create_pipeline(stage, ~0u, {}).status(), "all effects of " + std::string(compute::stage_table()[static_cast<std::size_t>(stage)].name));
+    for (int stage = 0; stage < stages; ++stage)
+        expect.ok(device.create_pipeline(stage, ~0u, {}).status(),
+                  "all effects of " + std::string(compute::stage_table()[static_cast<std::size_t>(stage)].name));
 }
 
 void timings(Session&, Device& device, Expect& expect) {
@@ -248,8 +260,10 @@ void timings(Session&, Device& device, Expect& expect) {
             continue;
         }
         if (!times) return expect.ok(times.status(), "timings");
-        expect.that(times->size() == 2 && (*times)[0].label == "rain" && (*times)[1].label == "fill", "three timestamps do not give the times of two labels");
-        for (const auto& t : *times) expect.that(t.milliseconds >= 0 && t.milliseconds < 60000, "a time of " + std::to_string(t.milliseconds) + " ms");
+        expect.that(times->size() == 2 && (*times)[0].label == "rain" && (*times)[1].label == "fill",
+                    "three timestamps do not give the times of two labels");
+        for (const auto& t : *times)
+            expect.that(t.milliseconds >= 0 && t.milliseconds < 60000, "a time of " + std::to_string(t.milliseconds) + " ms");
     }
     auto ticket = device.submit(*without, StepInput{});
     if (!ticket) return expect.ok(ticket.status(), "submit");
@@ -260,9 +274,61 @@ void timings(Session&, Device& device, Expect& expect) {
     device.destroy_program(*without);
 }
 
+// A large dispatch and a fill of one word in turn: the time must go to the one that takes it.
+void timings_by_label(Session&, Device& device, Expect& expect) {
+    if (!device.capabilities().timestamps) return;
+    WorldParams params = small_params();
+    params.nx = params.ny = 2048;
+    params.pitch = FieldLayout{params.nx, params.ny}.pitch();
+    const FieldLayout layout{params.nx, params.ny};
+    std::vector<Buffer> fields;
+    for (int n = 0; n < 4; ++n) {
+        auto made = device.create_buffer({layout.size() * 4, "large"});
+        if (!made) return expect.ok(made.status(), "a field of 2048 x 2048");
+        fields.push_back(*made);
+    }
+    const Buffer word = buffer_of(device, {0});
+    const int stage = compute::find_stage("publish_velocity");
+    auto pipeline = device.create_pipeline(stage, 0, {});
+    if (!pipeline) return expect.ok(pipeline.status(), "create_pipeline");
+    ProgramBuilder builder("labels");
+    builder.timestamp("start");
+    for (int n = 0; n < 8; ++n) {
+        builder.fill({word, 1});
+        builder.timestamp("small");
+        builder.dispatch(
+            {*pipeline, stage, 0, fields, compute::extent_range(compute::Extent::cells, params), "publish_velocity"});
+        builder.timestamp("large");
+    }
+    auto program = device.compile(builder, params);
+    if (!program) return expect.ok(program.status(), "compile");
+    double small = 0, large = 0;
+    for (int n = 0; n < 3; ++n) {
+        auto ticket = device.submit(*program, StepInput{});
+        if (!ticket) return expect.ok(ticket.status(), "submit");
+        expect.ok(device.wait(*ticket), "wait");
+        auto times = device.timings(*ticket);
+        if (!times) return expect.ok(times.status(), "timings");
+        for (const auto& time : *times) (time.label == "small" ? small : large) += time.milliseconds;
+    }
+    expect.that(small < 0.5 * large, "24 fills of one word took " + std::to_string(small) +
+                                         " ms, 24 passes over 2048 x 2048 cells " + std::to_string(large) + " ms");
+    device.destroy_program(*program);
+    for (const Buffer buffer : fields) device.destroy_buffer(buffer);
+    device.destroy_buffer(word);
+}
+
 constexpr Contract contracts[] = {
-    {"bad_dispatches", bad_dispatches}, {"bad_transfers", bad_transfers}, {"transfers", transfers}, {"order", order}, {"replay", replay},
-    {"frozen_params", frozen_params}, {"program_handles", program_handles}, {"pipelines", pipelines}, {"timings", timings},
+    {"bad_dispatches", bad_dispatches},
+    {"bad_transfers", bad_transfers},
+    {"transfers", transfers},
+    {"order", order},
+    {"replay", replay},
+    {"frozen_params", frozen_params},
+    {"program_handles", program_handles},
+    {"pipelines", pipelines},
+    {"timings", timings},
+    {"timings_by_label", timings_by_label},
 };
 
 } // namespace

@@ -24,6 +24,7 @@ Status run_once(compute::Device& device, const compute::ProgramBuilder& builder)
 /// Parameters of a 33 x 17 grid with a quantum.
 WorldParams small_params();
 /// apply_rain under EFFECT_WATER over `water` and `terrain` (fields) and `ledger`.
-Result<compute::Dispatch> rain_dispatch(compute::Device& device, compute::Buffer terrain, compute::Buffer water, compute::Buffer ledger);
+Result<compute::Dispatch> rain_dispatch(compute::Device& device, compute::Buffer terrain, compute::Buffer water,
+                                        compute::Buffer ledger);
 
 } // namespace wadi::conformance

@@ -50,10 +50,13 @@ int print_coverage() {
         }
         const bool reference = has_counterpart(name), definition = has_definition(name);
         if (!reference && !definition) ++missing;
-        const char* with = reference && definition ? "reference, definition" : reference ? "reference" : definition ? "definition" : "NOTHING";
-        std::printf("%-30s %4zu/%-4zu %6zu %3zu/%-3zu %4zu/%-3zu %5zu/%-3zu  %s\n", name.c_str(), covered, masks.size(), cases.size(),
-                    met(cases, "grid", grid_names()), grid_names().size(), met(cases, "scene", scene_names()), scene_names().size(),
-                    met(cases, "method", method_names_of_cases()), method_names_of_cases().size(), with);
+        const char* with = reference && definition ? "reference, definition"
+                           : reference             ? "reference"
+                           : definition            ? "definition"
+                                                   : "NOTHING";
+        std::printf("%-30s %4zu/%-4zu %6zu %3zu/%-3zu %4zu/%-3zu %5zu/%-3zu  %s\n", name.c_str(), covered, masks.size(),
+                    cases.size(), met(cases, "grid", grid_names()), grid_names().size(), met(cases, "scene", scene_names()),
+                    scene_names().size(), met(cases, "method", method_names_of_cases()), method_names_of_cases().size(), with);
     }
     for (const Layer* layer : {&contract_layer(), &stage_layer(), &step_layer(), &invariant_layer()})
         std::printf("%-9s %4zu cases: %s\n", layer->name, layer->list().size(), layer->meaning);

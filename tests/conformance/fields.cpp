@@ -13,11 +13,20 @@ using reference::Solver;
 
 template <class Real> const Field<Real>* cell_field(const Solver<Real>& s, const std::string& base) {
     const std::map<std::string, const Field<Real>*> fields = {
-        {"terrain", &s.terrain},         {"sand_height", &s.sand},          {"water_height", &s.water},
-        {"stretch_xx", &s.Vxx},          {"stretch_xy", &s.Vxy},            {"stretch_yy", &s.Vyy},
-        {"water_scale", &s.pure_scale},  {"mixed_scale", &s.mixed_scale},   {"sand_scale", &s.sand_scale},
-        {"saturation", &s.saturation},   {"mixed_predicted", &s.mixed_predicted},
-        {"stress_xx", &s.sxx},           {"stress_xy", &s.sxy},             {"stress_yy", &s.syy},
+        {"terrain", &s.terrain},
+        {"sand_height", &s.sand},
+        {"water_height", &s.water},
+        {"stretch_xx", &s.Vxx},
+        {"stretch_xy", &s.Vxy},
+        {"stretch_yy", &s.Vyy},
+        {"water_scale", &s.pure_scale},
+        {"mixed_scale", &s.mixed_scale},
+        {"sand_scale", &s.sand_scale},
+        {"saturation", &s.saturation},
+        {"mixed_predicted", &s.mixed_predicted},
+        {"stress_xx", &s.sxx},
+        {"stress_xy", &s.sxy},
+        {"stress_yy", &s.syy},
     };
     const auto found = fields.find(base);
     return found == fields.end() ? nullptr : found->second;
@@ -78,14 +87,16 @@ std::vector<Real> reference_field(const Solver<Real>& s, const std::string& stag
         for (int j = 0; j < rows; ++j)
             for (int i = 0; i < columns; ++i)
                 out[layout.index(i, j)] =
-                    factor * (from[static_cast<std::size_t>(j) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(i)] - shift);
+                    factor *
+                    (from[static_cast<std::size_t>(j) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(i)] - shift);
     };
     if (on_faces(name.base)) {
         const bool is_y = name.base.back() == 'y';
         const std::string layer = name.base.substr(0, name.base.size() - 2);
         const bool diffusion = layer == "mixed_flux" && mixed_flux_is_diffusion(stage, after);
         const Faces<Real>* faces = diffusion ? &s.diffusion_flux : face_field(s, layer);
-        if (faces != nullptr) put(is_y ? faces->y : faces->x, is_y ? nx : nx + 1, is_y ? ny + 1 : ny, diffusion ? s.P.k : Real(1), Real(0));
+        if (faces != nullptr)
+            put(is_y ? faces->y : faces->x, is_y ? nx : nx + 1, is_y ? ny + 1 : ny, diffusion ? s.P.k : Real(1), Real(0));
         return out;
     }
     const bool before_transport = name.base == "sand_height" && !name.next && reads_both_heights(stage);

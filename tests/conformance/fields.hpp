@@ -9,8 +9,8 @@ namespace wadi::conformance {
 
 /// A binding of a stage as a field of the step plan: "drag_velocity_x_next" under the mixture is mixed_velocity_x.
 struct FieldName {
-    std::string base;    // plan name
-    bool next = false;   // the binding is the "_next" buffer
+    std::string base;  // plan name
+    bool next = false; // the binding is the "_next" buffer
 };
 FieldName field_of(const std::string& stage, const std::string& binding, std::uint32_t effects);
 
@@ -26,7 +26,8 @@ compute::Range2 values_of(const std::string& base, const WorldParams& params);
 /// sand_height is the height before the substep's transport for the stages that also read sand_height_next, and the mixed flux
 /// is the diffusive part before compute_water_flux. Before a stage (`after` false) or after it.
 template <class Real>
-std::vector<Real> reference_field(const reference::Solver<Real>& solver, const std::string& stage, const FieldName& name, bool after);
+std::vector<Real> reference_field(const reference::Solver<Real>& solver, const std::string& stage, const FieldName& name,
+                                  bool after);
 
 /// Fills the ghosts a state field must have: 0, the terrain's edge, and the water outside open sides.
 template <class Real> void fill_ghosts(std::vector<Real>& field, const std::string& base, const reference::Solver<Real>& solver);

@@ -16,17 +16,23 @@ constexpr std::uint32_t WET = EFFECT_WATER | EFFECT_SAND | EFFECT_MIXTURE | EFFE
 constexpr std::uint32_t ELASTIC = EFFECT_ELASTOPLASTIC;
 constexpr std::uint32_t ALL = 2047;
 
-CaseSpec spec_of(const char* name, const char* grid, std::uint32_t effects, const std::string& scene, const std::string& method, int steps) {
-    return {name, {{"grid", grid}, {"effects", effects_text(effects)}, {"scene", scene}, {"method", method}, {"steps", std::to_string(steps)}}};
+CaseSpec spec_of(const char* name, const char* grid, std::uint32_t effects, const std::string& scene, const std::string& method,
+                 int steps) {
+    return {name,
+            {{"grid", grid},
+             {"effects", effects_text(effects)},
+             {"scene", scene},
+             {"method", method},
+             {"steps", std::to_string(steps)}}};
 }
 
 std::vector<CaseSpec> list() {
     std::vector<CaseSpec> cases;
-    const auto add = [&](const char* name, const char* grid, std::uint32_t effects, const std::string& scene, const char* method, int steps) {
-        cases.push_back(spec_of(name, grid, effects, scene, method, steps));
-    };
+    const auto add = [&](const char* name, const char* grid, std::uint32_t effects, const std::string& scene, const char* method,
+                         int steps) { cases.push_back(spec_of(name, grid, effects, scene, method, steps)); };
     add("bounds", "65x33", EFFECT_WATER, "dam_break", "default", 500);
-    add("bounds", "33x17", EFFECT_WATER | EFFECT_RAIN | EFFECT_SOURCES | EFFECT_OPEN_SIDES | EFFECT_BED_FRICTION, "islands", "default", 500);
+    add("bounds", "33x17", EFFECT_WATER | EFFECT_RAIN | EFFECT_SOURCES | EFFECT_OPEN_SIDES | EFFECT_BED_FRICTION, "islands",
+        "default", 500);
     add("bounds", "33x17", EFFECT_SAND | ELASTIC, "cliff", "default", 500);
     add("bounds", "33x17", EFFECT_SAND | EFFECT_SOURCES | EFFECT_OPEN_SIDES, "random", "coarse", 500);
     add("bounds", "33x17", EFFECT_WATER | EFFECT_SAND | EFFECT_MIXTURE, "random", "default", 300);
@@ -35,8 +41,10 @@ std::vector<CaseSpec> list() {
     add("bounds", "64x48", ALL, "random", "default", 500);
     add("bounds", "64x48", ALL, "dam_break", "tapered", 300);
     add("bounds", "33x17", ALL, "thin_film", "default", 300);
-    add("bounds", "33x17", WET | ELASTIC | EFFECT_COHESION, "cliff", "plain", 500); // closed: its ledger would count rounded quanta
-    for (int seed = 1; seed <= 8; ++seed) add("bounds", "24x20", ALL & ~EFFECT_SOURCES, "random", ("fuzz" + std::to_string(seed)).c_str(), 80);
+    add("bounds", "33x17", WET | ELASTIC | EFFECT_COHESION, "cliff", "plain",
+        500); // closed: its ledger would count rounded quanta
+    for (int seed = 1; seed <= 8; ++seed)
+        add("bounds", "24x20", ALL & ~EFFECT_SOURCES, "random", ("fuzz" + std::to_string(seed)).c_str(), 80);
     add("lake_at_rest", "33x17", EFFECT_WATER, "lake_at_rest", "default", 200);
     add("lake_at_rest", "65x33", WET, "lake_at_rest", "default", 200);
     add("lake_at_rest", "33x17", WET | ELASTIC | EFFECT_COHESION, "lake_at_rest", "default", 200);
@@ -83,6 +91,8 @@ void fuzz(Scene& scene, std::uint32_t seed) {
     for (float& h : scene.fields.water) h *= tall;
     scene.fields.velocity_x.clear();
     scene.fields.velocity_y.clear();
+    scene.fields.sand_velocity_x.clear();
+    scene.fields.sand_velocity_y.clear();
 }
 
 // Two lakes with a wall between them, over a submerged dune, a half-emerged dune, an island and a shore; the sand's slopes stay
@@ -127,8 +137,13 @@ Result<Scene> scene_of(const CaseSpec& spec) {
     auto scene = make_scene(spec.get("grid", "33x17"), own ? "flat" : name, fuzzed ? "default" : method, *mask);
     if (!scene) return scene;
     // A World keeps initial velocities as they are; here they start within the clamp, which must then hold for ever.
-    for (auto member : {&InitialFields::velocity_x, &InitialFields::velocity_y})
-        for (float& u : scene->fields.*member) u *= 0.8F;
+    const WorldParams params = derive_params(scene->settings);
+    const auto clamp = [](std::vector<float>& field, float most) {
+        for (float& u : field) u = std::clamp(u, -most, most);
+    };
+    auto& fields = scene->fields;
+    for (auto* field : {&fields.velocity_x, &fields.velocity_y}) clamp(*field, params.water_velocity_clamp);
+    for (auto* field : {&fields.sand_velocity_x, &fields.sand_velocity_y}) clamp(*field, params.sand_velocity_clamp);
     if (name == "lake_at_rest") lake_at_rest(*scene);
     if (name == "static_pile") static_pile(*scene);
     if (fuzzed) fuzz(*scene, static_cast<std::uint32_t>(std::atoi(method.c_str() + 4)));
@@ -146,15 +161,21 @@ Verdict check_bounds(World& world) {
     // A mean of two velocities at the clamp may round above it.
     const auto clamped = [](double speed, float clamp) { return speed <= static_cast<double>(clamp) * (1 + 5e-7); };
     if (!clamped(s.largest_water_speed, params.water_velocity_clamp))
-        return failed("water at " + std::to_string(s.largest_water_speed) + " m/s, the clamp is " + std::to_string(params.water_velocity_clamp));
+        return failed("water at " + std::to_string(s.largest_water_speed) + " m/s, the clamp is " +
+                      std::to_string(params.water_velocity_clamp));
     if (!clamped(s.largest_sand_speed, params.sand_velocity_clamp))
-        return failed("sand at " + std::to_string(s.largest_sand_speed) + " m/s, the clamp is " + std::to_string(params.sand_velocity_clamp));
+        return failed("sand at " + std::to_string(s.largest_sand_speed) + " m/s, the clamp is " +
+                      std::to_string(params.sand_velocity_clamp));
     const std::int64_t water = s.water_quanta - s.water_initial - (s.ledger.water_in - s.ledger.water_out);
     const std::int64_t sand = s.sand_quanta - s.sand_initial - (s.ledger.sand_in - s.ledger.sand_out);
     const bool exact = height_quantum(world.settings().method) > 0;
-    const auto most = [&](std::int64_t initial, std::int64_t in) { return exact ? 0.0 : 5e-6 * static_cast<double>(initial + in); };
-    if (std::abs(static_cast<double>(water)) > most(s.water_initial, s.ledger.water_in)) return failed("water drifts by " + std::to_string(water) + " quanta of " + std::to_string(s.water_initial));
-    if (std::abs(static_cast<double>(sand)) > most(s.sand_initial, s.ledger.sand_in)) return failed("sand drifts by " + std::to_string(sand) + " quanta of " + std::to_string(s.sand_initial));
+    const auto most = [&](std::int64_t initial, std::int64_t in) {
+        return exact ? 0.0 : 5e-6 * static_cast<double>(initial + in);
+    };
+    if (std::abs(static_cast<double>(water)) > most(s.water_initial, s.ledger.water_in))
+        return failed("water drifts by " + std::to_string(water) + " quanta of " + std::to_string(s.water_initial));
+    if (std::abs(static_cast<double>(sand)) > most(s.sand_initial, s.ledger.sand_in))
+        return failed("sand drifts by " + std::to_string(sand) + " quanta of " + std::to_string(s.sand_initial));
     return {};
 }
 
@@ -184,7 +205,9 @@ Verdict run_rest(World& world, World& start, int steps) {
 }
 
 Verdict run_symmetry(const Scene& scene, World& world, Session& session, const std::string& name, int steps) {
-    const Symmetry symmetry = name == "mirror_x" ? Symmetry::mirror_x : name == "mirror_y" ? Symmetry::mirror_y : Symmetry::transpose;
+    const Symmetry symmetry = name == "mirror_x"   ? Symmetry::mirror_x
+                              : name == "mirror_y" ? Symmetry::mirror_y
+                                                   : Symmetry::transpose;
     auto image = open_world(session, image_of(scene, symmetry));
     if (!image) return verdict_of(image.status());
     for (World* w : {&world, image->get()})

@@ -96,7 +96,9 @@ std::string locate_against_device(compute::Device& device, compute::Device& othe
                 if (*got == *want) continue;
                 const FieldLayout layout = tested.layout();
                 if (got->size() != layout.size()) return where(tested, step, n, from[out].field + " counts differently");
-                return where(tested, step, n, compare_bits(from[out].field, as_floats(*got), as_floats(*want), layout, whole_layout(layout)).detail);
+                return where(
+                    tested, step, n,
+                    compare_bits(from[out].field, as_floats(*got), as_floats(*want), layout, whole_layout(layout)).detail);
             }
         }
     }

@@ -12,7 +12,7 @@
 namespace wadi::conformance {
 namespace {
 
-constexpr int exit_failed = 1, exit_usage = 2;
+constexpr int exit_failed = 1, exit_usage = 2, exit_skipped = 77;
 
 struct Options {
     std::vector<std::string> backends, required, layers;
@@ -41,7 +41,9 @@ Result<std::vector<Job>> choose(const Options& options) {
     std::vector<Job> jobs;
     bool known = wanted.name.empty();
     for (const Layer* layer : layers) {
-        if (!options.layers.empty() && std::find(options.layers.begin(), options.layers.end(), layer->name) == options.layers.end()) continue;
+        if (!options.layers.empty() &&
+            std::find(options.layers.begin(), options.layers.end(), layer->name) == options.layers.end())
+            continue;
         for (CaseSpec& spec : layer->list()) {
             if (!options.stage.empty() && spec.name != options.stage) continue;
             if (!wanted.name.empty() && spec.name != wanted.name) continue;
@@ -55,7 +57,8 @@ Result<std::vector<Job>> choose(const Options& options) {
     return jobs;
 }
 
-Result<std::vector<Target>> choose_targets(const Options& options) {
+// The devices that --backend names. A backend of this build without a device here adds its reason to `absent`.
+Result<std::vector<Target>> choose_targets(const Options& options, std::vector<std::pair<std::string, std::string>>& absent) {
     const auto targets = all_targets();
     if (options.backends.empty()) return targets;
     std::vector<Target> chosen;
@@ -64,8 +67,18 @@ Result<std::vector<Target>> choose_targets(const Options& options) {
         for (const Target& target : targets)
             if (name == target.label() || name == target.info.backend) chosen.push_back(target);
         if (chosen.size() > before) continue;
+        const auto backends = compute::backends();
+        const auto built =
+            std::find_if(backends.begin(), backends.end(), [&](const compute::Backend& b) { return name == b.name; });
+        if (built != backends.end()) {
+            std::string why;
+            built->enumerate(why);
+            absent.emplace_back(name, why);
+            continue;
+        }
         std::string known;
-        for (const Target& target : targets) known += (known.empty() ? "" : ", ") + target.label() + " (" + target.info.name + ")";
+        for (const Target& target : targets)
+            known += (known.empty() ? "" : ", ") + target.label() + " (" + target.info.name + ")";
         return error(Code::not_found, "--backend " + name + ": no such device; there are: " + known);
     }
     return chosen;
@@ -87,22 +100,26 @@ void run_job(Session& session, const Job& job, bool validate, Report& report) {
 }
 
 // A missing required backend is a failure of its own.
-void check_required(const Options& options, const std::vector<Target>& targets, Report& report) {
+void check_required(const Options& options, Report& report) {
+    const auto targets = all_targets();
     for (const std::string& name : options.required) {
-        const bool found = std::any_of(targets.begin(), targets.end(), [&](const Target& t) { return name == t.info.backend || name == t.label(); });
+        const bool found = std::any_of(targets.begin(), targets.end(),
+                                       [&](const Target& t) { return name == t.info.backend || name == t.label(); });
         if (!found) report.add(name, "contract", "required", failed("this build or machine has no such device"), 0);
     }
 }
 
 int run_tests(const Options& options) {
     auto jobs = choose(options);
-    auto targets = choose_targets(options);
+    std::vector<std::pair<std::string, std::string>> absent;
+    auto targets = choose_targets(options, absent);
     if (!jobs) return usage(jobs.status());
     if (!targets) return usage(targets.status());
     const auto start = std::chrono::steady_clock::now();
     Report report(options.output == "csv");
     report.start();
-    check_required(options, *targets, report);
+    check_required(options, report);
+    for (const auto& [name, why] : absent) report.add(name, "contract", "open", {Outcome::skipped, "no device: " + why}, 0);
     for (const Target& target : *targets) {
         compute::DeviceOptions device_options;
         device_options.validate = options.validate;
@@ -115,12 +132,14 @@ int run_tests(const Options& options) {
         for (const Job& job : *jobs) run_job(session, job, session.options().validate, report);
         session.close(); // what is left over shows in the layers' messages
         const auto messages = session.take_messages();
-        if (session.options().validate && !messages.empty()) report.add(target.label(), "contract", "close", failed(messages.front()), 0);
+        if (session.options().validate && !messages.empty())
+            report.add(target.label(), "contract", "close", failed(messages.front()), 0);
     }
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (options.output != "csv") std::printf("\n%d cases in %.1f s\n", report.total(), seconds);
     report.finish();
-    return report.failures() > 0 || report.total() == 0 ? exit_failed : 0;
+    if (report.failures() > 0) return exit_failed;
+    return report.passes() > 0 ? 0 : exit_skipped;
 }
 
 int run_list(const Options& options) {
@@ -132,9 +151,12 @@ int run_list(const Options& options) {
 }
 
 int run_perf_mode(const Options& options) {
-    auto targets = choose_targets(options);
+    std::vector<std::pair<std::string, std::string>> absent;
+    auto targets = choose_targets(options, absent);
     if (!targets) return usage(targets.status());
-    if (!options.stage.empty() && compute::find_stage(options.stage) < 0) return usage(error(Code::bad_argument, "--stage " + options.stage + ": no such stage"));
+    for (const auto& [name, why] : absent) std::fprintf(stderr, "%s: no device: %s\n", name.c_str(), why.c_str());
+    if (!options.stage.empty() && compute::find_stage(options.stage) < 0)
+        return usage(error(Code::bad_argument, "--stage " + options.stage + ": no such stage"));
     PerfOptions perf = options.perf;
     perf.stage = options.stage;
     perf.csv = options.output == "csv";
@@ -147,24 +169,29 @@ int run_perf_mode(const Options& options) {
         }
         first = false;
     }
-    return 0;
+    return targets->empty() ? exit_skipped : 0;
 }
 
 int run(int argc, char** argv) {
     Options options;
-    CLI::App app{"Tests every backend of this build against the compute interface's contract, the reference solver and the CPU.", "conformance"};
+    CLI::App app{"Tests every backend of this build against the compute interface's contract, the reference solver and the CPU.",
+                 "conformance"};
     app.require_subcommand(0, 1);
     app.fallthrough();
-    app.add_option("--backend", options.backends, "devices to test: cpu, vulkan, vulkan1, ...; without it all there are")->delimiter(',');
+    app.add_option("--backend", options.backends, "devices to test: cpu, vulkan, vulkan1, ...; without it all there are")
+        ->delimiter(',');
     app.add_option("--require", options.required, "backends whose absence is a failure")->delimiter(',');
-    app.add_option("--layer", options.layers, "contract, stage, step or invariant")->delimiter(',')->check(CLI::IsMember({"contract", "stage", "step", "invariant"}));
+    app.add_option("--layer", options.layers, "contract, stage, step or invariant")
+        ->delimiter(',')
+        ->check(CLI::IsMember({"contract", "stage", "step", "invariant"}));
     app.add_option("--stage", options.stage, "only the cases of this stage");
     app.add_option("--case", options.chosen_case, "NAME, or NAME(key=value,...) as a failure prints it");
     app.add_option("--output", options.output, "console or csv")->check(CLI::IsMember({"console", "csv"}));
     app.add_flag("--validate", options.validate, "validation layers on; any message fails its case");
     app.add_subcommand("test", "run the cases (the default)");
     CLI::App* perf = app.add_subcommand("perf", "time every stage and whole steps");
-    perf->add_option("--max-size", options.perf.max_size, "largest grid side, from 256 by doubling")->check(CLI::Range(256, 16384));
+    perf->add_option("--max-size", options.perf.max_size, "largest grid side, from 256 by doubling")
+        ->check(CLI::Range(256, 16384));
     perf->add_option("--repeats", options.perf.repeats, "runs per row")->check(CLI::Range(1, 10000));
     const CLI::App* list = app.add_subcommand("list", "print the cases and devices");
     const CLI::App* coverage = app.add_subcommand("coverage", "print which masks, grids, scenes and methods each stage meets");

@@ -25,7 +25,8 @@ struct Marks {
     };
 
     double height(char layer, int i, int j) const {
-        const double water = has(EFFECT_WATER) ? at("water_height", i, j) : 0, sand = has(EFFECT_SAND) ? at("sand_height", i, j) : 0;
+        const double water = has(EFFECT_WATER) ? at("water_height", i, j) : 0,
+                     sand = has(EFFECT_SAND) ? at("sand_height", i, j) : 0;
         if (layer == 's') return sand;
         const double mixed = has(EFFECT_MIXTURE) ? std::min(water, sand) : 0;
         return layer == 'm' ? mixed : water - mixed;
@@ -45,7 +46,8 @@ struct Marks {
 
     void outflow(char layer, int i, int j, double k, Range& range) const {
         const double h = height(layer, i, j);
-        const double out = std::max(-u(layer, i, j), 0.0) + std::max(u(layer, i + 1, j), 0.0) + std::max(-v(layer, i, j), 0.0) + std::max(v(layer, i, j + 1), 0.0);
+        const double out = std::max(-u(layer, i, j), 0.0) + std::max(u(layer, i + 1, j), 0.0) + std::max(-v(layer, i, j), 0.0) +
+                           std::max(v(layer, i, j + 1), 0.0);
         if (h > 0) range.add(k * out * h, h);
     }
 
@@ -61,7 +63,8 @@ struct Marks {
             if (!sand) {
                 double speed = std::abs(y ? v('w', i, j) : u('w', i, j));
                 if (has(EFFECT_MIXTURE)) speed = std::max(speed, std::abs(y ? v('m', i, j) : u('m', i, j)));
-                const double room = std::max(static_cast<double>(p.gravity_cap_floor), static_cast<double>(p.gravity_cap_base) - static_cast<double>(p.k) * speed);
+                const double room = std::max(static_cast<double>(p.gravity_cap_floor),
+                                             static_cast<double>(p.gravity_cap_base) - static_cast<double>(p.k) * speed);
                 cap = room * room * static_cast<double>(p.inv_k2);
             }
             range.add(static_cast<double>(p.gravity) * deepest, cap);
@@ -96,9 +99,10 @@ Verdict check_marks(const StageRun& run) {
             }
             const std::uint32_t got = run.buffer("limit_marks").words()[layout.index(i, j)];
             if (clamped.holds(got & 255u) && capped.holds(got >> 8 & 255u) && limited.holds(got >> 16)) continue;
-            return failed("limit_marks(" + std::to_string(i) + ", " + std::to_string(j) + ") counts " + std::to_string(got & 255u) + " clamped, " +
-                          std::to_string(got >> 8 & 255u) + " capped, " + std::to_string(got >> 16) + " limited; expected " +
-                          std::to_string(clamped.least) + ", " + std::to_string(capped.least) + ", " + std::to_string(limited.least));
+            return failed("limit_marks(" + std::to_string(i) + ", " + std::to_string(j) + ") counts " +
+                          std::to_string(got & 255u) + " clamped, " + std::to_string(got >> 8 & 255u) + " capped, " +
+                          std::to_string(got >> 16) + " limited; expected " + std::to_string(clamped.least) + ", " +
+                          std::to_string(capped.least) + ", " + std::to_string(limited.least));
         }
     }
     return {};

@@ -12,7 +12,9 @@ namespace {
 
 using ByTested = std::map<std::uint32_t, std::uint32_t>; // tested bits -> the smallest whole mask that has them
 
-bool smaller(std::uint32_t a, std::uint32_t b) { return std::popcount(a) != std::popcount(b) ? std::popcount(a) < std::popcount(b) : a < b; }
+bool smaller(std::uint32_t a, std::uint32_t b) {
+    return std::popcount(a) != std::popcount(b) ? std::popcount(a) < std::popcount(b) : a < b;
+}
 
 std::vector<ByTested> find_masks() {
     const auto table = compute::stage_table();

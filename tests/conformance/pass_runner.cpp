@@ -15,7 +15,7 @@ std::vector<float> initial_field(const Scene& scene, const std::string& base) {
     const FieldLayout layout{scene.settings.grid.nx, scene.settings.grid.ny};
     const bool sand = base.starts_with("sand_"), x = base.ends_with("velocity_x"), y = base.ends_with("velocity_y");
     const std::vector<float> none;
-    const auto& cells = base == "terrain"      ? f.terrain
+    const auto& cells = base == "terrain"           ? f.terrain
                         : base.ends_with("_height") ? (sand ? f.sand : f.water)
                         : x                         ? (sand ? f.sand_velocity_x : f.velocity_x)
                         : y                         ? (sand ? f.sand_velocity_y : f.velocity_y)
@@ -24,7 +24,8 @@ std::vector<float> initial_field(const Scene& scene, const std::string& base) {
     if (cells.empty()) return field;
     const double quantum = height_quantum(scene.settings.method);
     const auto at = [&](int i, int j) {
-        const float value = cells[static_cast<std::size_t>(j) * static_cast<std::size_t>(layout.nx) + static_cast<std::size_t>(i)];
+        const float value =
+            cells[static_cast<std::size_t>(j) * static_cast<std::size_t>(layout.nx) + static_cast<std::size_t>(i)];
         if (x || y || quantum <= 0) return value;
         return static_cast<float>(std::nearbyint(static_cast<double>(value) / quantum) * quantum);
     };
@@ -43,7 +44,8 @@ std::vector<float> initial_field(const Scene& scene, const std::string& base) {
 } // namespace
 
 PassRunner::PassRunner(compute::Device& device, const Scene& scene)
-    : device_(device), scene_(scene), plan_(make_step_plan(scene.effects, scene.settings.method.substeps)), params_(derive_params(scene.settings)) {}
+    : device_(device), scene_(scene), plan_(make_step_plan(scene.effects, scene.settings.method.substeps)),
+      params_(derive_params(scene.settings)) {}
 
 PassRunner::~PassRunner() {
     for (const auto& [name, pair] : buffers_)
@@ -94,7 +96,8 @@ Status PassRunner::append(compute::ProgramBuilder& builder, const PlanPass& pass
     const auto& stage = compute::stage_table()[static_cast<std::size_t>(pass.stage)];
     auto pipeline = device_.create_pipeline(pass.stage, plan_.effects, {});
     if (!pipeline) return pipeline.status();
-    compute::Dispatch dispatch{*pipeline, pass.stage, plan_.effects, {}, compute::extent_range(stage.extent, params_), std::string(stage.name)};
+    compute::Dispatch dispatch{
+        *pipeline, pass.stage, plan_.effects, {}, compute::extent_range(stage.extent, params_), std::string(stage.name)};
     for (const auto& field : pass.fields) dispatch.slots.push_back(field.empty() ? compute::Buffer{} : buffer(field));
     builder.dispatch(std::move(dispatch));
     for (const auto& name : pass.flips)

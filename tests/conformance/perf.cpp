@@ -1,8 +1,8 @@
 #include "tests/conformance/perf.hpp"
+#include "engine/step_inputs.hpp"
 #include "tests/conformance/masks.hpp"
 #include "tests/conformance/pass_runner.hpp"
 #include "tests/conformance/report.hpp"
-#include "engine/step_inputs.hpp"
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -21,7 +21,7 @@ constexpr std::uint64_t least_copy_bytes = 64u << 20; // past the caches of most
 struct Row {
     std::string name;
     int size = 0;
-    double bytes = 0, floor_bytes = 0;  // of one run; the floor: whole steps only
+    double bytes = 0, floor_bytes = 0; // of one run; the floor: whole steps only
     std::vector<double> milliseconds;
 };
 
@@ -32,7 +32,8 @@ double quantile(std::vector<double> values, double q) {
 }
 
 // Runs programs in turn; the time of each by the device's clock, or by the host's where the device has none.
-Result<std::vector<double>> time_programs(Device& device, const std::vector<compute::Program>& programs, const std::vector<StepInput>& inputs, int repeats) {
+Result<std::vector<double>> time_programs(Device& device, const std::vector<compute::Program>& programs,
+                                          const std::vector<StepInput>& inputs, int repeats) {
     std::vector<double> milliseconds;
     for (int n = -2; n < repeats; ++n) { // two to warm up
         const auto turn = static_cast<std::size_t>(n + 2);
@@ -52,7 +53,8 @@ Result<std::vector<double>> time_programs(Device& device, const std::vector<comp
     return milliseconds;
 }
 
-Result<std::vector<double>> time_program(Device& device, const ProgramBuilder& builder, const WorldParams& params, const StepInput& input, int repeats) {
+Result<std::vector<double>> time_program(Device& device, const ProgramBuilder& builder, const WorldParams& params,
+                                         const StepInput& input, int repeats) {
     auto program = device.compile(builder, params);
     if (!program) return program.status();
     auto times = time_programs(device, {*program}, {input}, repeats);
@@ -91,9 +93,13 @@ Result<double> measure_copy_stage(Device& device, PassRunner& runner, int repeat
     if (!pipeline) return pipeline.status();
     ProgramBuilder builder("copy stage");
     builder.timestamp("start");
-    builder.dispatch({*pipeline, stage, 0,
-                      {runner.buffer("water_velocity_x"), runner.buffer("water_velocity_y"), runner.buffer("water_velocity_x_next"), runner.buffer("water_velocity_y_next")},
-                      compute::extent_range(compute::Extent::cells, runner.params()), "publish_velocity"});
+    builder.dispatch({*pipeline,
+                      stage,
+                      0,
+                      {runner.buffer("water_velocity_x"), runner.buffer("water_velocity_y"),
+                       runner.buffer("water_velocity_x_next"), runner.buffer("water_velocity_y_next")},
+                      compute::extent_range(compute::Extent::cells, runner.params()),
+                      "publish_velocity"});
     builder.timestamp("publish_velocity");
     auto times = time_program(device, builder, runner.params(), StepInput{}, repeats);
     if (!times) return times.status();
@@ -107,7 +113,8 @@ Result<Ceiling> measure_ceiling(Device& device, int size, int repeats) {
     PassRunner runner(device, *scene);
     if (auto status = runner.open(); !status) return status;
     const std::uint64_t most = device.capabilities().largest_buffer_bytes / 2 / 4 * 4;
-    auto copy = measure_copy(device, std::min(most, std::max<std::uint64_t>(least_copy_bytes, runner.layout().size() * 4)), repeats);
+    auto copy =
+        measure_copy(device, std::min(most, std::max<std::uint64_t>(least_copy_bytes, runner.layout().size() * 4)), repeats);
     if (!copy) return copy.status();
     auto stage = measure_copy_stage(device, runner, repeats);
     if (!stage) return stage.status();
@@ -145,7 +152,8 @@ Status measure_stages(Device& device, int size, const PerfOptions& options, std:
 }
 
 // Whole steps; the least bytes a step can move are its state in and out once.
-Status measure_step(Device& device, int size, const char* name, std::uint32_t effects, const PerfOptions& options, std::vector<Row>& rows) {
+Status measure_step(Device& device, int size, const char* name, std::uint32_t effects, const PerfOptions& options,
+                    std::vector<Row>& rows) {
     auto scene = make_large_scene(size, effects);
     if (!scene) return scene.status();
     PassRunner runner(device, *scene);
@@ -168,7 +176,8 @@ Status measure_step(Device& device, int size, const char* name, std::uint32_t ef
     const double cells = static_cast<double>(size) * size;
     for (const auto& field : runner.plan().fields)
         if (field.role == FieldRole::state) row.floor_bytes += cells * (field.name == "terrain" ? 4 : 8);
-    auto times = status ? time_programs(device, programs, inputs_of(*scene, options.repeats + 2), options.repeats) : Result<std::vector<double>>(status);
+    auto times = status ? time_programs(device, programs, inputs_of(*scene, options.repeats + 2), options.repeats)
+                        : Result<std::vector<double>>(status);
     for (const compute::Program program : programs) device.destroy_program(program);
     if (!times) return times.status();
     row.milliseconds = *times;
@@ -176,25 +185,33 @@ Status measure_step(Device& device, int size, const char* name, std::uint32_t ef
     return ok_status();
 }
 
-void print(const Session& session, const Device& device, const PerfOptions& options, const Ceiling& ceiling, const std::vector<Row>& rows, bool first) {
+void print(const Session& session, const Device& device, const PerfOptions& options, const Ceiling& ceiling,
+           const std::vector<Row>& rows, bool first) {
     const char* clock = device.capabilities().timestamps ? "device" : "host";
     const std::string label = session.target().label();
-    if (options.csv && first) std::printf("backend,device,driver,clock,row,size,repeats,median_ms,p95_ms,bytes,GB_per_s,share_of_ceiling,cells_per_s,floor_ms,ceiling_copy_GB_per_s,ceiling_stage_GB_per_s\n");
+    if (options.csv && first)
+        std::printf("backend,device,driver,clock,row,size,repeats,median_ms,p95_ms,bytes,GB_per_s,share_of_ceiling,cells_per_s,"
+                    "floor_ms,ceiling_copy_GB_per_s,ceiling_stage_GB_per_s\n");
     if (!options.csv) {
-        std::printf("\n%s: %s (%s), %s clock, %d repeats\ncopy ceiling %.1f GB/s (Copy operation %.1f, stage publish_velocity %.1f)\n", label.c_str(),
-                    device.capabilities().name.c_str(), device.capabilities().driver.c_str(), clock, options.repeats, ceiling.best() * 1e-9, ceiling.copy * 1e-9, ceiling.stage * 1e-9);
-        std::printf("%-30s %6s %10s %10s %9s %7s %10s %9s\n", "row", "size", "median ms", "p95 ms", "GB/s", "share", "Mcells/s", "floor ms");
+        std::printf(
+            "\n%s: %s (%s), %s clock, %d repeats\ncopy ceiling %.1f GB/s (Copy operation %.1f, stage publish_velocity %.1f)\n",
+            label.c_str(), device.capabilities().name.c_str(), device.capabilities().driver.c_str(), clock, options.repeats,
+            ceiling.best() * 1e-9, ceiling.copy * 1e-9, ceiling.stage * 1e-9);
+        std::printf("%-30s %6s %10s %10s %9s %7s %10s %9s\n", "row", "size", "median ms", "p95 ms", "GB/s", "share", "Mcells/s",
+                    "floor ms");
     }
     for (const Row& row : rows) {
         const double median = quantile(row.milliseconds, 0.5), p95 = quantile(row.milliseconds, 0.95);
         const double rate = row.bytes / (median * 1e-3), cells = static_cast<double>(row.size) * row.size / (median * 1e-3);
         const double floor_ms = row.floor_bytes / ceiling.best() * 1e3;
         if (options.csv) {
-            std::printf("%s,%s,%s,%s,%s,%d,%zu,%.6f,%.6f,%.0f,%.3f,%.4f,%.0f,%.6f,%.3f,%.3f\n", label.c_str(), csv_field(device.capabilities().name).c_str(),
-                        csv_field(device.capabilities().driver).c_str(), clock, csv_field(row.name).c_str(), row.size, row.milliseconds.size(), median, p95, row.bytes,
-                        rate * 1e-9, rate / ceiling.best(), cells, floor_ms, ceiling.copy * 1e-9, ceiling.stage * 1e-9);
+            std::printf("%s,%s,%s,%s,%s,%d,%zu,%.6f,%.6f,%.0f,%.3f,%.4f,%.0f,%.6f,%.3f,%.3f\n", label.c_str(),
+                        csv_field(device.capabilities().name).c_str(), csv_field(device.capabilities().driver).c_str(), clock,
+                        csv_field(row.name).c_str(), row.size, row.milliseconds.size(), median, p95, row.bytes, rate * 1e-9,
+                        rate / ceiling.best(), cells, floor_ms, ceiling.copy * 1e-9, ceiling.stage * 1e-9);
         } else {
-            std::printf("%-30s %6d %10.4f %10.4f %9.2f %6.0f%% %10.1f", row.name.c_str(), row.size, median, p95, rate * 1e-9, 100 * rate / ceiling.best(), cells * 1e-6);
+            std::printf("%-30s %6d %10.4f %10.4f %9.2f %6.0f%% %10.1f", row.name.c_str(), row.size, median, p95, rate * 1e-9,
+                        100 * rate / ceiling.best(), cells * 1e-6);
             row.floor_bytes > 0 ? std::printf(" %9.4f\n", floor_ms) : std::printf("\n");
         }
     }
@@ -212,8 +229,9 @@ Status run_perf(Session& session, const PerfOptions& options, bool first) {
     for (int size = least_size; size <= options.max_size; size *= 2) {
         if (auto status = measure_stages(**device, size, options, rows); !status) return status;
         if (!options.stage.empty()) continue;
-        constexpr std::pair<const char*, std::uint32_t> steps[] = {
-            {"step, all effects", ALL}, {"step, water only", EFFECT_WATER}, {"step, dry sand", EFFECT_SAND | EFFECT_ELASTOPLASTIC}};
+        constexpr std::pair<const char*, std::uint32_t> steps[] = {{"step, all effects", ALL},
+                                                                   {"step, water only", EFFECT_WATER},
+                                                                   {"step, dry sand", EFFECT_SAND | EFFECT_ELASTOPLASTIC}};
         for (const auto& [name, effects] : steps)
             if (auto status = measure_step(**device, size, name, effects, options, rows); !status) return status;
     }

@@ -28,8 +28,9 @@ void Report::add(const std::string& target, const std::string& layer, const std:
     ++counts_[static_cast<int>(v.outcome)];
     if (v.outcome == Outcome::fail) failed_.push_back("--backend " + target + " --case \"" + name + "\"");
     if (csv_) {
-        std::printf("%s,%s,%s,%s,%s,%s,%.4f,%s\n", outcome_name(v.outcome), target.c_str(), layer.c_str(), csv_field(name).c_str(),
-                    number(v.error).c_str(), number(v.allowed).c_str(), seconds, csv_field(v.detail).c_str());
+        std::printf("%s,%s,%s,%s,%s,%s,%.4f,%s\n", outcome_name(v.outcome), target.c_str(), layer.c_str(),
+                    csv_field(name).c_str(), number(v.error).c_str(), number(v.allowed).c_str(), seconds,
+                    csv_field(v.detail).c_str());
     } else {
         std::string tail;
         if (v.error >= 0) tail = "  error " + number(v.error) + " of " + number(v.allowed);
@@ -40,7 +41,8 @@ void Report::add(const std::string& target, const std::string& layer, const std:
 }
 
 void Report::finish() {
-    const int not_supported = counts_[static_cast<int>(Outcome::not_supported)], skipped = counts_[static_cast<int>(Outcome::skipped)];
+    const int not_supported = counts_[static_cast<int>(Outcome::not_supported)],
+              skipped = counts_[static_cast<int>(Outcome::skipped)];
     std::FILE* out = csv_ ? stderr : stdout;
     if (!failed_.empty()) std::fprintf(out, "\nto repeat what failed:\n");
     for (const std::string& line : failed_) std::fprintf(out, "  conformance test %s\n", line.c_str());

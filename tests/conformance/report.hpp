@@ -10,9 +10,11 @@ class Report {
   public:
     explicit Report(bool csv) : csv_(csv) {}
     void start();
-    void add(const std::string& target, const std::string& layer, const std::string& name, const Verdict& verdict, double seconds);
+    void add(const std::string& target, const std::string& layer, const std::string& name, const Verdict& verdict,
+             double seconds);
     /// "N passed, M failed, K skipped" alone on the last line; not supported counts as skipped there.
     void finish();
+    int passes() const { return counts_[static_cast<int>(Outcome::ok)]; }
     int failures() const { return counts_[static_cast<int>(Outcome::fail)]; }
     int total() const { return counts_[0] + counts_[1] + counts_[2] + counts_[3]; }
 

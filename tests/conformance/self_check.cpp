@@ -26,7 +26,9 @@ BenchBuffer& output_of(const compute::StageInfo& stage, std::vector<BenchBuffer>
     return buffers.front();
 }
 
-void set_word(BenchBuffer& buffer, std::size_t word, std::uint32_t value) { std::memcpy(buffer.after.data() + word * 4, &value, 4); }
+void set_word(BenchBuffer& buffer, std::size_t word, std::uint32_t value) {
+    std::memcpy(buffer.after.data() + word * 4, &value, 4);
+}
 
 // The cell that the stage wrote with the largest value.
 std::size_t largest_cell(const BenchBuffer& buffer) {
@@ -87,9 +89,10 @@ void run_self_check(Report& report) {
         for (const Control& control : controls()) {
             if (*control.only != '\0' && std::string(control.only).find(spec.name) == std::string::npos) continue;
             const Verdict verdict = run_stage_case(spec, **device, control.tamper);
-            Verdict judged = verdict.outcome == control.wanted ? passed(verdict.detail)
-                                                               : failed(std::string("gave ") + outcome_name(verdict.outcome) + ", wanted " +
-                                                                        outcome_name(control.wanted) + " " + verdict.detail);
+            Verdict judged = verdict.outcome == control.wanted
+                                 ? passed(verdict.detail)
+                                 : failed(std::string("gave ") + outcome_name(verdict.outcome) + ", wanted " +
+                                          outcome_name(control.wanted) + " " + verdict.detail);
             report.add("cpu0", "self-check", std::string(control.name) + ": " + spec.text(), judged, 0);
         }
     }

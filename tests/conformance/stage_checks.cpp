@@ -22,11 +22,13 @@ struct Count {
 };
 
 // The growth of one 64-bit count, kept as a low and a high word, against what it should be.
-Verdict check_count(const BenchBuffer& ledger, std::size_t low, std::size_t high, const Count& expected, const std::string& what) {
+Verdict check_count(const BenchBuffer& ledger, std::size_t low, std::size_t high, const Count& expected,
+                    const std::string& what) {
     const auto at = [](std::uint32_t l, std::uint32_t h) { return std::uint64_t{l} + (std::uint64_t{h} << 32); };
     const std::uint64_t grown = at(ledger.words()[low], ledger.words()[high]) - at(ledger.before[low], ledger.before[high]);
     if (static_cast<double>(grown) >= expected.least && static_cast<double>(grown) <= expected.most) return {};
-    return failed(what + " grew by " + std::to_string(grown) + " quanta, expected " + std::to_string(expected.least) + " to " + std::to_string(expected.most));
+    return failed(what + " grew by " + std::to_string(grown) + " quanta, expected " + std::to_string(expected.least) + " to " +
+                  std::to_string(expected.most));
 }
 
 Verdict check_side_ledger(const StageRun& run) {
@@ -44,7 +46,8 @@ Verdict check_side_ledger(const StageRun& run) {
             out.add(std::max(-flux, 0.0), p);
             const std::string face = "face " + std::to_string(b) + " of side " + std::to_string(side);
             if (auto v = check_count(ledger, n, rim + n, in, "inflow of " + face); v.outcome != Outcome::ok) return v;
-            if (auto v = check_count(ledger, 2 * rim + n, 3 * rim + n, out, "outflow of " + face); v.outcome != Outcome::ok) return v;
+            if (auto v = check_count(ledger, 2 * rim + n, 3 * rim + n, out, "outflow of " + face); v.outcome != Outcome::ok)
+                return v;
         }
     }
     return {};
@@ -100,7 +103,8 @@ Verdict check_source_ledger(const StageRun& run) {
                 rain ? count_rain(run, i, j, counts) : count_sources(run, i, j, counts);
             const auto at = static_cast<std::size_t>(strip * p.pitch + i);
             for (std::size_t entry = 0; entry < LEDGER_ENTRIES; ++entry) {
-                const std::string what = "ledger entry " + std::to_string(entry) + " of column " + std::to_string(i) + ", strip " + std::to_string(strip);
+                const std::string what = "ledger entry " + std::to_string(entry) + " of column " + std::to_string(i) +
+                                         ", strip " + std::to_string(strip);
                 auto v = check_count(ledger, 2 * entry * row + at, (2 * entry + 1) * row + at, counts[entry], what);
                 if (v.outcome != Outcome::ok) return v;
             }
@@ -147,7 +151,8 @@ Verdict check_saturation(const StageRun& run) {
         for (int i = 0; i < layout.nx; ++i) {
             const float phi = run.buffer("saturation").floats()[layout.index(i, j)];
             if (run.before("sand_height", i, j) <= run.params.dry_threshold && std::abs(phi) > 0.0F)
-                return failed("saturation(" + std::to_string(i) + ", " + std::to_string(j) + ") is " + std::to_string(phi) + " without sand");
+                return failed("saturation(" + std::to_string(i) + ", " + std::to_string(j) + ") is " + std::to_string(phi) +
+                              " without sand");
         }
     }
     return {};
@@ -159,8 +164,8 @@ struct Definition {
 };
 
 constexpr Definition definitions[] = {
-    {"account_sides", check_side_ledger},   {"apply_rain", check_source_ledger},  {"apply_sources", check_source_ledger},
-    {"publish_heights", check_published},   {"publish_velocity", check_published}, {"compute_saturation", check_saturation},
+    {"account_sides", check_side_ledger}, {"apply_rain", check_source_ledger},   {"apply_sources", check_source_ledger},
+    {"publish_heights", check_published}, {"publish_velocity", check_published}, {"compute_saturation", check_saturation},
     {"mark_limits", check_marks},
 };
 

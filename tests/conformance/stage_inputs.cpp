@@ -27,24 +27,26 @@ template <class F> void for_layout(const FieldLayout& layout, F f) {
 }
 
 // Fields that a stage reads: state with its ghosts, scratch in its own range only.
-void fill_input(BenchBuffer& buffer, const std::string& stage, const FieldName& name, const Pilot& pilot, const WorldParams& params) {
+void fill_input(BenchBuffer& buffer, const std::string& stage, const FieldName& name, const Pilot& pilot,
+                const WorldParams& params) {
     const FieldLayout layout{params.nx, params.ny};
     auto values = reference_field(*pilot.narrow, stage, name, false);
     const bool state = is_state(name.base);
     if (state) fill_ghosts(values, name.base, *pilot.narrow);
-    const bool stale = name.base == "water_height" && std::find(stages_with_stale_ghosts.begin(), stages_with_stale_ghosts.end(), stage) !=
-                                                          stages_with_stale_ghosts.end();
+    const bool stale = name.base == "water_height" && std::find(stages_with_stale_ghosts.begin(), stages_with_stale_ghosts.end(),
+                                                                stage) != stages_with_stale_ghosts.end();
     const auto range = values_of(name.base, params);
     for_layout(layout, [&](int i, int j, std::size_t word) {
         const bool inside = contains(range, i, j);
         if (state || inside) buffer.before[word] = std::bit_cast<std::uint32_t>(values[word]);
         const bool outside_cell = contains({-1, -1, params.nx + 1, params.ny + 1}, i, j) && !inside;
-        if (stale && outside_cell && pilot.narrow->has(EFFECT_OPEN_SIDES)) buffer.before[word] = std::bit_cast<std::uint32_t>(7.0F);
+        if (stale && outside_cell && pilot.narrow->has(EFFECT_OPEN_SIDES))
+            buffer.before[word] = std::bit_cast<std::uint32_t>(7.0F);
     });
 }
 
-void fill_field(BenchBuffer& buffer, const std::string& stage, const compute::StageBinding& binding, const Scene& scene, const Pilot& pilot,
-                const WorldParams& params) {
+void fill_field(BenchBuffer& buffer, const std::string& stage, const compute::StageBinding& binding, const Scene& scene,
+                const Pilot& pilot, const WorldParams& params) {
     const FieldLayout layout{params.nx, params.ny};
     const FieldName name = field_of(stage, std::string(binding.name), scene.effects);
     const bool out = binding.access == Access::out;
@@ -52,7 +54,8 @@ void fill_field(BenchBuffer& buffer, const std::string& stage, const compute::St
     buffer.may_change.assign(layout.size(), false);
     buffer.must_change.assign(layout.size(), false);
     // compute_water_flux reads the mixed flux only where diffusion has written it.
-    const bool entry_unused = name.base.starts_with("mixed_flux") && (scene.effects & EFFECT_DIFFUSION) == 0 && binding.access == Access::inout;
+    const bool entry_unused =
+        name.base.starts_with("mixed_flux") && (scene.effects & EFFECT_DIFFUSION) == 0 && binding.access == Access::inout;
     if (!out && !entry_unused) fill_input(buffer, stage, name, pilot, params);
     if (binding.access == Access::in) return;
     const auto range = written_range(stage, name.base, params);
@@ -85,7 +88,8 @@ compute::Range2 written_range(const std::string& stage, const std::string& base,
     return values_of(base, params);
 }
 
-std::vector<BenchBuffer> stage_buffers(const compute::StageInfo& stage, const Scene& scene, const Pilot& pilot, const WorldParams& params) {
+std::vector<BenchBuffer> stage_buffers(const compute::StageInfo& stage, const Scene& scene, const Pilot& pilot,
+                                       const WorldParams& params) {
     std::vector<BenchBuffer> buffers(stage.bindings.size());
     const FieldLayout layout{params.nx, params.ny};
     for (std::size_t b = 0; b < buffers.size(); ++b) {
@@ -98,7 +102,9 @@ std::vector<BenchBuffer> stage_buffers(const compute::StageInfo& stage, const Sc
                 for (const float x : {shape.x, shape.y, shape.z, shape.w}) words.push_back(std::bit_cast<std::uint32_t>(x));
             fill_words(buffers[b], std::move(words), false);
         } else if (binding.name == "source_ledger") {
-            fill_words(buffers[b], ledger_words(std::size_t{2 * LEDGER_ENTRIES} * static_cast<std::size_t>(layout.strips() * layout.pitch())), true);
+            fill_words(buffers[b],
+                       ledger_words(std::size_t{2 * LEDGER_ENTRIES} * static_cast<std::size_t>(layout.strips() * layout.pitch())),
+                       true);
         } else if (binding.name == "side_ledger") {
             fill_words(buffers[b], ledger_words(4 * static_cast<std::size_t>(layout.rim())), true);
         } else {

@@ -5,7 +5,8 @@
 
 namespace wadi::conformance {
 
-std::vector<BenchBuffer> stage_buffers(const compute::StageInfo& stage, const Scene& scene, const Pilot& pilot, const WorldParams& params);
+std::vector<BenchBuffer> stage_buffers(const compute::StageInfo& stage, const Scene& scene, const Pilot& pilot,
+                                       const WorldParams& params);
 
 /// The range of a field that a stage writes: its values, and for open_sides also the water outside.
 compute::Range2 written_range(const std::string& stage, const std::string& base, const WorldParams& params);

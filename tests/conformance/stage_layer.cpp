@@ -61,8 +61,13 @@ Verdict compare_with_reference(const StageRun& run) {
     for (const auto& [name, outputs] : vectors) {
         std::vector<FieldCheck> components;
         for (const Output& out : outputs)
-            components.push_back({std::string(run.stage.bindings[out.binding].name), written_range(stage, out.name.base, run.params),
-                                  run.buffers[out.binding].floats(), out.narrow, out.wide, out.skip, {}});
+            components.push_back({std::string(run.stage.bindings[out.binding].name),
+                                  written_range(stage, out.name.base, run.params),
+                                  run.buffers[out.binding].floats(),
+                                  out.narrow,
+                                  out.wide,
+                                  out.skip,
+                                  {}});
         const double quanta = truncates(stage) ? static_cast<double>(run.params.quantum) : 0.0;
         verdict = worse(verdict, compare_fields(components, layout, quanta));
     }
@@ -75,24 +80,28 @@ std::vector<CaseSpec> list() {
     const auto stages = compute::stage_table();
     for (std::size_t stage = 0; stage < stages.size(); ++stage) {
         auto masks = stage_masks(static_cast<int>(stage));
-        if (stages[stage].tested_effects == 0 && masks.front() == 0) masks.front() = EFFECT_WATER; // a stage that publishes any layer
+        if (stages[stage].tested_effects == 0 && masks.front() == 0)
+            masks.front() = EFFECT_WATER; // a stage that publishes any layer
         // Every mask meets every scene, every stage every grid and method; not the full product.
         const std::size_t rounds = masks.size() < 3 ? 2 * scenes.size() : scenes.size();
         std::size_t turn = 0;
         for (const std::uint32_t mask : masks) {
             const auto add = [&](const char* grid, const std::string& scene, const std::string& method) {
-                cases.push_back({std::string(stages[stage].name), {{"grid", grid}, {"effects", effects_text(mask)}, {"scene", scene}, {"method", method}}});
+                cases.push_back({std::string(stages[stage].name),
+                                 {{"grid", grid}, {"effects", effects_text(mask)}, {"scene", scene}, {"method", method}}});
             };
             add("33x17", "random", "default");
             for (std::size_t n = 0; n < rounds; ++n, ++turn) {
-                const std::string scene = scenes[(turn + 1) % scenes.size()], method = methods[(turn + 2 * stage) % methods.size()];
+                const std::string scene = scenes[(turn + 1) % scenes.size()],
+                                  method = methods[(turn + 2 * stage) % methods.size()];
                 // A lake without a quantum is nothing but rounding: no reference says what it should be.
                 const bool rounding_only = scene == "lake" && (method == "plain" || method == "bare");
                 add(grids[(turn + stage) % grids.size()], scene, rounding_only ? "tapered" : method);
             }
         }
         if (stages[stage].name == "apply_sources") {
-            cases.push_back({"apply_sources", {{"grid", "33x17"}, {"effects", "water+sources"}, {"scene", "point_jet"}, {"method", "default"}}});
+            cases.push_back({"apply_sources",
+                             {{"grid", "33x17"}, {"effects", "water+sources"}, {"scene", "point_jet"}, {"method", "default"}}});
         }
     }
     return cases;

@@ -16,7 +16,8 @@ template <class Real> struct Step {
 };
 
 // In the order of the step plan. The splits of the water are the reference's own: the stages derive them where they read.
-template <class Real> constexpr Step<Real> steps[] = {
+template <class Real>
+constexpr Step<Real> steps[] = {
     {"apply_sources", &Solver<Real>::apply_sources, EFFECT_SOURCES},
     {"apply_rain", &Solver<Real>::apply_rain, EFFECT_RAIN},
     {"open_sides", &Solver<Real>::update_open_sides, EFFECT_OPEN_SIDES | EFFECT_WATER},
@@ -80,7 +81,8 @@ Settings without_quantum(Settings settings) {
 } // namespace
 
 References::References(const Scene& scene)
-    : narrow(scene.settings, scene.effects), wide(scene.settings, scene.effects), unrounded(without_quantum(scene.settings), scene.effects) {
+    : narrow(scene.settings, scene.effects), wide(scene.settings, scene.effects),
+      unrounded(without_quantum(scene.settings), scene.effects) {
     narrow.load(scene.fields);
     wide.copy_from(narrow);
     unrounded.copy_from(narrow);
@@ -135,7 +137,8 @@ Pilot make_pilot(const Scene& scene, const std::string& stage) {
     }
     pilot.input = inputs.next(scene.pilot_steps);
     if (scene.rough_stretch) settle_stretch(s, true);
-    const bool in_step = std::any_of(std::begin(steps<float>), std::end(steps<float>), [&](const auto& step) { return stage == step.stage; });
+    const bool in_step =
+        std::any_of(std::begin(steps<float>), std::end(steps<float>), [&](const auto& step) { return stage == step.stage; });
     for (const auto& step : steps<float>) {
         if (!in_step || stage == step.stage) break;
         if (step.run != nullptr && (scene.effects & step.needs) == step.needs) (s.*step.run)();

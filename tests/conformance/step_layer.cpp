@@ -71,7 +71,10 @@ std::vector<CaseSpec> list() {
     std::vector<CaseSpec> cases;
     const auto add = [&](const char* name, const Row& row) {
         cases.push_back({name,
-                         {{"grid", row.grid}, {"effects", effects_text(row.effects)}, {"scene", row.scene}, {"method", row.method},
+                         {{"grid", row.grid},
+                          {"effects", effects_text(row.effects)},
+                          {"scene", row.scene},
+                          {"method", row.method},
                           {"steps", std::to_string(row.steps)}}});
     };
     for (const Row& row : against_reference) add("world_against_reference", row);
@@ -131,7 +134,8 @@ Verdict run(const CaseSpec& spec, Session& session) {
     auto scene = make_scene(spec.get("grid", "33x17"), spec.get("scene", "random"), spec.get("method", "default"), *mask);
     if (!scene) return verdict_of(scene.status());
     const int steps = std::clamp(std::atoi(spec.get("steps", "1").c_str()), 1, 100000);
-    return spec.name == "world_against_cpu" ? against_cpu_run(*scene, steps, session) : against_reference_run(*scene, steps, session);
+    return spec.name == "world_against_cpu" ? against_cpu_run(*scene, steps, session)
+                                            : against_reference_run(*scene, steps, session);
 }
 
 } // namespace

@@ -5,7 +5,9 @@ namespace wadi::conformance {
 
 namespace {
 
-std::size_t at(int i, int j, int nx) { return static_cast<std::size_t>(j) * static_cast<std::size_t>(nx) + static_cast<std::size_t>(i); }
+std::size_t at(int i, int j, int nx) {
+    return static_cast<std::size_t>(j) * static_cast<std::size_t>(nx) + static_cast<std::size_t>(i);
+}
 
 // The image of a cell field, or of one component of a vector field with its sign.
 std::vector<float> image_of(const std::vector<float>& field, const Grid& grid, Symmetry symmetry, float sign) {
@@ -24,7 +26,8 @@ std::vector<float> image_of(const std::vector<float>& field, const Grid& grid, S
     return image;
 }
 
-void image_vector(const std::vector<float>& x, const std::vector<float>& y, const Grid& grid, Symmetry symmetry, std::vector<float>& to_x, std::vector<float>& to_y) {
+void image_vector(const std::vector<float>& x, const std::vector<float>& y, const Grid& grid, Symmetry symmetry,
+                  std::vector<float>& to_x, std::vector<float>& to_y) {
     to_x = image_of(x, grid, symmetry, symmetry == Symmetry::mirror_x ? -1.0F : 1.0F);
     to_y = image_of(y, grid, symmetry, symmetry == Symmetry::mirror_y ? -1.0F : 1.0F);
     if (symmetry == Symmetry::transpose) std::swap(to_x, to_y);
@@ -50,7 +53,8 @@ Scene image_of(const Scene& scene, Symmetry symmetry) {
         image.fields.*member = image_of(scene.fields.*member, grid, symmetry, 1);
     const auto& f = scene.fields;
     image_vector(f.velocity_x, f.velocity_y, grid, symmetry, image.fields.velocity_x, image.fields.velocity_y);
-    image_vector(f.sand_velocity_x, f.sand_velocity_y, grid, symmetry, image.fields.sand_velocity_x, image.fields.sand_velocity_y);
+    image_vector(f.sand_velocity_x, f.sand_velocity_y, grid, symmetry, image.fields.sand_velocity_x,
+                 image.fields.sand_velocity_y);
     for (Source& source : s.sources) {
         if (transpose) {
             std::swap(source.center[0], source.center[1]);
@@ -86,10 +90,13 @@ Verdict compare_images(World& world, World& image, Symmetry symmetry) {
         const bool face_x = field.name.ends_with("_velocity_x"), face_y = field.name.ends_with("_velocity_y");
         std::string twin = field.name;
         if (symmetry == Symmetry::transpose && (face_x || face_y)) twin.back() = face_x ? 'y' : 'x';
-        if (symmetry == Symmetry::transpose && twin == "stretch_xx") twin = "stretch_yy";
-        else if (symmetry == Symmetry::transpose && twin == "stretch_yy") twin = "stretch_xx";
+        if (symmetry == Symmetry::transpose && twin == "stretch_xx")
+            twin = "stretch_yy";
+        else if (symmetry == Symmetry::transpose && twin == "stretch_yy")
+            twin = "stretch_xx";
         const bool shear = field.name == "stretch_xy";
-        const bool odd = (symmetry == Symmetry::mirror_x && (face_x || shear)) || (symmetry == Symmetry::mirror_y && (face_y || shear));
+        const bool odd =
+            (symmetry == Symmetry::mirror_x && (face_x || shear)) || (symmetry == Symmetry::mirror_y && (face_y || shear));
         auto a = world.read_raw(field.name), b = image.read_raw(twin);
         if (!a) return verdict_of(a.status());
         if (!b) return verdict_of(b.status());
@@ -101,7 +108,8 @@ Verdict compare_images(World& world, World& image, Symmetry symmetry) {
                                          : symmetry == Symmetry::mirror_x ? to.index(mirrored_i, j)
                                                                           : to.index(i, mirrored_j)];
                 if (value <= (odd ? -other : other) && value >= (odd ? -other : other)) continue;
-                return failed(field.name + "(" + std::to_string(i) + ", " + std::to_string(j) + ") is " + std::to_string(value) + ", its image " + std::to_string(other));
+                return failed(field.name + "(" + std::to_string(i) + ", " + std::to_string(j) + ") is " + std::to_string(value) +
+                              ", its image " + std::to_string(other));
             }
         }
     }

@@ -42,7 +42,9 @@ class BorrowedDevice final : public compute::Device {
         programs_.erase(program.id);
         device_.destroy_program(program);
     }
-    Result<compute::Ticket> submit(compute::Program program, const StepInput& input) override { return device_.submit(program, input); }
+    Result<compute::Ticket> submit(compute::Program program, const StepInput& input) override {
+        return device_.submit(program, input);
+    }
     bool finished(compute::Ticket ticket) override { return device_.finished(ticket); }
     Status wait(compute::Ticket ticket) override { return device_.wait(ticket); }
     Result<std::vector<compute::Timing>> timings(compute::Ticket ticket) override { return device_.timings(ticket); }
