@@ -70,9 +70,9 @@ std::vector<vec4> source_shapes(const Settings& settings) {
             set(s.center[0], s.center[1], s.radius * s.radius, 0);
         } else if (s.shape == SourceShape::box) {
             set(s.box[0], s.box[1], s.box[2], s.box[3]);
-        } else { // the cell that holds the point, a quarter cell smaller so that rounding adds no neighbour or face
+        } else { // the cell that holds the point and its four faces: a quarter cell of margin, clear of every other centre
             const double x = std::floor(s.center[0] / dx) * dx, y = std::floor(s.center[1] / dx) * dx;
-            set(x + 0.25 * dx, y + 0.25 * dx, x + 0.75 * dx, y + 0.75 * dx);
+            set(x - 0.25 * dx, y - 0.25 * dx, x + 1.25 * dx, y + 1.25 * dx);
         }
         shapes[2 * n + 1] = {kind, static_cast<float>(s.material == SourceMaterial::water ? MATERIAL_WATER : MATERIAL_SAND), 0, 0};
     }

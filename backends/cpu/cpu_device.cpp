@@ -60,6 +60,10 @@ Status CpuDevice::check_range(const Memory& memory, std::uint64_t offset, std::u
 Result<compute::Buffer> CpuDevice::create_buffer(const compute::BufferDesc& desc) {
     if (auto status = check_lost(); !status) return status;
     if (desc.bytes == 0) return error(Code::bad_argument, "buffer '" + desc.label + "' has 0 bytes");
+    if (capabilities_.largest_buffer_bytes != 0 && desc.bytes > capabilities_.largest_buffer_bytes) {
+        return error(Code::bad_argument, "buffer '" + desc.label + "' has " + std::to_string(desc.bytes) + " bytes, more than the largest, " +
+                                             std::to_string(capabilities_.largest_buffer_bytes));
+    }
     // Operating systems promise more memory than they have; refuse before a page fault kills the host.
     const std::uint64_t limit = capabilities_.memory_bytes / 10 * 9;
     if (capabilities_.memory_bytes != 0 && (desc.bytes > limit || allocated_ > limit - desc.bytes)) {
@@ -122,7 +126,7 @@ Result<compute::Pipeline> CpuDevice::create_pipeline(int stage, std::uint32_t ef
     const std::uint32_t mask = effects & table[static_cast<std::size_t>(stage)].tested_effects;
     auto& id = pipeline_ids_[{stage, mask}];
     if (id == 0) {
-        pipelines_.push_back(set_.select[stage](mask));
+        pipelines_.push_back({stage, mask, set_.select[stage](mask)});
         id = static_cast<std::uint32_t>(pipelines_.size());
     }
     return compute::Pipeline{id};
@@ -141,8 +145,13 @@ Result<compute::Program> CpuDevice::compile(const compute::ProgramBuilder& build
         step.barrier_before = barriers[n] || full_barriers_;
         if (const auto* d = std::get_if<compute::Dispatch>(&op)) {
             if (d->pipeline.id > pipelines_.size()) return error(Code::bad_argument, "'" + d->label + "': pipeline does not exist");
-            step.block = pipelines_[d->pipeline.id - 1];
-            const auto& bindings = compute::stage_table()[static_cast<std::size_t>(d->stage)].bindings;
+            const auto& pipeline = pipelines_[d->pipeline.id - 1];
+            const auto& stage = compute::stage_table()[static_cast<std::size_t>(d->stage)];
+            if (pipeline.stage != d->stage || pipeline.mask != (d->effects & stage.tested_effects)) {
+                return error(Code::bad_argument, "'" + d->label + "': the pipeline is of another stage or of other effects");
+            }
+            step.block = pipeline.block;
+            const auto& bindings = stage.bindings;
             for (std::size_t b = 0; b < bindings.size(); ++b) {
                 const bool on = (d->effects & bindings[b].condition) == bindings[b].condition;
                 auto* memory = on ? find(d->slots[b]) : nullptr;

@@ -61,6 +61,11 @@ class CpuDevice final : public compute::Device {
         std::unique_ptr<std::atomic<int>[]> next_row; // per step, the first row nobody has taken yet
         bool small = false;                       // not worth waking other threads for
     };
+    struct CpuPipeline {
+        int stage;
+        std::uint32_t mask; // of the stage's tested effects
+        StageBlock block;
+    };
     struct Submission {
         std::uint64_t ticket;
         Recorded* program;
@@ -83,7 +88,7 @@ class CpuDevice final : public compute::Device {
     std::atomic<bool> lost_{false};
     std::map<std::uint32_t, Memory> buffers_;
     std::map<std::pair<int, std::uint32_t>, std::uint32_t> pipeline_ids_;
-    std::vector<StageBlock> pipelines_; // by id - 1
+    std::vector<CpuPipeline> pipelines_; // by id - 1
     std::map<std::uint32_t, std::unique_ptr<Recorded>> programs_;
     std::uint32_t next_buffer_ = 1, next_program_ = 1;
     std::uint64_t allocated_ = 0;

@@ -92,12 +92,14 @@ class Device {
     /// A stage specialised for a mask. Only the stage's tested_effects of `effects` matter; equal requests share one pipeline.
     virtual Result<Pipeline> create_pipeline(int stage, std::uint32_t effects, GroupSize group) = 0;
 
-    /// Records a program once, with its parameters frozen in. Errors: those of validate(), out_of_memory.
+    /// Records a program once, with its parameters frozen in. Errors: those of validate(), out_of_memory, bad_argument (a buffer
+    /// or pipeline that does not exist, a pipeline of another stage or other tested effects, a copy past a buffer's end).
     virtual Result<Program> compile(const ProgramBuilder& builder, const WorldParams& params) = 0;
     /// Frees a program. Null is ignored. Waits for work in flight.
     virtual void destroy_program(Program program) = 0;
 
-    /// Replays a program with this step's input. Returns at once unless the ring of submissions in flight is full.
+    /// Replays a program with this step's input. Returns at once unless the ring of submissions in flight is full. Tickets count
+    /// up from 1. Errors: bad_argument (no such program).
     virtual Result<Ticket> submit(Program program, const StepInput& input) = 0;
     virtual bool finished(Ticket ticket) = 0;
     virtual Status wait(Ticket ticket) = 0;

@@ -97,6 +97,7 @@ FN void project_stretch(REF(Stretch) v, REF(Stress) stress, float c, float cap, 
     float det = (1.0f + v.xx) * (1.0f + v.yy) - v.xy * v.xy;
     float e1 = half_log(m + r);
     float e2 = half_log(m - r);
+    bool within = both(m + r <= 1.71828183f, m - r >= -0.632120559f); // half_log clamps neither
     float tr = e1 + e2;
     float along = divide_or_zero(0.5f * (e1 - e2), r); // half-difference per unit of (d, bxy): no angle needed
     float dd = along * d;
@@ -124,7 +125,7 @@ FN void project_stretch(REF(Stretch) v, REF(Stress) stress, float c, float cap, 
     dd = broken ? 0.0f : dd;
     dxy = broken ? 0.0f : dxy;
 
-    elastic = both(both(elastic, !tip), both(!broken, !beyond));
+    elastic = both(both(both(elastic, within), !tip), both(!broken, !beyond));
 
     float hh = dd * dd + dxy * dxy;
     float em = exp_minus_one(0.5f * tr);

@@ -96,7 +96,9 @@ template <class Real> void Solver<Real>::compute_momentum_exchange() {
     exchange_split(mixed_before, pure_before, mixed);
     for_inner_faces([&](const Axis& ax, int a, int b) {
         const std::size_t f = ax.face(a, b);
-        mixed_velocity.along(ax)[f] -= mixed_push.along(ax)[f];
+        Real& um = mixed_velocity.along(ax)[f];
+        um -= mixed_push.along(ax)[f];
+        if (!has(EFFECT_DRAG)) um = clamped(um, P.clamp); // with drag 2.8 clamps it
     });
 }
 
