@@ -57,6 +57,7 @@ WorldParams derive_params(const Settings& s) {
     p.side_kind_south = static_cast<int>(s.sides[SIDE_SOUTH].kind);
     p.side_kind_north = static_cast<int>(s.sides[SIDE_NORTH].kind);
     p.dx = f(dx);
+    p.inv_dx = f(1 / dx);
     p.gravity = f(s.gravity);
     p.quantum = f(quantum);
     p.inv_quantum = quantum > 0 ? f(1 / quantum) : 0.0F;

@@ -45,6 +45,7 @@ struct WorldParams {
     int side_kind_south;
     int side_kind_north;
     float dx;                   // cell size [m]
+    float inv_dx;               // 1/dx [1/m]
     float gravity;              // [m/s2]
 
     float quantum;              // Q: every height is a multiple of it [m]; 0 = plain float

@@ -179,7 +179,6 @@ Result<compute::Program> CpuDevice::compile(const compute::ProgramBuilder& build
             step.word = fill->word;
         } else if (const auto* stamp = std::get_if<compute::Timestamp>(&op)) {
             step.timestamp = static_cast<int>(recorded->timestamp_labels.size());
-            step.barrier_before = true;
             recorded->timestamp_labels.push_back(stamp->label);
         }
         recorded->steps.push_back(std::move(step));
@@ -276,10 +275,16 @@ void CpuDevice::execute(Recorded& program, const StepInput& input, std::vector<c
     const auto work = [&](int thread) {
         for (std::size_t n = 0; n < program.steps.size(); ++n) {
             auto& step = program.steps[n];
-            if (step.barrier_before && !alone) pool_.barrier();
             if (step.timestamp >= 0) {
-                if (thread == 0) stamps[static_cast<std::size_t>(step.timestamp)] = std::chrono::steady_clock::now();
+                // Taken while every thread waits: a thread that went on would do work that the stamp then misses.
+                const auto stamp = [&] { stamps[static_cast<std::size_t>(step.timestamp)] = std::chrono::steady_clock::now(); };
+                if (alone) {
+                    stamp();
+                } else {
+                    pool_.barrier(stamp);
+                }
             } else {
+                if (step.barrier_before && !alone) pool_.barrier();
                 run_share(step, program.next_row[n], program.params, input, thread);
             }
         }

@@ -23,9 +23,10 @@ void wait_while(std::atomic<int>& value, int old) {
 
 } // namespace
 
-void Barrier::wait() {
+void Barrier::wait(const std::function<void()>& before_release) {
     const int generation = generation_.load(std::memory_order_acquire);
     if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == threads_) {
+        if (before_release) before_release();
         arrived_.store(0, std::memory_order_relaxed);
         generation_.fetch_add(1, std::memory_order_acq_rel);
         generation_.notify_all();

@@ -12,7 +12,8 @@ namespace wadi::cpu {
 class Barrier {
   public:
     explicit Barrier(int threads) : threads_(threads) {}
-    void wait();
+    /// The last thread to arrive calls `before_release`, if there is one, while the others still wait.
+    void wait(const std::function<void()>& before_release);
 
   private:
     const int threads_;
@@ -32,7 +33,7 @@ class ThreadPool {
     /// Calls work(thread) on every thread, 0 being the caller; returns when all have finished.
     void run(const std::function<void(int thread)>& work);
     /// Inside work only: waits until all threads of the pool are here.
-    void barrier() { barrier_.wait(); }
+    void barrier(const std::function<void()>& before_release = {}) { barrier_.wait(before_release); }
 
   private:
     void worker(int thread);

@@ -13,8 +13,8 @@ namespace {
 constexpr double PI = 3.14159265358979323846;
 
 constexpr std::array grids = {"33x17", "1x1", "1x9", "9x1", "63x5", "64x4", "65x3", "257x130"};
-constexpr std::array scenes = {"random", "dam_break", "lake",         "cliff",     "islands",
-                               "slope",  "flat",      "one_wet_cell", "thin_film", "deep"};
+constexpr std::array scenes = {"random", "dam_break",    "lake",      "cliff", "islands", "slope",
+                               "flat",   "one_wet_cell", "thin_film", "deep",  "creep",   "brimful"};
 constexpr std::array methods = {"default", "plain", "bare", "tapered", "coarse"};
 
 // Position in a scene: metres are x, y; u, v run from 0 to 1, s along the longer axis.
@@ -85,6 +85,17 @@ bool make_heights(Scene& scene) {
         fill_heights(scene, [](const Place&) { return Fields{0.5, 0.25, 0.6}; });
         fill(grid, scene.fields.velocity_x, [](const Place&) { return 0.4; });
         fill(grid, scene.fields.velocity_y, [](const Place&) { return -0.3; });
+    } else if (name == "creep") { // level, and on both sides of the rest rule's velocity
+        fill_heights(scene, [](const Place&) { return Fields{0.5, 0.25, 0.6}; });
+        fill(grid, scene.fields.velocity_x, [](const Place&) { return 0.75e-3; });
+        fill(grid, scene.fields.velocity_y, [](const Place&) { return -1.4e-3; });
+        scene.pilot_steps = 0;
+    } else if (name == "brimful") { // columns that one step's rain or source lifts past the declared largest height, or not
+        const double full = scene.settings.method.largest_height;
+        fill_heights(scene, [&](const Place& p) {
+            return Fields{full - 1 - 4e-6 - 2e-5 * ((p.i * 5 + p.j * 3) % 7), 0.4, 0.6 - 3e-4 * (p.i % 2)};
+        });
+        scene.pilot_steps = 0;
     } else if (name == "slope") {
         fill_heights(scene, [&](const Place& p) {
             return Fields{0.2 * grid.dx * p.i, 0.3 + 0.1 * std::sin(9 * p.s), 0.12 + 0.05 * std::cos(7 * p.u + 5 * p.v)};

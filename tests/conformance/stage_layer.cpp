@@ -86,11 +86,16 @@ std::vector<CaseSpec> list() {
         const std::size_t rounds = masks.size() < 3 ? 2 * scenes.size() : scenes.size();
         std::size_t turn = 0;
         for (const std::uint32_t mask : masks) {
-            const auto add = [&](const char* grid, const std::string& scene, const std::string& method) {
+            const auto add = [&](const char* grid, const std::string& scene, const std::string& method, std::uint32_t more = 0) {
                 cases.push_back({std::string(stages[stage].name),
-                                 {{"grid", grid}, {"effects", effects_text(mask)}, {"scene", scene}, {"method", method}}});
+                                 {{"grid", grid}, {"effects", effects_text(mask | more)}, {"scene", scene}, {"method", method}}});
             };
             add("33x17", "random", "default");
+            // Open sides put velocities and water on the rim of every other stage as well.
+            if ((mask & EFFECT_OPEN_SIDES) == 0) {
+                add("33x17", "random", "default", EFFECT_OPEN_SIDES);
+                add("5x7", "slope", "plain", EFFECT_OPEN_SIDES);
+            }
             for (std::size_t n = 0; n < rounds; ++n, ++turn) {
                 const std::string scene = scenes[(turn + 1) % scenes.size()],
                                   method = methods[(turn + 2 * stage) % methods.size()];
