@@ -54,12 +54,18 @@ Wanted wanted(const Effect& effect, std::uint32_t mask, const Settings& s, const
         }
         return {false, "no sand in the level or its sources"};
     }
-    case EFFECT_MIXTURE: return {(mask & effect.needs) == effect.needs, "water and sand can meet"};
-    case EFFECT_DIFFUSION: return {m.diffusion_rate > 0, m.diffusion_rate > 0 ? "diffusion_rate is above 0" : "diffusion_rate is 0"};
-    case EFFECT_DRAG: return {m.exchange_rate > 0, m.exchange_rate > 0 ? "exchange_rate is above 0" : "exchange_rate is 0"};
-    case EFFECT_ELASTOPLASTIC: return {m.young_modulus > 0, m.young_modulus > 0 ? "young_modulus is above 0" : "young_modulus is 0"};
-    case EFFECT_COHESION: return {true, "sand can get wet"};
-    case EFFECT_SOURCES: return {!s.sources.empty(), s.sources.empty() ? "no sources" : std::to_string(s.sources.size()) + " sources"};
+    case EFFECT_MIXTURE:
+        return {(mask & effect.needs) == effect.needs, "water and sand can meet"};
+    case EFFECT_DIFFUSION:
+        return {m.diffusion_rate > 0, m.diffusion_rate > 0 ? "diffusion_rate is above 0" : "diffusion_rate is 0"};
+    case EFFECT_DRAG:
+        return {m.exchange_rate > 0, m.exchange_rate > 0 ? "exchange_rate is above 0" : "exchange_rate is 0"};
+    case EFFECT_ELASTOPLASTIC:
+        return {m.young_modulus > 0, m.young_modulus > 0 ? "young_modulus is above 0" : "young_modulus is 0"};
+    case EFFECT_COHESION:
+        return {true, "sand can get wet"};
+    case EFFECT_SOURCES:
+        return {!s.sources.empty(), s.sources.empty() ? "no sources" : std::to_string(s.sources.size()) + " sources"};
     case EFFECT_RAIN: {
         const bool on = ever_above_zero(s.rain) || ever_above_zero(s.evaporation);
         return {on, on ? "rain or evaporation is above 0" : "no rain, no evaporation"};
@@ -68,7 +74,8 @@ Wanted wanted(const Effect& effect, std::uint32_t mask, const Settings& s, const
         const bool on = std::any_of(s.sides.begin(), s.sides.end(), [](const Side& side) { return side.kind != SideKind::wall; });
         return {on, on ? "a side is open" : "all sides are walls"};
     }
-    default: return {m.bed_friction > 0, m.bed_friction > 0 ? "bed_friction is above 0" : "bed_friction is 0"};
+    default:
+        return {m.bed_friction > 0, m.bed_friction > 0 ? "bed_friction is above 0" : "bed_friction is 0"};
     }
 }
 
@@ -85,7 +92,8 @@ std::string names_of(std::uint32_t bits) {
 std::span<const Effect> effect_table() { return table; }
 
 bool is_legal(std::uint32_t mask) {
-    return std::all_of(table.begin(), table.end(), [&](const Effect& e) { return (mask & e.bit) == 0 || (mask & e.needs) == e.needs; });
+    return std::all_of(table.begin(), table.end(),
+                       [&](const Effect& e) { return (mask & e.bit) == 0 || (mask & e.needs) == e.needs; });
 }
 
 Result<EffectChoice> effects_required(const Settings& settings, const InitialFields& fields) {
@@ -103,7 +111,9 @@ Result<EffectChoice> effects_required(const Settings& settings, const InitialFie
         const std::uint32_t lacking = effect.needs & ~choice.mask;
         auto want = wanted(effect, choice.mask, settings, fields);
         if (force == Force::on) {
-            if (lacking != 0) return error(Code::bad_argument, std::string("effects.") + effect.name + ": on, but it needs " + names_of(lacking));
+            if (lacking != 0)
+                return error(Code::bad_argument,
+                             std::string("effects.") + effect.name + ": on, but it needs " + names_of(lacking));
             want = {true, "forced on by the level"};
         } else if (force == Force::off) {
             want = {false, "forced off by the level"};

@@ -11,9 +11,9 @@ namespace wadi {
 
 struct Effect {
     std::uint32_t bit;
-    const char* name;      // as level files write it
-    std::uint32_t needs;   // bits that must be on as well
-    const char* meaning;   // one sentence
+    const char* name;    // as level files write it
+    std::uint32_t needs; // bits that must be on as well
+    const char* meaning; // one sentence
 };
 
 /// All effects, dependencies first.

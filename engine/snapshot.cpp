@@ -14,15 +14,18 @@ Result<Snapshot> World::snapshot() {
         if (field.role != FieldRole::state && field.role != FieldRole::ledger) continue;
         auto& words = snapshot.fields[field.name];
         words.resize(field_bytes(field) / 4);
-        if (auto status = note(device_->read(buffer(field.name, parity), 0, std::as_writable_bytes(std::span(words)))); !status) return status;
+        if (auto status = note(device_->read(buffer(field.name, parity), 0, std::as_writable_bytes(std::span(words)))); !status)
+            return status;
     }
     return snapshot;
 }
 
 Status World::restore(const Snapshot& snapshot) {
     if (!lost_) return lost_;
-    if (snapshot.effects != plan_.effects) return error(Code::bad_argument, "restore: the snapshot is of a world with other effects");
-    if (snapshot.totals.size() != inputs_.totals().size()) return error(Code::bad_argument, "restore: the snapshot is of a world with other sources");
+    if (snapshot.effects != plan_.effects)
+        return error(Code::bad_argument, "restore: the snapshot is of a world with other effects");
+    if (snapshot.totals.size() != inputs_.totals().size())
+        return error(Code::bad_argument, "restore: the snapshot is of a world with other sources");
     for (const auto& field : plan_.fields) {
         if (field.role != FieldRole::state && field.role != FieldRole::ledger) continue;
         const auto found = snapshot.fields.find(field.name);
@@ -33,7 +36,8 @@ Status World::restore(const Snapshot& snapshot) {
     // Even parity: the first of the two programs starts from the first buffer of every field.
     parity_ = 0;
     for (const auto& [name, words] : snapshot.fields) {
-        if (auto status = note(device_->write(buffer(name, start_parity_[0]), 0, std::as_bytes(std::span(words)))); !status) return status;
+        if (auto status = note(device_->write(buffer(name, start_parity_[0]), 0, std::as_bytes(std::span(words)))); !status)
+            return status;
     }
     steps_ = snapshot.steps;
     inputs_.set_totals(snapshot.totals);

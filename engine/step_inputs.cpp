@@ -31,9 +31,11 @@ void StepInputs::set_sides(StepInput& input, double time) const {
         if (side.kind == SideKind::discharge) {
             value = last >= first ? std::max(0.0, value) / ((last - first + 1) * dx) : 0.0;
             // Deep enough that the flow into a dry cell is critical and within the velocity clamp.
-            least_depth = std::max(std::cbrt(value * value / std::max(1e-9, settings_.gravity)), value * k / settings_.method.velocity_clamp);
+            least_depth = std::max(std::cbrt(value * value / std::max(1e-9, settings_.gravity)),
+                                   value * k / settings_.method.velocity_clamp);
         }
-        input.side[n] = {static_cast<float>(value), static_cast<float>(least_depth), static_cast<float>(first), static_cast<float>(last)};
+        input.side[n] = {static_cast<float>(value), static_cast<float>(least_depth), static_cast<float>(first),
+                         static_cast<float>(last)};
     }
 }
 
@@ -48,8 +50,8 @@ StepInput StepInputs::next(int step) {
         const auto& source = settings_.sources[n];
         const double rate = source.rate.at(time);
         const bool velocity = source.set_velocity && rate > 0;
-        input.source[n] = {advance(totals_[n], rate), static_cast<float>(source.velocity[0]), static_cast<float>(source.velocity[1]),
-                           velocity ? 1.0F : 0.0F};
+        input.source[n] = {advance(totals_[n], rate), static_cast<float>(source.velocity[0]),
+                           static_cast<float>(source.velocity[1]), velocity ? 1.0F : 0.0F};
     }
     set_sides(input, time);
     return input;
@@ -74,7 +76,8 @@ std::vector<vec4> source_shapes(const Settings& settings) {
             const double x = std::floor(s.center[0] / dx) * dx, y = std::floor(s.center[1] / dx) * dx;
             set(x - 0.25 * dx, y - 0.25 * dx, x + 1.25 * dx, y + 1.25 * dx);
         }
-        shapes[2 * n + 1] = {kind, static_cast<float>(s.material == SourceMaterial::water ? MATERIAL_WATER : MATERIAL_SAND), 0, 0};
+        shapes[2 * n + 1] = {kind, static_cast<float>(s.material == SourceMaterial::water ? MATERIAL_WATER : MATERIAL_SAND), 0,
+                             0};
     }
     return shapes;
 }

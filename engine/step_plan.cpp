@@ -14,8 +14,8 @@ bool is_next(const std::string& name) { return name.ends_with(next_suffix); }
 std::string base_name(const std::string& name) { return is_next(name) ? name.substr(0, name.size() - next_suffix.size()) : name; }
 
 const std::set<std::string> state_fields = {
-    "terrain",          "sand_height",      "water_height",     "stretch_xx",       "stretch_xy",       "stretch_yy", "sand_velocity_x",
-    "sand_velocity_y",  "water_velocity_x", "water_velocity_y", "mixed_velocity_x", "mixed_velocity_y",
+    "terrain",         "sand_height",     "water_height",     "stretch_xx",       "stretch_xy",       "stretch_yy",
+    "sand_velocity_x", "sand_velocity_y", "water_velocity_x", "water_velocity_y", "mixed_velocity_x", "mixed_velocity_y",
 };
 
 FieldRole role_of(const std::string& name) {
@@ -28,7 +28,8 @@ using Names = std::map<std::string, std::string>; // a stage's binding name -> t
 
 class Builder {
   public:
-    Builder(std::uint32_t effects, std::vector<PlanPass>& passes, bool in_substep) : effects_(effects), passes_(passes), in_substep_(in_substep) {}
+    Builder(std::uint32_t effects, std::vector<PlanPass>& passes, bool in_substep)
+        : effects_(effects), passes_(passes), in_substep_(in_substep) {}
 
     bool has(std::uint32_t bits) const { return (effects_ & bits) == bits; }
 
@@ -41,7 +42,8 @@ class Builder {
             const bool exists = (effects_ & binding.condition) == binding.condition;
             const std::string name(binding.name);
             const auto renamed = names.find(base_name(name));
-            const std::string field = renamed == names.end() ? name : renamed->second + (is_next(name) ? std::string(next_suffix) : "");
+            const std::string field =
+                renamed == names.end() ? name : renamed->second + (is_next(name) ? std::string(next_suffix) : "");
             pass.fields.push_back(exists ? field : std::string());
         }
         passes_.push_back(std::move(pass));
@@ -62,9 +64,11 @@ void plan_water(Builder b) {
     b.run("limit_water_outflow");
     b.run("compute_water_flux");
     if (b.has(EFFECT_OPEN_SIDES)) {
-        b.run("account_sides", {}, {{"flux_x", "water_flux_x"}, {"flux_y", "water_flux_y"}, {"side_ledger", "water_side_ledger"}});
+        b.run("account_sides", {},
+              {{"flux_x", "water_flux_x"}, {"flux_y", "water_flux_y"}, {"side_ledger", "water_side_ledger"}});
         if (b.has(EFFECT_MIXTURE)) {
-            b.run("account_sides", {}, {{"flux_x", "mixed_flux_x"}, {"flux_y", "mixed_flux_y"}, {"side_ledger", "water_side_ledger"}});
+            b.run("account_sides", {},
+                  {{"flux_x", "mixed_flux_x"}, {"flux_y", "mixed_flux_y"}, {"side_ledger", "water_side_ledger"}});
         }
     }
     b.run("integrate_water_height", {"water_height"});
@@ -167,7 +171,8 @@ StepPlan make_step_plan(std::uint32_t effects, int substeps) {
             for (const auto& name : pass.fields) {
                 if (name.empty()) continue;
                 const std::string base = base_name(name);
-                auto found = std::find_if(plan.fields.begin(), plan.fields.end(), [&](const PlanField& f) { return f.name == base; });
+                auto found =
+                    std::find_if(plan.fields.begin(), plan.fields.end(), [&](const PlanField& f) { return f.name == base; });
                 if (found == plan.fields.end()) found = plan.fields.insert(plan.fields.end(), {base, role_of(base), false, -1});
                 found->ping_pong |= is_next(name);
             }

@@ -14,7 +14,7 @@ namespace wadi {
 struct PlanPass {
     int stage = -1;
     std::vector<std::string> fields;
-    std::vector<std::string> flips;   // ping-pong fields whose new buffer becomes the current one after this pass
+    std::vector<std::string> flips; // ping-pong fields whose new buffer becomes the current one after this pass
     bool in_substep = false;
 };
 
@@ -24,14 +24,14 @@ struct PlanField {
     std::string name;
     FieldRole role = FieldRole::state;
     bool ping_pong = false;
-    int memory = -1;                  // scratch: number of the memory block it shares with other scratch fields
+    int memory = -1; // scratch: number of the memory block it shares with other scratch fields
 };
 
 struct StepPlan {
     std::uint32_t effects = 0;
     int substeps = 1;
-    std::vector<PlanPass> water_passes;    // in order; before the substeps
-    std::vector<PlanPass> substep_passes;  // run T times
+    std::vector<PlanPass> water_passes;   // in order; before the substeps
+    std::vector<PlanPass> substep_passes; // run T times
     std::vector<PlanField> fields;
     int scratch_blocks = 0;
 

@@ -14,7 +14,9 @@ std::vector<float> with_ghosts(const FieldLayout& layout, const std::vector<floa
     for (int j = -GHOST; j < layout.ny + 1 + GHOST; ++j) {
         for (int i = -GHOST; i < layout.nx + 1 + GHOST; ++i) {
             const int x = std::clamp(i, 0, layout.nx - 1), y = std::clamp(j, 0, layout.ny - 1);
-            if (repeat_edges || (x == i && y == j)) field[layout.index(i, j)] = cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(layout.nx) + static_cast<std::size_t>(x)];
+            if (repeat_edges || (x == i && y == j))
+                field[layout.index(i, j)] =
+                    cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(layout.nx) + static_cast<std::size_t>(x)];
         }
     }
     return field;
@@ -24,7 +26,9 @@ std::vector<float> with_ghosts(const FieldLayout& layout, const std::vector<floa
 std::vector<float> to_faces(const FieldLayout& layout, const std::vector<float>& cells, bool along_x) {
     std::vector<float> field(layout.size(), 0.0F);
     if (cells.empty()) return field;
-    const auto at = [&](int i, int j) { return cells[static_cast<std::size_t>(j) * static_cast<std::size_t>(layout.nx) + static_cast<std::size_t>(i)]; };
+    const auto at = [&](int i, int j) {
+        return cells[static_cast<std::size_t>(j) * static_cast<std::size_t>(layout.nx) + static_cast<std::size_t>(i)];
+    };
     for (int j = along_x ? 0 : 1; j < layout.ny; ++j) {
         for (int i = along_x ? 1 : 0; i < layout.nx; ++i) {
             field[layout.index(i, j)] = 0.5F * (at(i, j) + (along_x ? at(i - 1, j) : at(i, j - 1)));
@@ -50,13 +54,13 @@ std::span<const std::byte> bytes_of(const auto& values) { return std::as_bytes(s
 } // namespace
 
 World::World(const Settings& settings, std::unique_ptr<compute::Device> device, compute::GroupSize group)
-    : settings_(settings), layout_{settings.grid.nx, settings.grid.ny}, params_(derive_params(settings)), device_(std::move(device)), group_(group),
-      inputs_(settings) {}
+    : settings_(settings), layout_{settings.grid.nx, settings.grid.ny}, params_(derive_params(settings)),
+      device_(std::move(device)), group_(group), inputs_(settings) {}
 
 World::~World() = default;
 
-Result<std::unique_ptr<World>> World::create(const Settings& settings, const InitialFields& fields, std::unique_ptr<compute::Device> device,
-                                             compute::GroupSize group) {
+Result<std::unique_ptr<World>> World::create(const Settings& settings, const InitialFields& fields,
+                                             std::unique_ptr<compute::Device> device, compute::GroupSize group) {
     if (auto status = validate(settings); !status) return status;
     if (auto status = validate(fields, settings); !status) return status;
     auto effects = effects_required(settings, fields);
@@ -66,8 +70,9 @@ Result<std::unique_ptr<World>> World::create(const Settings& settings, const Ini
     world->plan_ = make_step_plan(effects->mask, settings.method.substeps);
     const std::uint64_t field_bytes = world->layout_.size() * 4, limit = world->device_->capabilities().largest_buffer_bytes;
     if (limit != 0 && field_bytes > limit) {
-        return error(Code::not_supported, "grid " + std::to_string(settings.grid.nx) + " x " + std::to_string(settings.grid.ny) + " needs fields of " +
-                                              std::to_string(field_bytes >> 20) + " MiB; '" + world->device_->capabilities().name + "' binds at most " +
+        return error(Code::not_supported, "grid " + std::to_string(settings.grid.nx) + " x " + std::to_string(settings.grid.ny) +
+                                              " needs fields of " + std::to_string(field_bytes >> 20) + " MiB; '" +
+                                              world->device_->capabilities().name + "' binds at most " +
                                               std::to_string(limit >> 20) + " MiB");
     }
     if (auto status = world->allocate(); !status) return status;
@@ -86,7 +91,8 @@ std::uint64_t World::field_bytes(const PlanField& field) const {
     if (field.role == FieldRole::shapes) return 2 * MAX_SOURCES * sizeof(vec4);
     if (field.role != FieldRole::ledger) return layout_.size() * 4;
     if (field.name != "source_ledger") return static_cast<std::uint64_t>(layout_.rim()) * 4 * 4;
-    return std::uint64_t{2 * LEDGER_ENTRIES} * static_cast<std::uint64_t>(layout_.strips()) * static_cast<std::uint64_t>(layout_.pitch()) * 4;
+    return std::uint64_t{2 * LEDGER_ENTRIES} * static_cast<std::uint64_t>(layout_.strips()) *
+           static_cast<std::uint64_t>(layout_.pitch()) * 4;
 }
 
 Status World::allocate() {
@@ -120,15 +126,16 @@ Status World::upload(const InitialFields& fields) {
     sand_initial_ = plan_.find("sand_height") == nullptr ? 0 : count_quanta(sand, ledger_quantum(settings_.method));
     water_initial_ = plan_.find("water_height") == nullptr ? 0 : count_quanta(water, ledger_quantum(settings_.method));
     const auto u = to_faces(layout_, fields.velocity_x, true), v = to_faces(layout_, fields.velocity_y, false);
-    const std::pair<const char*, std::vector<float>> all[] = {{"terrain", heights(fields.terrain, true)},
-                                                              {"sand_height", sand},
-                                                              {"water_height", water},
-                                                              {"water_velocity_x", u},
-                                                              {"water_velocity_y", v},
-                                                              {"mixed_velocity_x", u},
-                                                              {"mixed_velocity_y", v},
-                                                              {"sand_velocity_x", to_faces(layout_, fields.sand_velocity_x, true)},
-                                                              {"sand_velocity_y", to_faces(layout_, fields.sand_velocity_y, false)}};
+    const std::pair<const char*, std::vector<float>> all[] = {
+        {"terrain", heights(fields.terrain, true)},
+        {"sand_height", sand},
+        {"water_height", water},
+        {"water_velocity_x", u},
+        {"water_velocity_y", v},
+        {"mixed_velocity_x", u},
+        {"mixed_velocity_y", v},
+        {"sand_velocity_x", to_faces(layout_, fields.sand_velocity_x, true)},
+        {"sand_velocity_y", to_faces(layout_, fields.sand_velocity_y, false)}};
     for (const auto& [name, values] : all) {
         if (auto status = put(name, values); !status) return status;
     }
@@ -151,7 +158,8 @@ Status World::append(compute::ProgramBuilder& builder, const PlanPass& pass, Par
     const auto& stage = compute::stage_table()[static_cast<std::size_t>(pass.stage)];
     auto pipeline = device_->create_pipeline(pass.stage, plan_.effects, group_);
     if (!pipeline) return pipeline.status();
-    compute::Dispatch dispatch{*pipeline, pass.stage, plan_.effects, {}, compute::extent_range(stage.extent, params_), std::string(stage.name)};
+    compute::Dispatch dispatch{
+        *pipeline, pass.stage, plan_.effects, {}, compute::extent_range(stage.extent, params_), std::string(stage.name)};
     for (const auto& name : pass.fields) dispatch.slots.push_back(name.empty() ? compute::Buffer{} : buffer(name, parity));
     builder.dispatch(std::move(dispatch));
     for (const auto& name : pass.flips) {
@@ -165,7 +173,8 @@ Result<compute::Program> World::record_step(Parity& parity, bool timestamps) {
     if (timestamps) builder.timestamp("start");
     const auto add = [&](const PlanPass& pass) {
         auto status = append(builder, pass, parity);
-        if (status && timestamps) builder.timestamp(std::string(compute::stage_table()[static_cast<std::size_t>(pass.stage)].name));
+        if (status && timestamps)
+            builder.timestamp(std::string(compute::stage_table()[static_cast<std::size_t>(pass.stage)].name));
         return status;
     };
     for (const auto& pass : plan_.water_passes) {

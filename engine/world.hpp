@@ -48,8 +48,8 @@ class World {
     /// Checks settings and fields, derives the effects, allocates and records. Errors: bad_argument, out_of_memory, and
     /// not_supported for a grid larger than the device's buffers.
     /// `group`: threads per group on GPU backends, 0 = the backend's choice; it changes no bit.
-    static Result<std::unique_ptr<World>> create(const Settings& settings, const InitialFields& fields, std::unique_ptr<compute::Device> device,
-                                                 compute::GroupSize group = {});
+    static Result<std::unique_ptr<World>> create(const Settings& settings, const InitialFields& fields,
+                                                 std::unique_ptr<compute::Device> device, compute::GroupSize group = {});
     ~World();
 
     /// Submits water steps; returns before the device has finished them.
@@ -114,9 +114,9 @@ class World {
     StepInputs inputs_;
     std::map<std::string, std::array<compute::Buffer, 2>> buffers_; // state, ledger, shapes
     std::vector<compute::Buffer> scratch_;
-    std::array<compute::Buffer, 3> output_{};                       // published fields, made when first asked for
+    std::array<compute::Buffer, 3> output_{}; // published fields, made when first asked for
     std::array<compute::Program, 2> step_programs_{}, timed_programs_{};
-    std::array<Parity, 2> start_parity_{};                          // the state each program starts from
+    std::array<Parity, 2> start_parity_{}; // the state each program starts from
     int parity_ = 0;
     std::uint64_t steps_ = 0, device_bytes_ = 0;
     std::int64_t sand_initial_ = 0, water_initial_ = 0;
@@ -124,7 +124,7 @@ class World {
     std::vector<compute::Ticket> pending_timings_;
     std::map<std::string, double> stage_milliseconds_;
     std::uint64_t timed_steps_ = 0;
-    Status lost_;                                                   // sticky once the device is lost
+    Status lost_; // sticky once the device is lost
 };
 
 } // namespace wadi

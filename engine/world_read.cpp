@@ -17,8 +17,8 @@ std::uint64_t mix(std::uint64_t x) {
 }
 
 // In the order that the hash numbers them: never reorder, or every golden hash changes.
-constexpr const char* hashed_fields[] = {"sand_height",      "water_height",     "stretch_xx",       "stretch_xy",
-                                         "stretch_yy",       "sand_velocity_x",  "sand_velocity_y",  "water_velocity_x",
+constexpr const char* hashed_fields[] = {"sand_height",      "water_height",     "stretch_xx",      "stretch_xy",
+                                         "stretch_yy",       "sand_velocity_x",  "sand_velocity_y", "water_velocity_x",
                                          "water_velocity_y", "mixed_velocity_x", "mixed_velocity_y"};
 
 bool is_velocity(const std::string& name) { return name.ends_with("velocity_x") || name.ends_with("velocity_y"); }
@@ -41,13 +41,14 @@ Status World::read_cells(compute::Buffer from, std::span<float> values) {
     auto raw = read_buffer(from);
     if (!raw) return raw.status();
     for (int j = 0; j < layout_.ny; ++j) {
-        std::memcpy(values.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(layout_.nx), raw->data() + layout_.index(0, j),
-                    static_cast<std::size_t>(layout_.nx) * sizeof(float));
+        std::memcpy(values.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(layout_.nx),
+                    raw->data() + layout_.index(0, j), static_cast<std::size_t>(layout_.nx) * sizeof(float));
     }
     return ok_status();
 }
 
-Status World::append_stage(compute::ProgramBuilder& builder, const char* stage_name, const std::map<std::string, std::string>& names) {
+Status World::append_stage(compute::ProgramBuilder& builder, const char* stage_name,
+                           const std::map<std::string, std::string>& names) {
     const int index = compute::find_stage(stage_name);
     const auto& stage = compute::stage_table()[static_cast<std::size_t>(index)];
     auto pipeline = device_->create_pipeline(index, plan_.effects, group_);
@@ -99,7 +100,8 @@ Status World::read(const std::string& name, std::span<float> values) {
     }
     if (is_velocity(name)) {
         const std::string layer = name.substr(0, name.size() - 1);
-        if (auto status = publish("publish_velocity", {{"velocity_x", layer + "x"}, {"velocity_y", layer + "y"}}); !status) return status;
+        if (auto status = publish("publish_velocity", {{"velocity_x", layer + "x"}, {"velocity_y", layer + "y"}}); !status)
+            return status;
         return read_cells(output_[name.back() == 'x' ? 0 : 1], values);
     }
     return read_cells(buffer(name, start_parity_[static_cast<std::size_t>(parity_)]), values);
@@ -110,12 +112,14 @@ Result<Ledger> World::read_ledger() {
     // Sums the low and high words of one entry over its row of counters.
     const auto sum = [](const std::vector<std::uint32_t>& words, std::size_t row, std::size_t entry) {
         std::uint64_t total = 0;
-        for (std::size_t n = 0; n < row; ++n) total += words[2 * entry * row + n] + (std::uint64_t{words[(2 * entry + 1) * row + n]} << 32);
+        for (std::size_t n = 0; n < row; ++n)
+            total += words[2 * entry * row + n] + (std::uint64_t{words[(2 * entry + 1) * row + n]} << 32);
         return static_cast<std::int64_t>(total);
     };
     const auto words = [&](const char* name, std::size_t count) -> Result<std::vector<std::uint32_t>> {
         std::vector<std::uint32_t> values(count);
-        if (auto status = note(device_->read(buffers_.at(name)[0], 0, std::as_writable_bytes(std::span(values)))); !status) return status;
+        if (auto status = note(device_->read(buffers_.at(name)[0], 0, std::as_writable_bytes(std::span(values)))); !status)
+            return status;
         return values;
     };
     if (plan_.find("source_ledger") != nullptr) {
@@ -161,13 +165,15 @@ Result<WorldStats> World::stats() {
         if (!raw) return raw.status();
         const bool sand = name.starts_with("sand_"), height = name.ends_with("_height"), velocity = is_velocity(name);
         // Velocities have one more face than cells along their own axis.
-        const int nx = layout_.nx + (name.ends_with("velocity_x") ? 1 : 0), ny = layout_.ny + (name.ends_with("velocity_y") ? 1 : 0);
+        const int nx = layout_.nx + (name.ends_with("velocity_x") ? 1 : 0),
+                  ny = layout_.ny + (name.ends_with("velocity_y") ? 1 : 0);
         for (int j = 0; j < ny; ++j) {
             for (int i = 0; i < nx; ++i) {
                 const float value = (*raw)[layout_.index(i, j)];
                 std::uint32_t bits;
                 std::memcpy(&bits, &value, 4);
-                s.hash += mix(mix((std::uint64_t{n} << 56) ^ (static_cast<std::uint64_t>(j) << 28) ^ static_cast<std::uint64_t>(i)) + bits);
+                s.hash += mix(
+                    mix((std::uint64_t{n} << 56) ^ (static_cast<std::uint64_t>(j) << 28) ^ static_cast<std::uint64_t>(i)) + bits);
                 if (!std::isfinite(value)) {
                     ++s.not_finite;
                     continue;

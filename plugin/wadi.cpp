@@ -19,14 +19,22 @@ thread_local std::string last_error;
 wadi_result report(const Status& status) {
     last_error = status ? std::string() : status.message;
     switch (status.code) {
-    case Code::ok: return WADI_OK;
-    case Code::bad_argument: return WADI_ERROR_BAD_ARGUMENT;
-    case Code::not_found: return WADI_ERROR_NOT_FOUND;
-    case Code::bad_file: return WADI_ERROR_BAD_FILE;
-    case Code::not_supported: return WADI_ERROR_NOT_SUPPORTED;
-    case Code::out_of_memory: return WADI_ERROR_OUT_OF_MEMORY;
-    case Code::device_lost: return WADI_ERROR_DEVICE_LOST;
-    case Code::internal: return WADI_ERROR_INTERNAL;
+    case Code::ok:
+        return WADI_OK;
+    case Code::bad_argument:
+        return WADI_ERROR_BAD_ARGUMENT;
+    case Code::not_found:
+        return WADI_ERROR_NOT_FOUND;
+    case Code::bad_file:
+        return WADI_ERROR_BAD_FILE;
+    case Code::not_supported:
+        return WADI_ERROR_NOT_SUPPORTED;
+    case Code::out_of_memory:
+        return WADI_ERROR_OUT_OF_MEMORY;
+    case Code::device_lost:
+        return WADI_ERROR_DEVICE_LOST;
+    case Code::internal:
+        return WADI_ERROR_INTERNAL;
     }
     return WADI_ERROR_INTERNAL;
 }
@@ -56,7 +64,8 @@ template <class Call> wadi_result with_world(const char* function, wadi_world_id
 template <class Struct> bool right_size(const Struct* s) { return s != nullptr && s->struct_size == sizeof(Struct); }
 
 template <class Struct> wadi_result wrong_struct(const char* function, const char* name) {
-    return bad_argument(std::string(function) + ": " + name + " is NULL or its struct_size is not " + std::to_string(sizeof(Struct)) + "; use wadi_default_...()");
+    return bad_argument(std::string(function) + ": " + name + " is NULL or its struct_size is not " +
+                        std::to_string(sizeof(Struct)) + "; use wadi_default_...()");
 }
 
 template <std::size_t N> void copy_text(char (&to)[N], const std::string& text) {
@@ -72,7 +81,9 @@ Result<std::unique_ptr<compute::Device>> open(const wadi_device_options* options
     o.threads = options->threads;
     o.validate = options->validate != 0;
     if (options->log != nullptr) {
-        o.log = [log = options->log, user = options->log_user](int level, const std::string& message) { log(user, level, message.c_str()); };
+        o.log = [log = options->log, user = options->log_user](int level, const std::string& message) {
+            log(user, level, message.c_str());
+        };
     }
     return compute::open_device(options->backend != nullptr ? options->backend : "auto", options->device, o);
 }
@@ -101,10 +112,11 @@ struct FieldName {
     const char* plan_name;
 };
 constexpr FieldName field_names[WADI_FIELD_COUNT] = {
-    {"H", "terrain"},          {"hs", "sand_height"},           {"W", "water_height"},    {"hw", "water_depth"},
-    {"surface", "free_surface"}, {"phi", "surface_saturation"}, {"uw", "water_velocity_x"}, {"vw", "water_velocity_y"},
-    {"us", "sand_velocity_x"}, {"vs", "sand_velocity_y"},       {"um", "mixed_velocity_x"}, {"vm", "mixed_velocity_y"},
-    {"Vxx", "stretch_xx"},     {"Vxy", "stretch_xy"},           {"Vyy", "stretch_yy"},
+    {"H", "terrain"},           {"hs", "sand_height"},       {"W", "water_height"},
+    {"hw", "water_depth"},      {"surface", "free_surface"}, {"phi", "surface_saturation"},
+    {"uw", "water_velocity_x"}, {"vw", "water_velocity_y"},  {"us", "sand_velocity_x"},
+    {"vs", "sand_velocity_y"},  {"um", "mixed_velocity_x"},  {"vm", "mixed_velocity_y"},
+    {"Vxx", "stretch_xx"},      {"Vxy", "stretch_xy"},       {"Vyy", "stretch_yy"},
 };
 
 template <class Struct> Struct sized() {
@@ -151,7 +163,8 @@ wadi_result wadi_list_devices(wadi_device_info* infos, uint32_t* count, char* no
                     copy_text(info.backend, device.backend);
                     copy_text(info.name, device.name);
                     info.index = device.index;
-                    info.is_software = device.kind == compute::DeviceKind::cpu || device.kind == compute::DeviceKind::software_gpu;
+                    info.is_software =
+                        device.kind == compute::DeviceKind::cpu || device.kind == compute::DeviceKind::software_gpu;
                     info.memory_bytes = device.memory_bytes;
                 }
                 ++found;
@@ -163,28 +176,35 @@ wadi_result wadi_list_devices(wadi_device_info* infos, uint32_t* count, char* no
     });
 }
 
-wadi_result wadi_create_world_from_level(const char* path, const wadi_level_overrides* overrides, const wadi_device_options* options,
-                                         wadi_world_id* world) {
+wadi_result wadi_create_world_from_level(const char* path, const wadi_level_overrides* overrides,
+                                         const wadi_device_options* options, wadi_world_id* world) {
     return guarded(__func__, [&] {
         if (path == nullptr || world == nullptr) return bad_argument("wadi_create_world_from_level: path or world is NULL");
-        if (overrides != nullptr && !right_size(overrides)) return wrong_struct<wadi_level_overrides>("wadi_create_world_from_level", "overrides");
-        if (options != nullptr && !right_size(options)) return wrong_struct<wadi_device_options>("wadi_create_world_from_level", "options");
+        if (overrides != nullptr && !right_size(overrides))
+            return wrong_struct<wadi_level_overrides>("wadi_create_world_from_level", "overrides");
+        if (options != nullptr && !right_size(options))
+            return wrong_struct<wadi_device_options>("wadi_create_world_from_level", "options");
         const bool json = std::string(path).ends_with(".json");
-        return host(json ? load_level(path, to_overrides(overrides)) : level_from_terrain(path, to_overrides(overrides)), options, world);
+        return host(json ? load_level(path, to_overrides(overrides)) : level_from_terrain(path, to_overrides(overrides)), options,
+                    world);
     });
 }
 
-wadi_result wadi_create_world_from_arrays(const wadi_world_arrays* arrays, const wadi_device_options* options, wadi_world_id* world) {
+wadi_result wadi_create_world_from_arrays(const wadi_world_arrays* arrays, const wadi_device_options* options,
+                                          wadi_world_id* world) {
     return guarded(__func__, [&] {
         if (!right_size(arrays)) return wrong_struct<wadi_world_arrays>("wadi_create_world_from_arrays", "arrays");
-        if (options != nullptr && !right_size(options)) return wrong_struct<wadi_device_options>("wadi_create_world_from_arrays", "options");
-        if (arrays->settings_json == nullptr || world == nullptr) return bad_argument("wadi_create_world_from_arrays: settings_json or world is NULL");
+        if (options != nullptr && !right_size(options))
+            return wrong_struct<wadi_device_options>("wadi_create_world_from_arrays", "options");
+        if (arrays->settings_json == nullptr || world == nullptr)
+            return bad_argument("wadi_create_world_from_arrays: settings_json or world is NULL");
         auto level = parse_level(arrays->settings_json, "", {});
         if (!level) return report(level.status());
         const auto& grid = level->settings.grid;
         if (arrays->nx != grid.nx || arrays->ny != grid.ny) {
-            return bad_argument("wadi_create_world_from_arrays: arrays of " + std::to_string(arrays->nx) + " x " + std::to_string(arrays->ny) +
-                                " cells, but the settings' grid is " + std::to_string(grid.nx) + " x " + std::to_string(grid.ny));
+            return bad_argument("wadi_create_world_from_arrays: arrays of " + std::to_string(arrays->nx) + " x " +
+                                std::to_string(arrays->ny) + " cells, but the settings' grid is " + std::to_string(grid.nx) +
+                                " x " + std::to_string(grid.ny));
         }
         const auto cells = static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny);
         const auto copy = [&](std::vector<float>& to, const float* from) {
@@ -202,7 +222,8 @@ wadi_result wadi_create_world_from_arrays(const wadi_world_arrays* arrays, const
 
 wadi_result wadi_destroy_world(wadi_world_id world) {
     return guarded(__func__, [&] {
-        if (!plugin::worlds().remove(world)) return bad_argument("wadi_destroy_world: the world id is null or its world was destroyed");
+        if (!plugin::worlds().remove(world))
+            return bad_argument("wadi_destroy_world: the world id is null or its world was destroyed");
         return report(ok_status());
     });
 }
@@ -267,11 +288,13 @@ const char* wadi_field_name(wadi_field field) {
 
 wadi_result wadi_world_read_field(wadi_world_id id, wadi_field field, float* values, size_t count) {
     return with_world(__func__, id, [&](HostedWorld& hosted) {
-        if (wadi_field_name(field) == nullptr) return bad_argument("wadi_world_read_field: no field " + std::to_string(static_cast<int>(field)));
+        if (wadi_field_name(field) == nullptr)
+            return bad_argument("wadi_world_read_field: no field " + std::to_string(static_cast<int>(field)));
         const auto& grid = hosted.world->settings().grid;
         const auto cells = static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny);
         if (values == nullptr || count != cells) {
-            return bad_argument("wadi_world_read_field: values is NULL or count is " + std::to_string(count) + ", not nx * ny = " + std::to_string(cells));
+            return bad_argument("wadi_world_read_field: values is NULL or count is " + std::to_string(count) +
+                                ", not nx * ny = " + std::to_string(cells));
         }
         return report(hosted.world->read(field_names[field].plan_name, {values, cells}));
     });

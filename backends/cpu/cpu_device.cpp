@@ -42,7 +42,9 @@ CpuDevice::~CpuDevice() {
     runner_.join();
 }
 
-Status CpuDevice::check_lost() const { return lost_ ? error(Code::device_lost, "the CPU device was lost (injected)") : ok_status(); }
+Status CpuDevice::check_lost() const {
+    return lost_ ? error(Code::device_lost, "the CPU device was lost (injected)") : ok_status();
+}
 
 CpuDevice::Memory* CpuDevice::find(compute::Buffer buffer) {
     const auto found = buffers_.find(buffer.id);
@@ -51,8 +53,8 @@ CpuDevice::Memory* CpuDevice::find(compute::Buffer buffer) {
 
 Status CpuDevice::check_range(const Memory& memory, std::uint64_t offset, std::uint64_t bytes) const {
     if (offset > memory.bytes || bytes > memory.bytes - offset) {
-        return error(Code::bad_argument, "buffer '" + memory.label + "' has " + std::to_string(memory.bytes) + " bytes; " + std::to_string(bytes) +
-                                             " at offset " + std::to_string(offset) + " do not fit");
+        return error(Code::bad_argument, "buffer '" + memory.label + "' has " + std::to_string(memory.bytes) + " bytes; " +
+                                             std::to_string(bytes) + " at offset " + std::to_string(offset) + " do not fit");
     }
     return ok_status();
 }
@@ -61,20 +63,23 @@ Result<compute::Buffer> CpuDevice::create_buffer(const compute::BufferDesc& desc
     if (auto status = check_lost(); !status) return status;
     if (desc.bytes == 0) return error(Code::bad_argument, "buffer '" + desc.label + "' has 0 bytes");
     if (capabilities_.largest_buffer_bytes != 0 && desc.bytes > capabilities_.largest_buffer_bytes) {
-        return error(Code::bad_argument, "buffer '" + desc.label + "' has " + std::to_string(desc.bytes) + " bytes, more than the largest, " +
+        return error(Code::bad_argument, "buffer '" + desc.label + "' has " + std::to_string(desc.bytes) +
+                                             " bytes, more than the largest, " +
                                              std::to_string(capabilities_.largest_buffer_bytes));
     }
     // Operating systems promise more memory than they have; refuse before a page fault kills the host.
     const std::uint64_t limit = capabilities_.memory_bytes / 10 * 9;
     if (capabilities_.memory_bytes != 0 && (desc.bytes > limit || allocated_ > limit - desc.bytes)) {
-        return error(Code::out_of_memory, "buffer '" + desc.label + "': " + std::to_string(desc.bytes >> 20) + " MiB more than the " +
-                                              std::to_string(limit >> 20) + " MiB that this machine can give");
+        return error(Code::out_of_memory, "buffer '" + desc.label + "': " + std::to_string(desc.bytes >> 20) +
+                                              " MiB more than the " + std::to_string(limit >> 20) +
+                                              " MiB that this machine can give");
     }
     // Fields start 64 bytes apart modulo 4 KiB: equal offsets in many arrays would share cache sets.
     const std::size_t stagger = 64 * (next_buffer_ % 64);
     Memory memory;
     memory.block.reset(new (std::nothrow) std::byte[desc.bytes + 64 + stagger]());
-    if (!memory.block) return error(Code::out_of_memory, "buffer '" + desc.label + "': no memory for " + std::to_string(desc.bytes) + " bytes");
+    if (!memory.block)
+        return error(Code::out_of_memory, "buffer '" + desc.label + "': no memory for " + std::to_string(desc.bytes) + " bytes");
     const auto address = reinterpret_cast<std::uintptr_t>(memory.block.get());
     memory.data = memory.block.get() + ((64 - address % 64) % 64) + stagger;
     memory.bytes = desc.bytes;
@@ -122,7 +127,8 @@ Status CpuDevice::read(compute::Buffer buffer, std::uint64_t offset, std::span<s
 Result<compute::Pipeline> CpuDevice::create_pipeline(int stage, std::uint32_t effects, compute::GroupSize) {
     if (auto status = check_lost(); !status) return status;
     const auto table = compute::stage_table();
-    if (stage < 0 || static_cast<std::size_t>(stage) >= table.size()) return error(Code::bad_argument, "no stage with index " + std::to_string(stage));
+    if (stage < 0 || static_cast<std::size_t>(stage) >= table.size())
+        return error(Code::bad_argument, "no stage with index " + std::to_string(stage));
     const std::uint32_t mask = effects & table[static_cast<std::size_t>(stage)].tested_effects;
     auto& id = pipeline_ids_[{stage, mask}];
     if (id == 0) {
@@ -144,7 +150,8 @@ Result<compute::Program> CpuDevice::compile(const compute::ProgramBuilder& build
         Step step;
         step.barrier_before = barriers[n] || full_barriers_;
         if (const auto* d = std::get_if<compute::Dispatch>(&op)) {
-            if (d->pipeline.id > pipelines_.size()) return error(Code::bad_argument, "'" + d->label + "': pipeline does not exist");
+            if (d->pipeline.id > pipelines_.size())
+                return error(Code::bad_argument, "'" + d->label + "': pipeline does not exist");
             const auto& pipeline = pipelines_[d->pipeline.id - 1];
             const auto& stage = compute::stage_table()[static_cast<std::size_t>(d->stage)];
             if (pipeline.stage != d->stage || pipeline.mask != (d->effects & stage.tested_effects)) {
@@ -155,7 +162,9 @@ Result<compute::Program> CpuDevice::compile(const compute::ProgramBuilder& build
             for (std::size_t b = 0; b < bindings.size(); ++b) {
                 const bool on = (d->effects & bindings[b].condition) == bindings[b].condition;
                 auto* memory = on ? find(d->slots[b]) : nullptr;
-                if (on && memory == nullptr) return error(Code::bad_argument, "'" + d->label + "': the buffer of " + std::string(bindings[b].name) + " does not exist");
+                if (on && memory == nullptr)
+                    return error(Code::bad_argument,
+                                 "'" + d->label + "': the buffer of " + std::string(bindings[b].name) + " does not exist");
                 step.buffers.push_back(on ? memory->data : nullptr);
                 step.sizes.push_back(on ? memory->bytes : 0);
             }
@@ -165,7 +174,8 @@ Result<compute::Program> CpuDevice::compile(const compute::ProgramBuilder& build
         } else if (const auto* copy = std::get_if<compute::Copy>(&op)) {
             auto* from = find(copy->from);
             auto* to = find(copy->to);
-            if (from == nullptr || to == nullptr) return error(Code::bad_argument, "program '" + builder.label() + "': copy of a buffer that does not exist");
+            if (from == nullptr || to == nullptr)
+                return error(Code::bad_argument, "program '" + builder.label() + "': copy of a buffer that does not exist");
             if (auto status = check_range(*from, copy->from_offset, copy->bytes); !status) return status;
             if (auto status = check_range(*to, copy->to_offset, copy->bytes); !status) return status;
             step.from = from->data + copy->from_offset;
@@ -173,7 +183,8 @@ Result<compute::Program> CpuDevice::compile(const compute::ProgramBuilder& build
             step.bytes = copy->bytes;
         } else if (const auto* fill = std::get_if<compute::Fill>(&op)) {
             auto* to = find(fill->buffer);
-            if (to == nullptr) return error(Code::bad_argument, "program '" + builder.label() + "': fill of a buffer that does not exist");
+            if (to == nullptr)
+                return error(Code::bad_argument, "program '" + builder.label() + "': fill of a buffer that does not exist");
             step.to = to->data;
             step.bytes = to->bytes / 4 * 4;
             step.word = fill->word;
@@ -257,7 +268,8 @@ void CpuDevice::run_share(Step& step, std::atomic<int>& next_row, const WorldPar
             const int first = next_row.fetch_add(step.rows_per_grab, std::memory_order_relaxed);
             if (first >= rows) return;
             const int last = std::min(rows, first + step.rows_per_grab);
-            step.block(step.buffers.data(), step.sizes.data(), &params, &input, step.range.i0, step.range.i1, step.range.j0 + first, step.range.j0 + last);
+            step.block(step.buffers.data(), step.sizes.data(), &params, &input, step.range.i0, step.range.i1,
+                       step.range.j0 + first, step.range.j0 + last);
         }
     }
     if (thread != 0 || step.to == nullptr) return;
@@ -295,24 +307,31 @@ void CpuDevice::execute(Recorded& program, const StepInput& input, std::vector<c
         pool_.run(work);
     }
     for (std::size_t n = 1; n < stamps.size(); ++n) {
-        timings.push_back({program.timestamp_labels[n], std::chrono::duration<double, std::milli>(stamps[n] - stamps[n - 1]).count()});
+        timings.push_back(
+            {program.timestamp_labels[n], std::chrono::duration<double, std::milli>(stamps[n] - stamps[n - 1]).count()});
     }
 }
 
 const compute::Backend& cpu_backend() {
     static const compute::Backend backend = {
         "cpu",
-        [](std::string&) { return std::vector<compute::DeviceInfo>{{"cpu", 0, processor_name(), compute::DeviceKind::cpu, physical_memory()}}; },
+        [](std::string&) {
+            return std::vector<compute::DeviceInfo>{{"cpu", 0, processor_name(), compute::DeviceKind::cpu, physical_memory()}};
+        },
         [](int, const compute::DeviceOptions& options) -> Result<std::unique_ptr<compute::Device>> {
             constexpr int most_threads = 256;
             if (options.threads < 0 || options.threads > most_threads) {
-                return error(Code::bad_argument, "threads: " + std::to_string(options.threads) + " is outside 0 ... " + std::to_string(most_threads));
+                return error(Code::bad_argument,
+                             "threads: " + std::to_string(options.threads) + " is outside 0 ... " + std::to_string(most_threads));
             }
             const auto* set = choose_instruction_set(options.instruction_set);
-            if (set == nullptr) return error(Code::not_supported, "this processor or build has no instruction set '" + options.instruction_set + "'");
+            if (set == nullptr)
+                return error(Code::not_supported,
+                             "this processor or build has no instruction set '" + options.instruction_set + "'");
             const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
             try {
-                return std::unique_ptr<compute::Device>(new CpuDevice(*set, options.threads == 0 ? std::min(cores, most_threads) : options.threads, options));
+                return std::unique_ptr<compute::Device>(
+                    new CpuDevice(*set, options.threads == 0 ? std::min(cores, most_threads) : options.threads, options));
             } catch (const std::exception& e) { // the system refuses threads or memory
                 return error(Code::out_of_memory, std::string("the CPU device cannot start: ") + e.what());
             }

@@ -42,13 +42,13 @@ class CpuDevice final : public compute::Device {
     };
     /// One operation, ready to run.
     struct Step {
-        StageBlock block = nullptr;               // null for copies and fills
+        StageBlock block = nullptr; // null for copies and fills
         std::vector<void*> buffers;
         std::vector<unsigned long> sizes;
         compute::Range2 range{};
         int rows_per_grab = 1;
-        std::byte* from = nullptr;                // copy
-        std::byte* to = nullptr;                  // copy and fill
+        std::byte* from = nullptr; // copy
+        std::byte* to = nullptr;   // copy and fill
         std::uint64_t bytes = 0;
         std::uint32_t word = 0;
         bool barrier_before = false;
@@ -59,7 +59,7 @@ class CpuDevice final : public compute::Device {
         std::vector<Step> steps;
         std::vector<std::string> timestamp_labels;
         std::unique_ptr<std::atomic<int>[]> next_row; // per step, the first row nobody has taken yet
-        bool small = false;                       // not worth waking other threads for
+        bool small = false;                           // not worth waking other threads for
     };
     struct CpuPipeline {
         int stage;

@@ -3,13 +3,14 @@
 #include <cstdlib>
 
 // An index out of range is our own bug: say where and stop, so that a debugger shows the stage.
-#define WADI_INDEX_ERROR(ISA)                                                                                                      \
-    namespace wadi_stage_##ISA {                                                                                                   \
-    [[noreturn]] void stage_index_error(const char* stage, const char* buffer, long index, unsigned long size);                    \
-    void stage_index_error(const char* stage, const char* buffer, long index, unsigned long size) {                                \
-        std::fprintf(stderr, "wadi: stage %s reads or writes %s[%ld], which has %lu elements\n", stage, buffer, index, size);      \
-        std::abort();                                                                                                              \
-    }                                                                                                                              \
+#define WADI_INDEX_ERROR(ISA)                                                                                                    \
+    namespace wadi_stage_##ISA {                                                                                                 \
+        [[noreturn]] void stage_index_error(const char* stage, const char* buffer, long index, unsigned long size);              \
+        void stage_index_error(const char* stage, const char* buffer, long index, unsigned long size) {                          \
+            std::fprintf(stderr, "wadi: stage %s reads or writes %s[%ld], which has %lu elements\n", stage, buffer, index,       \
+                         size);                                                                                                  \
+            std::abort();                                                                                                        \
+        }                                                                                                                        \
     }
 WADI_INDEX_ERROR(base)
 WADI_INDEX_ERROR(avx2)

@@ -18,22 +18,22 @@ enum class DeviceKind : std::uint8_t { cpu, integrated_gpu, discrete_gpu, virtua
 
 /// Filled once when a device is opened.
 struct Capabilities {
-    std::string backend;              // "cpu", "vulkan", "cuda"
-    std::string name;                 // as the driver names it
-    std::string driver;               // driver name and version, or the instruction set for the CPU
+    std::string backend; // "cpu", "vulkan", "cuda"
+    std::string name;    // as the driver names it
+    std::string driver;  // driver name and version, or the instruction set for the CPU
     DeviceKind kind = DeviceKind::cpu;
-    std::uint64_t memory_bytes = 0;   // of the largest device-local heap; 0 = unknown
+    std::uint64_t memory_bytes = 0;         // of the largest device-local heap; 0 = unknown
     std::uint64_t largest_buffer_bytes = 0; // of one buffer bound to a stage
-    bool exact_float = false;         // measured: + - * / sqrt agree with the CPU in every bit
+    bool exact_float = false;               // measured: + - * / sqrt agree with the CPU in every bit
     bool timestamps = false;
 };
 
 struct DeviceOptions {
-    int threads = 0;                  // CPU backend: worker threads, 0 = all cores
-    std::string instruction_set;      // CPU backend: "" = best, "avx2", "base"
-    bool validate = false;            // Vulkan: validation and synchronization validation layers
-    bool full_barriers = false;       // a barrier before every operation
-    bool no_replay = false;           // record anew for each submit (GPU backends; the CPU has nothing recorded)
+    int threads = 0;             // CPU backend: worker threads, 0 = all cores
+    std::string instruction_set; // CPU backend: "" = best, "avx2", "base"
+    bool validate = false;       // Vulkan: validation and synchronization validation layers
+    bool full_barriers = false;  // a barrier before every operation
+    bool no_replay = false;      // record anew for each submit (GPU backends; the CPU has nothing recorded)
     /// Messages from drivers and validation layers; level 0 = error, 1 = warning, 2 = information.
     std::function<void(int level, const std::string& message)> log;
 };
@@ -43,7 +43,7 @@ void apply_environment(DeviceOptions& options);
 
 struct BufferDesc {
     std::uint64_t bytes = 0;
-    std::string label;                // for errors
+    std::string label; // for errors
 };
 
 /// Threads per group along i and j (GPU backends; the CPU ignores it). 0 = the backend's choice for the stage.
@@ -58,9 +58,9 @@ struct Timing {
 
 /// Counts since the device was opened; tests assert that none of them moves per step.
 struct DeviceCounters {
-    std::uint64_t allocations = 0;        // buffers created
+    std::uint64_t allocations = 0; // buffers created
     std::uint64_t descriptor_writes = 0;
-    std::uint64_t recordings = 0;         // command buffers or graphs recorded
+    std::uint64_t recordings = 0; // command buffers or graphs recorded
     std::uint64_t submits = 0;
     std::uint64_t validation_messages = 0; // warnings and errors from validation layers
 };
@@ -114,7 +114,7 @@ class Device {
 /// One device that a backend can open.
 struct DeviceInfo {
     std::string backend;
-    int index = 0;                    // within its backend
+    int index = 0; // within its backend
     std::string name;
     DeviceKind kind = DeviceKind::cpu;
     std::uint64_t memory_bytes = 0;

@@ -19,7 +19,8 @@ std::vector<BufferUse> buffer_uses(const Op& op) {
     if (const auto* dispatch = std::get_if<Dispatch>(&op)) {
         for (const auto& binding : stage_table()[static_cast<std::size_t>(dispatch->stage)].bindings) {
             if (!exists(binding, dispatch->effects)) continue;
-            uses.push_back({dispatch->slots[static_cast<std::size_t>(binding.slot)], binding.access != Access::out, binding.access != Access::in});
+            uses.push_back({dispatch->slots[static_cast<std::size_t>(binding.slot)], binding.access != Access::out,
+                            binding.access != Access::in});
         }
     } else if (const auto* copy = std::get_if<Copy>(&op)) {
         uses.push_back({copy->from, true, false});
@@ -86,7 +87,9 @@ std::vector<std::vector<int>> plan_dependencies(const std::vector<Op>& ops) {
 }
 
 Status validate(const ProgramBuilder& builder) {
-    const auto fail = [&](const std::string& what) { return error(Code::bad_argument, "program '" + builder.label() + "': " + what); };
+    const auto fail = [&](const std::string& what) {
+        return error(Code::bad_argument, "program '" + builder.label() + "': " + what);
+    };
     for (const auto& op : builder.ops()) {
         if (const auto* copy = std::get_if<Copy>(&op)) {
             if (copy->from.id == 0 || copy->to.id == 0) return fail("copy from or to a null buffer");
@@ -94,12 +97,14 @@ Status validate(const ProgramBuilder& builder) {
         } else if (const auto* fill = std::get_if<Fill>(&op)) {
             if (fill->buffer.id == 0) return fail("fill of a null buffer");
         } else if (const auto* d = std::get_if<Dispatch>(&op)) {
-            if (d->stage < 0 || static_cast<std::size_t>(d->stage) >= stage_table().size()) return fail("'" + d->label + "': no such stage");
+            if (d->stage < 0 || static_cast<std::size_t>(d->stage) >= stage_table().size())
+                return fail("'" + d->label + "': no such stage");
             const auto& stage = stage_table()[static_cast<std::size_t>(d->stage)];
             const std::string where = "'" + d->label + "' (" + std::string(stage.name) + ")";
             if (d->pipeline.id == 0) return fail(where + ": null pipeline");
             if (d->slots.size() != stage.bindings.size()) {
-                return fail(where + ": " + std::to_string(d->slots.size()) + " slots, the stage has " + std::to_string(stage.bindings.size()));
+                return fail(where + ": " + std::to_string(d->slots.size()) + " slots, the stage has " +
+                            std::to_string(stage.bindings.size()));
             }
             std::map<std::uint32_t, Touched> touched;
             for (const auto& binding : stage.bindings) {
@@ -109,7 +114,8 @@ Status validate(const ProgramBuilder& builder) {
                 if (buffer.id == 0) return fail(where + ": no buffer for " + name);
                 const bool writes = binding.access != Access::in;
                 auto& seen = touched[buffer.id];
-                if (seen.written || (writes && seen.read)) return fail(where + ": the buffer of " + name + " is bound twice and written");
+                if (seen.written || (writes && seen.read))
+                    return fail(where + ": the buffer of " + name + " is bound twice and written");
                 seen.read |= !writes;
                 seen.written |= writes;
             }

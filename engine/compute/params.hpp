@@ -7,8 +7,8 @@ namespace wadi {
 struct alignas(16) vec4 {
     float x, y, z, w;
 };
-#include "shaders/step_params.h"
 #include "shaders/effects.h"
+#include "shaders/step_params.h"
 
 static_assert(sizeof(WorldParams) <= 512, "WorldParams must stay within 512 bytes");
 static_assert(sizeof(WorldParams) % 4 == 0 && alignof(WorldParams) == 4);

@@ -23,11 +23,11 @@ struct Program {
 
 struct Dispatch {
     Pipeline pipeline;
-    int stage = -1;               // index into stage_table()
-    std::uint32_t effects = 0;    // the world's mask: decides which conditional bindings exist
-    std::vector<Buffer> slots;    // one per binding of the stage, in slot order; null where the condition is off
-    Range2 range{};               // what the kernel covers
-    std::string label;            // for errors and profiles
+    int stage = -1;            // index into stage_table()
+    std::uint32_t effects = 0; // the world's mask: decides which conditional bindings exist
+    std::vector<Buffer> slots; // one per binding of the stage, in slot order; null where the condition is off
+    Range2 range{};            // what the kernel covers
+    std::string label;         // for errors and profiles
 };
 struct Copy {
     Buffer from, to;
@@ -35,10 +35,10 @@ struct Copy {
 };
 struct Fill {
     Buffer buffer;
-    std::uint32_t word = 0;       // written to every 4 bytes
+    std::uint32_t word = 0; // written to every 4 bytes
 };
 struct Timestamp {
-    std::string label;            // names what ran since the previous timestamp
+    std::string label; // names what ran since the previous timestamp
 };
 using Op = std::variant<Dispatch, Copy, Fill, Timestamp>;
 

@@ -49,7 +49,8 @@ Result<std::unique_ptr<Device>> open_device(const std::string& wanted, int index
         if (devices.empty()) return error(Code::not_found, "backend " + name + " has no device: " + why);
         const int chosen = index < 0 ? devices.front().index : index;
         if (chosen >= static_cast<int>(devices.size())) {
-            return error(Code::not_found, "backend " + name + " has no device " + std::to_string(index) + ", only 0 ... " + std::to_string(devices.size() - 1));
+            return error(Code::not_found, "backend " + name + " has no device " + std::to_string(index) + ", only 0 ... " +
+                                              std::to_string(devices.size() - 1));
         }
         return backend.open(chosen, options);
     }

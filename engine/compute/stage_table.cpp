@@ -12,11 +12,16 @@ int find_stage(std::string_view name) {
 
 Range2 extent_range(Extent extent, const WorldParams& p) {
     switch (extent) {
-    case Extent::cells: return {0, 0, p.nx, p.ny};
-    case Extent::faces: return {0, 0, p.nx + 1, p.ny + 1};
-    case Extent::rim: return {0, 0, 2 * (p.nx + p.ny), 1};
-    case Extent::strips: return {0, 0, p.nx + 1, p.strips};
-    case Extent::source_box: return {p.source_i0, p.source_s0, p.source_i1, p.source_s1};
+    case Extent::cells:
+        return {0, 0, p.nx, p.ny};
+    case Extent::faces:
+        return {0, 0, p.nx + 1, p.ny + 1};
+    case Extent::rim:
+        return {0, 0, 2 * (p.nx + p.ny), 1};
+    case Extent::strips:
+        return {0, 0, p.nx + 1, p.strips};
+    case Extent::source_box:
+        return {p.source_i0, p.source_s0, p.source_i1, p.source_s1};
     }
     return {};
 }

@@ -21,14 +21,14 @@ enum class Extent : std::uint8_t { cells, faces, rim, strips, source_box };
 
 struct StageBinding {
     std::string_view name;
-    int slot;                 // dense from 0; a buffer is passed at this place of the slot list
+    int slot; // dense from 0; a buffer is passed at this place of the slot list
     Access access;
     Scalar type;
-    std::uint32_t condition;  // all these effect bits must be on for the buffer to exist; 0 = always
+    std::uint32_t condition; // all these effect bits must be on for the buffer to exist; 0 = always
 };
 
 struct StageInfo {
-    std::string_view name;    // file name without extension, as in the paper's Algorithm 1
+    std::string_view name; // file name without extension, as in the paper's Algorithm 1
     Extent extent;
     std::uint32_t tested_effects; // bits that HAS() asks in its body or bindings
     std::span<const StageBinding> bindings;

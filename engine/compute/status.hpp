@@ -8,13 +8,13 @@ namespace wadi {
 
 enum class Code {
     ok = 0,
-    bad_argument,   // the caller's value is wrong; the message names it and the allowed range
-    not_found,      // a file, level, backend or device is not there
-    bad_file,       // a file is there but malformed; the message names the field or byte
-    not_supported,  // this build or device cannot do it
-    out_of_memory,  // host or device memory
-    device_lost,    // sticky: every later call on the device returns it
-    internal,       // our own bug
+    bad_argument,  // the caller's value is wrong; the message names it and the allowed range
+    not_found,     // a file, level, backend or device is not there
+    bad_file,      // a file is there but malformed; the message names the field or byte
+    not_supported, // this build or device cannot do it
+    out_of_memory, // host or device memory
+    device_lost,   // sticky: every later call on the device returns it
+    internal,      // our own bug
 };
 
 /// The name of a code as it is printed: "bad_argument" and so on.

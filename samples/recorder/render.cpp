@@ -2,10 +2,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-#include <glm/common.hpp>
 
 namespace recorder {
 namespace {
@@ -46,15 +46,9 @@ struct Cell {
 
 Cell blend(const Cell& a, const Cell& b, float t) {
     const auto lerp = [t](auto p, auto q) { return glm::mix(p, q, t); };
-    return {lerp(a.height, b.height),
-            lerp(a.sand, b.sand),
-            lerp(a.mixed, b.mixed),
-            lerp(a.water, b.water),
-            lerp(a.sandy, b.sandy),
-            lerp(a.wet, b.wet),
-            lerp(a.ground, b.ground),
-            lerp(a.surface, b.surface),
-            lerp(a.openness, b.openness)};
+    return {lerp(a.height, b.height), lerp(a.sand, b.sand),       lerp(a.mixed, b.mixed),
+            lerp(a.water, b.water),   lerp(a.sandy, b.sandy),     lerp(a.wet, b.wet),
+            lerp(a.ground, b.ground), lerp(a.surface, b.surface), lerp(a.openness, b.openness)};
 }
 
 std::size_t at(int nx, int i, int j) {
@@ -137,7 +131,8 @@ std::vector<Cell> make_cells(const MapFields& fields, const Look& look) {
 Linear shade(const Cell& cell, const Look& look, float blur) {
     const Slope ground_slope = compressed(cell.ground, look.relief_gain, STEEPEST_SHADED);
     const float light = AMBIENT * cell.openness + (1.0f - AMBIENT) * sun_on(ground_slope) * std::min(cell.openness + 0.15f, 1.1f);
-    const float wet = glm::smoothstep(0.5f - blur, 0.5f + blur, cell.wet), sandy = glm::smoothstep(0.5f - blur, 0.5f + blur, cell.sandy);
+    const float wet = glm::smoothstep(0.5f - blur, 0.5f + blur, cell.wet),
+                sandy = glm::smoothstep(0.5f - blur, 0.5f + blur, cell.sandy);
     const float depth = cell.wet > 0 ? cell.water / cell.wet : 0.0f;
 
     Linear ground = terrain_colour(look.high > look.low ? (cell.height - look.low) / (look.high - look.low) : 0.5f);

@@ -99,7 +99,9 @@ Stage parse(const std::string& path) {
         std::size_t at = 0;
         while ((at = expression.find("EFFECT_", at)) != std::string::npos) {
             std::size_t end = at;
-            while (end < expression.size() && (std::isalnum(static_cast<unsigned char>(expression[end])) || expression[end] == '_')) ++end;
+            while (end < expression.size() &&
+                   (std::isalnum(static_cast<unsigned char>(expression[end])) || expression[end] == '_'))
+                ++end;
             tested.insert(expression.substr(at, end - at));
             at = end;
         }
@@ -123,7 +125,8 @@ Stage parse(const std::string& path) {
             note_effects(arguments(text, end).at(0));
         } else if (conditional || word == "IN" || word == "OUT" || word == "INOUT") {
             const auto a = arguments(text, end);
-            if (a.size() != (conditional ? 4u : 3u)) fail(path + ": " + word + " takes " + (conditional ? "(EFFECTS, slot, type, name)" : "(slot, type, name)"));
+            if (a.size() != (conditional ? 4u : 3u))
+                fail(path + ": " + word + " takes " + (conditional ? "(EFFECTS, slot, type, name)" : "(slot, type, name)"));
             Binding b;
             const std::size_t shift = conditional ? 1 : 0;
             b.condition = conditional ? a[0] : "0u";
@@ -132,7 +135,8 @@ Stage parse(const std::string& path) {
             b.type = a[shift + 1];
             b.name = a[shift + 2];
             b.access = word.substr(0, word.find('_'));
-            if (b.slot != static_cast<int>(stage.bindings.size())) fail(path + ": slot of " + b.name + " is " + a[shift] + ", expected " + std::to_string(stage.bindings.size()));
+            if (b.slot != static_cast<int>(stage.bindings.size()))
+                fail(path + ": slot of " + b.name + " is " + a[shift] + ", expected " + std::to_string(stage.bindings.size()));
             stage.bindings.push_back(b);
         }
     }
@@ -191,33 +195,40 @@ std::string origin(const std::string& extent, const char* axis) {
 }
 
 std::string glsl(const Stage& s) {
-    return "#version 450\n#extension GL_GOOGLE_include_directive : require\n#include \"stage_glsl.h\"\n#include \"stages/" + s.name +
-           ".stage\"\nvoid main() {\n    int i = int(gl_GlobalInvocationID.x)" + origin(s.extent, "i") +
-           ";\n    int j = int(gl_GlobalInvocationID.y)" + origin(s.extent, "j") + ";\n    if (" + guard(s.extent) + ") kernel(i, j);\n}\n";
+    return "#version 450\n#extension GL_GOOGLE_include_directive : require\n#include \"stage_glsl.h\"\n#include \"stages/" +
+           s.name + ".stage\"\nvoid main() {\n    int i = int(gl_GlobalInvocationID.x)" + origin(s.extent, "i") +
+           ";\n    int j = int(gl_GlobalInvocationID.y)" + origin(s.extent, "j") + ";\n    if (" + guard(s.extent) +
+           ") kernel(i, j);\n}\n";
 }
 
 std::string cpp(const Stage& s, const std::string& isa, unsigned tested) {
     std::ostringstream o;
     o << "// Written by stagec from " << s.name << ".stage for the instruction set " << isa << ".\n"
       << "namespace wadi_stage_" << isa << " {\n#include \"stage_cpp.h\"\n#include \"stages/" << s.name << ".stage\"\n"
-      << "template <unsigned E> static void block(void* const* b, const unsigned long* sizes, const void* params, const void* input,"
+      << "template <unsigned E> static void block(void* const* b, const unsigned long* sizes, const void* params, const void* "
+         "input,"
       << " int i0, int i1, int j0, int j1) {\n    (void)b;\n    (void)sizes;\n"
-      << "    const WorldParams P = *static_cast<const WorldParams*>(params);\n    const StepInput& S = *static_cast<const StepInput*>(input);\n"
+      << "    const WorldParams P = *static_cast<const WorldParams*>(params);\n    const StepInput& S = *static_cast<const "
+         "StepInput*>(input);\n"
       << "#ifdef WADI_STAGE_CHECKED\n    const " << s.struct_name << "<E> stage{P, S";
     for (const auto& b : s.bindings) {
         const std::string type = (b.access == "IN" ? "const " : "") + b.type;
-        o << ",\n        {static_cast<" << type << "*>(b[" << b.slot << "]), sizes[" << b.slot << "] / sizeof(" << b.type << "), \"" << s.name << "\", \"" << b.name << "\"}";
+        o << ",\n        {static_cast<" << type << "*>(b[" << b.slot << "]), sizes[" << b.slot << "] / sizeof(" << b.type
+          << "), \"" << s.name << "\", \"" << b.name << "\"}";
     }
     o << "};\n#else\n    const " << s.struct_name << "<E> stage{P, S";
     for (const auto& b : s.bindings) {
         o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << b.type << "*>(b[" << b.slot << "])";
     }
     o << "};\n#endif\n    for (int j = j0; j < j1; ++j) {\n        const " << s.struct_name << "<E> local = stage;\n"
-      << "#if defined(__GNUC__) && !defined(__clang__)\n#pragma GCC ivdep\n#elif defined(__clang__)\n#pragma clang loop vectorize(assume_safety)\n#endif\n"
+      << "#if defined(__GNUC__) && !defined(__clang__)\n#pragma GCC ivdep\n#elif defined(__clang__)\n#pragma clang loop "
+         "vectorize(assume_safety)\n#endif\n"
       << "        for (int i = i0; i < i1; ++i) local.kernel(i, j);\n    }\n}\n} // namespace\n"
       << "using Block = void (*)(void* const*, const unsigned long*, const void*, const void*, int, int, int, int);\n"
-      << "extern \"C\" Block wadi_cpu_" << isa << "_" << s.name << "(unsigned effects) {\n    switch (effects & " << tested << "u) {\n";
-    for (const unsigned mask : masks(tested)) o << "    case " << mask << "u: return wadi_stage_" << isa << "::block<" << mask << "u>;\n";
+      << "extern \"C\" Block wadi_cpu_" << isa << "_" << s.name << "(unsigned effects) {\n    switch (effects & " << tested
+      << "u) {\n";
+    for (const unsigned mask : masks(tested))
+        o << "    case " << mask << "u: return wadi_stage_" << isa << "::block<" << mask << "u>;\n";
     o << "    default: return nullptr;\n    }\n}\n";
     return o.str();
 }
@@ -233,14 +244,17 @@ const CudaGroup cuda_groups[] = {{64, 4}, {256, 1}, {0, 0}};
 std::string cuda(const Stage& s, unsigned tested) {
     const std::string space = "wadi_stage_cuda_" + s.name;
     std::ostringstream o;
-    o << "// Written by stagec from " << s.name << ".stage.\nnamespace " << space << " {\n#include \"stage_cuda.h\"\n#include \"stages/" << s.name << ".stage\"\n"
+    o << "// Written by stagec from " << s.name << ".stage.\nnamespace " << space
+      << " {\n#include \"stage_cuda.h\"\n#include \"stages/" << s.name << ".stage\"\n"
       << "struct Slots { void* at[" << (s.bindings.empty() ? 1 : s.bindings.size()) << "]; };\n"
       << "template <unsigned E, int X, int Y> __global__ void __launch_bounds__(X > 0 ? X * Y : 1024)\n"
-      << "run(const WorldParams P, const StepInput* __restrict__ input, const Slots b) {\n    const " << s.struct_name << "<E> stage{P, *input";
-    for (const auto& b : s.bindings) o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << b.type << "*>(b.at[" << b.slot << "])";
+      << "run(const WorldParams P, const StepInput* __restrict__ input, const Slots b) {\n    const " << s.struct_name
+      << "<E> stage{P, *input";
+    for (const auto& b : s.bindings)
+        o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << b.type << "*>(b.at[" << b.slot << "])";
     o << "};\n    const int i = static_cast<int>(blockIdx.x * (X > 0 ? X : blockDim.x) + threadIdx.x)" << origin(s.extent, "i")
-      << ";\n    const int j = static_cast<int>(blockIdx.y * (Y > 0 ? Y : blockDim.y) + threadIdx.y)" << origin(s.extent, "j") << ";\n    if ("
-      << guard(s.extent) << ") stage.kernel(i, j);\n}\n"
+      << ";\n    const int j = static_cast<int>(blockIdx.y * (Y > 0 ? Y : blockDim.y) + threadIdx.y)" << origin(s.extent, "j")
+      << ";\n    if (" << guard(s.extent) << ") stage.kernel(i, j);\n}\n"
       << "template <unsigned E> static const void* select(int x, int y) {\n";
     for (const auto& g : cuda_groups) {
         if (g.x > 0) o << "    if (x == " << g.x << " && y == " << g.y << ")\n    ";
@@ -248,7 +262,8 @@ std::string cuda(const Stage& s, unsigned tested) {
     }
     o << "}\n} // namespace " << space << "\nextern \"C\" const void* wadi_cuda_" << s.name
       << "(unsigned effects, int x, int y) {\n    switch (effects) {\n";
-    for (const unsigned mask : masks(tested)) o << "    case " << mask << "u: return " << space << "::select<" << mask << "u>(x, y);\n";
+    for (const unsigned mask : masks(tested))
+        o << "    case " << mask << "u: return " << space << "::select<" << mask << "u>(x, y);\n";
     o << "    default: return nullptr;\n    }\n}\n";
     return o.str();
 }
@@ -298,28 +313,34 @@ std::string word_list(const std::string& module) {
     return o.str();
 }
 
-std::string table(const std::vector<Stage>& stages, const std::map<std::string, unsigned>& effects, const std::string& spirv_dir) {
+std::string table(const std::vector<Stage>& stages, const std::map<std::string, unsigned>& effects,
+                  const std::string& spirv_dir) {
     std::ostringstream o;
-    o << "// Written by stagec from the stage files.\n#include \"engine/compute/stage_table.hpp\"\n#include <array>\nnamespace wadi::compute {\nnamespace {\n";
+    o << "// Written by stagec from the stage files.\n#include \"engine/compute/stage_table.hpp\"\n#include <array>\nnamespace "
+         "wadi::compute {\nnamespace {\n";
     for (const auto& s : stages) {
         o << "constexpr StageBinding bindings_" << s.name << "[] = {\n";
         for (const auto& b : s.bindings) {
-            const std::map<std::string, std::string> types = {{"float", "f32"}, {"uint", "u32"}, {"int", "i32"}, {"vec2", "vec2"}, {"vec4", "vec4"}};
+            const std::map<std::string, std::string> types = {
+                {"float", "f32"}, {"uint", "u32"}, {"int", "i32"}, {"vec2", "vec2"}, {"vec4", "vec4"}};
             const std::map<std::string, std::string> access = {{"IN", "in"}, {"OUT", "out"}, {"INOUT", "inout"}};
-            if (!types.count(b.type)) fail(s.path + ": type " + b.type + " of " + b.name + " is not float, uint, int, vec2 or vec4");
-            o << "    {\"" << b.name << "\", " << b.slot << ", Access::" << access.at(b.access) << ", Scalar::" << types.at(b.type) << ", " << b.condition << "},\n";
+            if (!types.count(b.type))
+                fail(s.path + ": type " + b.type + " of " + b.name + " is not float, uint, int, vec2 or vec4");
+            o << "    {\"" << b.name << "\", " << b.slot << ", Access::" << access.at(b.access)
+              << ", Scalar::" << types.at(b.type) << ", " << b.condition << "},\n";
         }
         o << "};\n";
         if (spirv_dir != "-") {
-            o << "constexpr std::uint32_t spirv_" << s.name << "[] = {" << word_list(spirv_dir + "/" + s.name + ".spv") << "\n};\n";
+            o << "constexpr std::uint32_t spirv_" << s.name << "[] = {" << word_list(spirv_dir + "/" + s.name + ".spv")
+              << "\n};\n";
         }
     }
     o << "constexpr StageInfo stages[] = {\n";
     for (const auto& s : stages) {
         std::string extent = s.extent;
         for (auto& c : extent) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-        o << "    {\"" << s.name << "\", Extent::" << extent << ", " << tested_bits(s, effects) << "u, bindings_" << s.name << ", "
-          << (spirv_dir != "-" ? "spirv_" + s.name : "std::span<const std::uint32_t>{}") << "},\n";
+        o << "    {\"" << s.name << "\", Extent::" << extent << ", " << tested_bits(s, effects) << "u, bindings_" << s.name
+          << ", " << (spirv_dir != "-" ? "spirv_" + s.name : "std::span<const std::uint32_t>{}") << "},\n";
     }
     o << "};\n} // namespace\nstd::span<const StageInfo> stage_table() {\n    return stages;\n}\n} // namespace wadi::compute\n";
     return o.str();
@@ -342,7 +363,8 @@ std::string cpurows(const std::string& isas, const std::vector<std::string>& sta
     }
     o << "constexpr InstructionSet sets[] = {\n";
     for (const auto& isa : sets) o << "    {\"" << isa << "\", select_" << isa << "},\n";
-    o << "};\n} // namespace\nstd::span<const InstructionSet> instruction_sets() {\n    return sets;\n}\n} // namespace wadi::cpu\n";
+    o << "};\n} // namespace\nstd::span<const InstructionSet> instruction_sets() {\n    return sets;\n}\n} // namespace "
+         "wadi::cpu\n";
     return o.str();
 }
 

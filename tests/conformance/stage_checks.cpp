@@ -144,20 +144,6 @@ Verdict check_published(const StageRun& run) {
     return verdict;
 }
 
-// A cell without sand has no saturation.
-Verdict check_saturation(const StageRun& run) {
-    const FieldLayout layout{run.params.nx, run.params.ny};
-    for (int j = 0; j < layout.ny; ++j) {
-        for (int i = 0; i < layout.nx; ++i) {
-            const float phi = run.buffer("saturation").floats()[layout.index(i, j)];
-            if (run.before("sand_height", i, j) <= run.params.dry_threshold && std::abs(phi) > 0.0F)
-                return failed("saturation(" + std::to_string(i) + ", " + std::to_string(j) + ") is " + std::to_string(phi) +
-                              " without sand");
-        }
-    }
-    return {};
-}
-
 struct Definition {
     const char* stage;
     Verdict (*check)(const StageRun& run);
@@ -165,8 +151,7 @@ struct Definition {
 
 constexpr Definition definitions[] = {
     {"account_sides", check_side_ledger}, {"apply_rain", check_source_ledger},   {"apply_sources", check_source_ledger},
-    {"publish_heights", check_published}, {"publish_velocity", check_published}, {"compute_saturation", check_saturation},
-    {"mark_limits", check_marks},
+    {"publish_heights", check_published}, {"publish_velocity", check_published}, {"mark_limits", check_marks},
 };
 
 } // namespace

@@ -40,9 +40,12 @@ TEST_CASE("state hashes equal the golden ones") {
     auto single = mixed_scene(40, 40);
     single.settings.effects = {{"mixture", Force::off}};
     const std::map<std::string, std::string> now = {
-        {"mixed_100", hash_text(mixed_scene(64, 48), 100)},     {"rain_and_sides_100", hash_text(rain, 100)},
-        {"single_layer_100", hash_text(single, 100)},           {"canyon_50", hash_text(shipped_level("canyon", 100, 128), 50)},
-        {"piles_50", hash_text(shipped_level("piles", 96, 64), 50)}, {"dam_break_50", hash_text(shipped_level("dam_break", 96, 96), 50)},
+        {"mixed_100", hash_text(mixed_scene(64, 48), 100)},
+        {"rain_and_sides_100", hash_text(rain, 100)},
+        {"single_layer_100", hash_text(single, 100)},
+        {"canyon_50", hash_text(shipped_level("canyon", 100, 128), 50)},
+        {"piles_50", hash_text(shipped_level("piles", 96, 64), 50)},
+        {"dam_break_50", hash_text(shipped_level("dam_break", 96, 96), 50)},
     };
     if (std::getenv("WADI_UPDATE_GOLDEN") != nullptr) {
         std::ofstream out(file);
@@ -53,6 +56,7 @@ TEST_CASE("state hashes equal the golden ones") {
     CHECK(golden.size() == now.size());
     for (const auto& entry : now) {
         REQUIRE_MESSAGE(golden.contains(entry.first), entry.first << " has no golden hash; run tests/golden/update.sh");
-        CHECK_MESSAGE(golden.at(entry.first) == entry.second, entry.first << " is " << entry.second << ", golden is " << golden.at(entry.first));
+        CHECK_MESSAGE(golden.at(entry.first) == entry.second,
+                      entry.first << " is " << entry.second << ", golden is " << golden.at(entry.first));
     }
 }

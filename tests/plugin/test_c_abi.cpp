@@ -1,4 +1,5 @@
-// The C ABI against the shared library: good calls, bad handles, bad sizes, bad files; nothing crashes and every error has a text.
+// The C ABI against the shared library: good calls, bad handles, bad sizes, bad files; nothing crashes and every error has a
+// text.
 #include <cmath>
 #include <cstring>
 #include <doctest/doctest.h>
@@ -86,7 +87,9 @@ TEST_CASE("same level, same hash; profiling names every stage and changes nothin
     uint64_t hashes[2];
     for (int n = 0; n < 2; ++n) {
         wadi_world_id id{};
-        REQUIRE_MESSAGE(wadi_create_world_from_level((levels + "dam_break/level.json").c_str(), &overrides, &options, &id) == WADI_OK, std::string(wadi_get_last_error()));
+        REQUIRE_MESSAGE(wadi_create_world_from_level((levels + "dam_break/level.json").c_str(), &overrides, &options, &id) ==
+                            WADI_OK,
+                        std::string(wadi_get_last_error()));
         CHECK(wadi_world_set_profiling(id, n) == WADI_OK);
         REQUIRE(wadi_world_step(id, 20) == WADI_OK);
         auto stats = wadi_default_world_stats();
@@ -169,17 +172,21 @@ TEST_CASE("bad worlds are refused before anything is made") {
     CHECK(wadi_create_world_from_level(nullptr, nullptr, &options, &id) == WADI_ERROR_BAD_ARGUMENT);
     auto nowhere = cpu();
     nowhere.backend = "abacus";
-    CHECK(wadi_create_world_from_level((levels + "dam_break/level.json").c_str(), nullptr, &nowhere, &id) == WADI_ERROR_NOT_FOUND);
+    CHECK(wadi_create_world_from_level((levels + "dam_break/level.json").c_str(), nullptr, &nowhere, &id) ==
+          WADI_ERROR_NOT_FOUND);
     CHECK(error_mentions("abacus"));
     nowhere.backend = "cpu";
     nowhere.device = 7;
-    CHECK(wadi_create_world_from_level((levels + "dam_break/level.json").c_str(), nullptr, &nowhere, &id) == WADI_ERROR_NOT_FOUND);
+    CHECK(wadi_create_world_from_level((levels + "dam_break/level.json").c_str(), nullptr, &nowhere, &id) ==
+          WADI_ERROR_NOT_FOUND);
     nowhere.device = -1;
     nowhere.threads = 100000;
-    CHECK(wadi_create_world_from_level((levels + "dam_break/level.json").c_str(), nullptr, &nowhere, &id) == WADI_ERROR_BAD_ARGUMENT);
+    CHECK(wadi_create_world_from_level((levels + "dam_break/level.json").c_str(), nullptr, &nowhere, &id) ==
+          WADI_ERROR_BAD_ARGUMENT);
     auto overrides = wadi_default_level_overrides();
     overrides.nx = overrides.ny = 1 << 20;
-    CHECK(wadi_create_world_from_level((levels + "dam_break/level.json").c_str(), &overrides, &options, &id) == WADI_ERROR_BAD_ARGUMENT);
+    CHECK(wadi_create_world_from_level((levels + "dam_break/level.json").c_str(), &overrides, &options, &id) ==
+          WADI_ERROR_BAD_ARGUMENT);
     CHECK(id.index == 0);
 }
 

@@ -90,7 +90,8 @@ TEST_CASE("pipelines specialised for a scene's mask give the bits of pipelines w
     for (auto scene : {water, dry}) {
         const auto lean = run(scene, 100);
         auto lean_world = make_world(scene);
-        for (const char* name : {"water", "sand", "mixture", "diffusion", "drag", "elastoplastic", "cohesion"}) scene.settings.effects.push_back({name, Force::on});
+        for (const char* name : {"water", "sand", "mixture", "diffusion", "drag", "elastoplastic", "cohesion"})
+            scene.settings.effects.push_back({name, Force::on});
         // Cohesion reads the saturation; with no water anywhere it is 0, as without the effect.
         auto full_world = make_world(scene);
         CHECK(full_world->plan().water_passes.size() > lean_world->plan().water_passes.size());
@@ -149,7 +150,8 @@ TEST_CASE("nothing is allocated, written to descriptors or recorded per step, on
     }
 }
 
-TEST_CASE("every backend equals the CPU in every bit after 200 coupled steps of the shipped levels, without a validation message") {
+TEST_CASE(
+    "every backend equals the CPU in every bit after 200 coupled steps of the shipped levels, without a validation message") {
     for (const auto& backend : available_backends()) {
         if (backend == "cpu") continue;
         for (const auto& [name, nx, ny] : {std::tuple{"canyon", 80, 102}, {"piles", 96, 64}, {"dam_break", 64, 64}}) {
@@ -160,7 +162,9 @@ TEST_CASE("every backend equals the CPU in every bit after 200 coupled steps of 
             Target checked{backend};
             checked.options.validate = backend == "vulkan";
             std::string messages;
-            checked.options.log = [&](int level, const std::string& message) { messages += level < 2 ? message + "\n" : std::string(); };
+            checked.options.log = [&](int level, const std::string& message) {
+                messages += level < 2 ? message + "\n" : std::string();
+            };
             // The layers are a development package: a machine with a real GPU may lack them.
             if (compute::open_device(backend, -1, checked.options).status().code == Code::not_supported) {
                 MESSAGE("no validation layers here: " << backend << " runs unchecked");

@@ -24,16 +24,20 @@ bool unchanged_after(World& world, int steps) {
     return true;
 }
 
-double gauss(double x, double y, double cx, double cy, double r) { return std::exp(-((x - cx) * (x - cx) + (y - cy) * (y - cy)) / (r * r)); }
+double gauss(double x, double y, double cx, double cy, double r) {
+    return std::exp(-((x - cx) * (x - cx) + (y - cy) * (y - cy)) / (r * r));
+}
 
 // A lake of surface 1 m over an uneven bed with an island, a submerged and a half-emerged dune.
 Scene lake() {
     auto scene = flat_scene(64, 48, 0.25, 0.02);
     scene.fill(scene.fields.terrain, [](double x, double y) { return 1.4 * gauss(x, y, 3, 3, 1.5) + 0.02 * x; });
     // No film of sand on the island: it would rightly slide off its slopes.
-    scene.fill(scene.fields.sand, [](double x, double y) { return std::max(0.0, 0.4 * gauss(x, y, 8, 8, 2) + gauss(x, y, 12, 4, 3) - 0.02); });
+    scene.fill(scene.fields.sand,
+               [](double x, double y) { return std::max(0.0, 0.4 * gauss(x, y, 8, 8, 2) + gauss(x, y, 12, 4, 3) - 0.02); });
     // Surface on a whole quantum, as every height is.
-    scene.fill(scene.fields.water, [](double x, double y) { return std::max(0.0, 1.0 - (1.4 * gauss(x, y, 3, 3, 1.5) + 0.02 * x)); });
+    scene.fill(scene.fields.water,
+               [](double x, double y) { return std::max(0.0, 1.0 - (1.4 * gauss(x, y, 3, 3, 1.5) + 0.02 * x)); });
     scene.settings.material.friction = 0.9;
     return scene;
 }

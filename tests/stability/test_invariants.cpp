@@ -11,9 +11,17 @@ namespace {
 Scene everything(int nx, int ny) {
     auto scene = mixed_scene(nx, ny);
     auto& s = scene.settings;
-    Source spring{SourceShape::disc, SourceMaterial::water, {0.5 * nx * 0.2, 0.3 * ny * 0.2}, 0.8, {}, {{{0, 0.7}}}, true, {1.5, -0.5}};
+    Source spring{SourceShape::disc, SourceMaterial::water, {0.5 * nx * 0.2, 0.3 * ny * 0.2}, 0.8, {}, {{{0, 0.7}}}, true,
+                  {1.5, -0.5}};
     Source drain{SourceShape::point, SourceMaterial::water, {0.1 * nx * 0.2, 0.1 * ny * 0.2}, 0, {}, {{{0, -0.9}}}, false, {}};
-    Source chute{SourceShape::box, SourceMaterial::sand, {}, 0, {0.6 * nx * 0.2, 0.6 * ny * 0.2, 0.7 * nx * 0.2, 0.7 * ny * 0.2}, {{{0, 0.2}}}, false, {}};
+    Source chute{SourceShape::box,
+                 SourceMaterial::sand,
+                 {},
+                 0,
+                 {0.6 * nx * 0.2, 0.6 * ny * 0.2, 0.7 * nx * 0.2, 0.7 * ny * 0.2},
+                 {{{0, 0.2}}},
+                 false,
+                 {}};
     s.sources = {spring, drain, chute};
     s.rain = {{{0, 1e-5}}};
     s.evaporation = {{{0, 3e-6}}};
@@ -92,7 +100,8 @@ TEST_CASE("plain float heights drift, and only a little; without the limiter mas
     auto world = make_world(scene);
     step(*world, 1000);
     auto drift = world->stats();
-    CHECK(std::abs(static_cast<double>(drift->water_quanta - drift->water_initial)) / static_cast<double>(drift->water_initial) < 5e-6);
+    CHECK(std::abs(static_cast<double>(drift->water_quanta - drift->water_initial)) / static_cast<double>(drift->water_initial) <
+          5e-6);
     scene.settings.method.outflow_limiter = false;
     scene.settings.method.velocity_clamp = 0.9;
     scene.settings.method.gravity_cap = 0;

@@ -24,13 +24,16 @@ std::vector<float> mapped(const std::vector<float>& field, int nx, int ny, bool 
 Scene mapped(const Scene& scene, bool transpose, bool mirror) {
     Scene result = scene;
     const auto& g = scene.settings.grid;
-    for (auto* pair : {&result.fields.terrain, &result.fields.sand, &result.fields.water}) *pair = mapped(*pair, g.nx, g.ny, transpose, mirror);
+    for (auto* pair : {&result.fields.terrain, &result.fields.sand, &result.fields.water})
+        *pair = mapped(*pair, g.nx, g.ny, transpose, mirror);
     if (transpose) std::swap(result.settings.grid.nx, result.settings.grid.ny);
     if (transpose) {
         std::swap(result.settings.sides[SIDE_WEST], result.settings.sides[SIDE_SOUTH]);
         std::swap(result.settings.sides[SIDE_EAST], result.settings.sides[SIDE_NORTH]);
     }
-    if (mirror) std::swap(result.settings.sides[transpose ? SIDE_SOUTH : SIDE_WEST], result.settings.sides[transpose ? SIDE_NORTH : SIDE_EAST]);
+    if (mirror)
+        std::swap(result.settings.sides[transpose ? SIDE_SOUTH : SIDE_WEST],
+                  result.settings.sides[transpose ? SIDE_NORTH : SIDE_EAST]);
     return result;
 }
 
@@ -50,7 +53,8 @@ void check_symmetric(Scene scene, bool transpose, bool mirror) {
         CAPTURE(field);
         auto expected = mapped(cells(*plain, field), g.nx, g.ny, transpose, mirror);
         // A mirrored shear changes its sign.
-        if (std::string(field) == "stretch_xy" && mirror) std::transform(expected.begin(), expected.end(), expected.begin(), [](float x) { return -x; });
+        if (std::string(field) == "stretch_xy" && mirror)
+            std::transform(expected.begin(), expected.end(), expected.begin(), [](float x) { return -x; });
         CHECK(cells(*other, field) == expected);
     }
     const auto vx = mapped(cells(*plain, "sand_velocity_x"), g.nx, g.ny, transpose, mirror);

@@ -32,12 +32,16 @@ Scene mixed_scene(int nx, int ny) {
     material.exchange_rate = 3e4;
     material.bed_friction = 0.01;
     const double lx = nx * 0.2, ly = ny * 0.2;
-    scene.fill(scene.fields.terrain, [&](double x, double y) { return 0.4 + 0.3 * std::sin(3 * x / lx + 1) * std::cos(2 * y / ly); });
-    const auto bump = [](double x, double y, double cx, double cy, double r) { return std::max(0.0, 1 - std::hypot(x - cx, y - cy) / r); };
+    scene.fill(scene.fields.terrain,
+               [&](double x, double y) { return 0.4 + 0.3 * std::sin(3 * x / lx + 1) * std::cos(2 * y / ly); });
+    const auto bump = [](double x, double y, double cx, double cy, double r) {
+        return std::max(0.0, 1 - std::hypot(x - cx, y - cy) / r);
+    };
     scene.fill(scene.fields.sand, [&](double x, double y) {
         return 1.2 * bump(x, y, 0.4 * lx, 0.45 * ly, 0.3 * lx) + (std::hypot(x - 0.7 * lx, y - 0.6 * ly) < 0.12 * lx ? 0.9 : 0.0);
     });
-    scene.fill(scene.fields.water, [&](double x, double y) { return x < 0.3 * lx ? 1.1 : 0.25 * bump(x, y, 0.45 * lx, 0.5 * ly, 0.25 * lx); });
+    scene.fill(scene.fields.water,
+               [&](double x, double y) { return x < 0.3 * lx ? 1.1 : 0.25 * bump(x, y, 0.45 * lx, 0.5 * ly, 0.25 * lx); });
     return scene;
 }
 

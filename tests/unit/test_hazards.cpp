@@ -37,7 +37,8 @@ TEST_CASE("a stage's access comes from its own binding lines") {
     CHECK_FALSE(uses[0].writes);
     CHECK(uses[2].writes);
     CHECK_FALSE(uses[2].reads);
-    CHECK(plan_barriers({copy(d, a), velocity(a, b, c, d), velocity(a, b, Buffer{5}, Buffer{6})}) == std::vector{false, true, false});
+    CHECK(plan_barriers({copy(d, a), velocity(a, b, c, d), velocity(a, b, Buffer{5}, Buffer{6})}) ==
+          std::vector{false, true, false});
 }
 
 TEST_CASE("timestamps and bindings that do not exist touch nothing") {

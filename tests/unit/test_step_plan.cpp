@@ -24,7 +24,8 @@ bool runs(const StepPlan& plan, const char* stage) {
     const int index = compute::find_stage(stage);
     REQUIRE(index >= 0);
     const auto is = [&](const PlanPass& pass) { return pass.stage == index; };
-    return std::any_of(plan.water_passes.begin(), plan.water_passes.end(), is) || std::any_of(plan.substep_passes.begin(), plan.substep_passes.end(), is);
+    return std::any_of(plan.water_passes.begin(), plan.water_passes.end(), is) ||
+           std::any_of(plan.substep_passes.begin(), plan.substep_passes.end(), is);
 }
 
 constexpr std::uint32_t everything = 2047;
@@ -42,7 +43,8 @@ TEST_CASE("every legal mask gives a plan whose scratch is written before it is r
             for (std::size_t n = 0; n < bindings.size(); ++n) {
                 const auto* field = plan.find(pass.fields[n]);
                 if (field == nullptr || field->role != FieldRole::scratch || bindings[n].access != compute::Access::in) continue;
-                CHECK_MESSAGE(written.contains(field->name), "mask " << mask << ": " << field->name << " is read before it is written");
+                CHECK_MESSAGE(written.contains(field->name),
+                              "mask " << mask << ": " << field->name << " is read before it is written");
             }
             for (std::size_t n = 0; n < bindings.size(); ++n) {
                 if (bindings[n].access != compute::Access::in) written.insert(pass.fields[n]);
@@ -60,7 +62,8 @@ TEST_CASE("no pass binds one memory block twice with a write, whatever the mask"
                 for (const auto& name : pass.fields) {
                     const auto* field = plan.find(name);
                     if (field == nullptr || field->role != FieldRole::scratch) continue;
-                    CHECK_MESSAGE(blocks.insert(field->memory).second, "mask " << mask << ": " << name << " shares its block within one pass");
+                    CHECK_MESSAGE(blocks.insert(field->memory).second,
+                                  "mask " << mask << ": " << name << " shares its block within one pass");
                 }
             }
         }
@@ -92,7 +95,8 @@ TEST_CASE("every flipped field comes back after two steps, and each pass writes 
                 for (std::size_t n = 0; n < bindings.size(); ++n) {
                     if (bindings[n].access != compute::Access::in) written.insert(pass.fields[n]);
                 }
-                for (const auto& flip : pass.flips) CHECK_MESSAGE(written.contains(flip + "_next"), "mask " << mask << ": " << flip << " flips unwritten");
+                for (const auto& flip : pass.flips)
+                    CHECK_MESSAGE(written.contains(flip + "_next"), "mask " << mask << ": " << flip << " flips unwritten");
             }
         }
     }
@@ -125,7 +129,8 @@ TEST_CASE("an effect that is off has no pass and no buffer") {
             if ((other.needs & ~without) != 0 && (without & other.bit) != 0) without &= ~other.bit;
         }
         const auto less = make_step_plan(without, 3);
-        const bool fewer_passes = less.water_passes.size() + less.substep_passes.size() < full.water_passes.size() + full.substep_passes.size();
+        const bool fewer_passes =
+            less.water_passes.size() + less.substep_passes.size() < full.water_passes.size() + full.substep_passes.size();
         // Drag and bed friction are branches of a stage that runs anyway; the others are passes of their own.
         if (effect.bit == EFFECT_DRAG || effect.bit == EFFECT_BED_FRICTION) {
             CHECK(less.bytes_per_cell() <= full.bytes_per_cell());
@@ -143,10 +148,12 @@ TEST_CASE("effects follow from the scene, with a reason, and a level may force t
     CHECK(effects_required(scene.settings, scene.fields)->mask == EFFECT_WATER);
     scene.fill(scene.fields.sand, [](double, double) { return 1; });
     const auto full = effects_required(scene.settings, scene.fields);
-    CHECK(full->mask == (EFFECT_WATER | EFFECT_SAND | EFFECT_MIXTURE | EFFECT_DIFFUSION | EFFECT_DRAG | EFFECT_ELASTOPLASTIC | EFFECT_COHESION));
+    CHECK(full->mask == (EFFECT_WATER | EFFECT_SAND | EFFECT_MIXTURE | EFFECT_DIFFUSION | EFFECT_DRAG | EFFECT_ELASTOPLASTIC |
+                         EFFECT_COHESION));
     CHECK(full->reasons[0] == "the level holds water");
     scene.settings.effects = {{"mixture", Force::off}};
-    CHECK(effects_required(scene.settings, scene.fields)->mask == (EFFECT_WATER | EFFECT_SAND | EFFECT_DRAG | EFFECT_ELASTOPLASTIC | EFFECT_COHESION));
+    CHECK(effects_required(scene.settings, scene.fields)->mask ==
+          (EFFECT_WATER | EFFECT_SAND | EFFECT_DRAG | EFFECT_ELASTOPLASTIC | EFFECT_COHESION));
     scene.settings.effects = {{"mixture", Force::off}, {"diffusion", Force::on}};
     const auto bad = effects_required(scene.settings, scene.fields);
     CHECK(bad.status().code == Code::bad_argument);
