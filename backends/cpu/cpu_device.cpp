@@ -109,7 +109,7 @@ Status CpuDevice::write(compute::Buffer buffer, std::uint64_t offset, std::span<
     if (memory == nullptr) return error(Code::bad_argument, "write to a buffer that does not exist");
     if (auto status = check_range(*memory, offset, bytes.size()); !status) return status;
     drain();
-    std::memcpy(memory->data + offset, bytes.data(), bytes.size());
+    std::ranges::copy(bytes, memory->data + offset);
     return ok_status();
 }
 
@@ -120,7 +120,7 @@ Status CpuDevice::read(compute::Buffer buffer, std::uint64_t offset, std::span<s
     if (auto status = check_range(*memory, offset, bytes.size()); !status) return status;
     drain();
     if (auto status = check_lost(); !status) return status;
-    std::memcpy(bytes.data(), memory->data + offset, bytes.size());
+    std::copy_n(memory->data + offset, bytes.size(), bytes.data());
     return ok_status();
 }
 
