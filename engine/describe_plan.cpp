@@ -26,27 +26,28 @@ void list_passes(std::ostringstream& out, const std::vector<PlanPass>& passes) {
 } // namespace
 
 std::string World::describe_plan() const {
+    const auto& plan = state_.plan();
     std::ostringstream out;
-    out << "grid " << layout_.nx << " x " << layout_.ny << ", dx " << settings_.grid.dx << " m, dt " << settings_.dt
-        << " s, method " << settings_.method.name << ", T = " << plan_.substeps << "\neffects\n";
+    out << "grid " << state_.layout().nx << " x " << state_.layout().ny << ", dx " << settings().grid.dx << " m, dt "
+        << settings().dt << " s, method " << settings().method.name << ", T = " << plan.substeps << "\neffects\n";
     for (std::size_t n = 0; n < effect_table().size(); ++n) {
         const auto& effect = effect_table()[n];
         char line[160];
-        std::snprintf(line, sizeof line, "  %-3s %-14s %s\n", (plan_.effects & effect.bit) != 0 ? "on" : "-", effect.name,
-                      effects_.reasons[n].c_str());
+        std::snprintf(line, sizeof line, "  %-3s %-14s %s\n", (plan.effects & effect.bit) != 0 ? "on" : "-", effect.name,
+                      effects().reasons[n].c_str());
         out << line;
     }
-    out << "passes: " << plan_.water_passes.size() << " per water step, " << plan_.substep_passes.size() << " per sand substep, "
-        << plan_.water_passes.size() + plan_.substep_passes.size() * static_cast<std::size_t>(plan_.substeps)
+    out << "passes: " << plan.water_passes.size() << " per water step, " << plan.substep_passes.size() << " per sand substep, "
+        << plan.water_passes.size() + plan.substep_passes.size() * static_cast<std::size_t>(plan.substeps)
         << " in all\n  water step\n";
-    list_passes(out, plan_.water_passes);
-    if (!plan_.substep_passes.empty()) {
-        out << "  sand substep, " << plan_.substeps << " times\n";
-        list_passes(out, plan_.substep_passes);
+    list_passes(out, plan.water_passes);
+    if (!plan.substep_passes.empty()) {
+        out << "  sand substep, " << plan.substeps << " times\n";
+        list_passes(out, plan.substep_passes);
     }
     int state = 0, partners = 0;
     std::string state_names, scratch_names;
-    for (const auto& field : plan_.fields) {
+    for (const auto& field : plan.fields) {
         if (field.role == FieldRole::state) {
             ++state;
             partners += field.ping_pong ? 1 : 0;
@@ -55,12 +56,12 @@ std::string World::describe_plan() const {
             scratch_names += (scratch_names.empty() ? "" : ", ") + field.name + " @" + std::to_string(field.memory);
         }
     }
-    out << "buffers: " << plan_.field_buffers() << " fields = " << state << " state + " << partners << " ping-pong + "
-        << plan_.scratch_blocks << " scratch\n"
+    out << "buffers: " << plan.field_buffers() << " fields = " << state << " state + " << partners << " ping-pong + "
+        << plan.scratch_blocks << " scratch\n"
         << "  state    " << state_names << "\n";
     if (!scratch_names.empty()) out << "  scratch  " << scratch_names << "  (@n: shared memory block)\n";
-    out << "bytes per cell: " << plan_.bytes_per_cell() << " (state " << 4 * state << ", ping-pong " << 4 * partners
-        << ", scratch " << 4 * plan_.scratch_blocks << "); on the device " << device_bytes_ / 1024
+    out << "bytes per cell: " << plan.bytes_per_cell() << " (state " << 4 * state << ", ping-pong " << 4 * partners
+        << ", scratch " << 4 * plan.scratch_blocks << "); on the device " << device_bytes() / 1024
         << " KiB with padding, ledgers and outputs\n";
     return out.str();
 }

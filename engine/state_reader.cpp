@@ -1,5 +1,4 @@
-// Reading a world: fields, published fields, ledger, statistics and the state hash.
-#include "engine/world.hpp"
+#include "engine/state_reader.hpp"
 #include "engine/world_params.hpp"
 #include <algorithm>
 #include <cmath>
@@ -25,89 +24,75 @@ bool is_velocity(const std::string& name) { return name.ends_with("velocity_x") 
 
 } // namespace
 
-Result<std::vector<float>> World::read_buffer(compute::Buffer from) {
-    std::vector<float> raw(layout_.size());
-    if (auto status = note(device_->read(from, 0, std::as_writable_bytes(std::span(raw)))); !status) return status;
+Result<std::vector<float>> StateReader::read_buffer(compute::Buffer from) {
+    std::vector<float> raw(state_.layout().size());
+    if (auto status = state_.note(state_.device().read(from, 0, std::as_writable_bytes(std::span(raw)))); !status) return status;
     return raw;
 }
 
-Result<std::vector<float>> World::read_raw(const std::string& field) {
-    const auto from = buffer(field, start_parity_[static_cast<std::size_t>(parity_)]);
-    if (from.id == 0) return std::vector<float>(layout_.size(), 0.0F);
+Result<std::vector<float>> StateReader::read_raw(const std::string& field) {
+    const auto from = state_.buffer(field, state_.parity());
+    if (from.id == 0) return std::vector<float>(state_.layout().size(), 0.0F);
     return read_buffer(from);
 }
 
-Status World::read_cells(compute::Buffer from, std::span<float> values) {
+Status StateReader::read_cells(compute::Buffer from, std::span<float> values) {
     auto raw = read_buffer(from);
     if (!raw) return raw.status();
-    for (int j = 0; j < layout_.ny; ++j) {
-        std::memcpy(values.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(layout_.nx),
-                    raw->data() + layout_.index(0, j), static_cast<std::size_t>(layout_.nx) * sizeof(float));
+    for (int j = 0; j < state_.layout().ny; ++j) {
+        std::memcpy(values.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(state_.layout().nx),
+                    raw->data() + state_.layout().index(0, j), static_cast<std::size_t>(state_.layout().nx) * sizeof(float));
     }
     return ok_status();
 }
 
-Status World::append_stage(compute::ProgramBuilder& builder, const char* stage_name,
-                           const std::map<std::string, std::string>& names) {
-    const int index = compute::find_stage(stage_name);
-    const auto& stage = compute::stage_table()[static_cast<std::size_t>(index)];
-    auto pipeline = device_->create_pipeline(index, plan_.effects, group_);
-    if (!pipeline) return pipeline.status();
-    const auto& parity = start_parity_[static_cast<std::size_t>(parity_)];
-    compute::Dispatch dispatch{*pipeline, index, plan_.effects, {}, compute::extent_range(stage.extent, params_), stage_name};
-    std::size_t outputs = 0;
-    for (const auto& binding : stage.bindings) {
-        const std::string name(binding.name);
-        const bool exists = (plan_.effects & binding.condition) == binding.condition;
-        if (!exists) {
-            dispatch.slots.push_back({});
-        } else if (binding.access == compute::Access::out) {
-            auto& out = output_.at(outputs++);
-            if (out.id == 0) {
-                auto made = make_buffer("output " + std::to_string(outputs), layout_.size() * 4);
-                if (!made) return made.status();
-                out = *made;
-            }
-            dispatch.slots.push_back(out);
-        } else {
-            dispatch.slots.push_back(buffer(names.contains(name) ? names.at(name) : name, parity));
-        }
+// Runs a stage on the state. `fields`: bindings that stand for a field of another name; `outputs`: bindings that get this
+// reader's own buffers.
+Status StateReader::publish(const std::string& stage, const std::map<std::string, std::string>& fields,
+                            const std::vector<const char*>& outputs) {
+    for (std::size_t n = 0; n < outputs.size(); ++n) {
+        if (output_[n].id != 0) continue;
+        auto made = state_.make_buffer({state_.layout().size() * 4, "reader output " + std::to_string(n)});
+        if (!made) return state_.note(made.status());
+        output_[n] = *made;
     }
-    builder.dispatch(std::move(dispatch));
-    return ok_status();
+    auto& program = programs_[fields.empty() ? stage : stage + " " + fields.begin()->second];
+    if (!program) {
+        program = std::make_unique<StateProgram>(
+            state_, stage, [this, stage, fields, outputs](compute::ProgramBuilder& builder, const Parity& parity) {
+                Slots slots;
+                for (const auto& [binding, field] : fields) slots[binding] = state_.buffer(field, parity);
+                for (std::size_t n = 0; n < outputs.size(); ++n) slots[outputs[n]] = output_[n];
+                return state_.append_stage(builder, stage.c_str(), parity, slots);
+            });
+    }
+    auto ticket = program->submit();
+    return ticket ? state_.note(state_.device().wait(*ticket)) : ticket.status();
 }
 
-Status World::publish(const char* stage, const std::map<std::string, std::string>& names) {
-    compute::ProgramBuilder builder(std::string("publish ") + stage);
-    if (auto status = append_stage(builder, stage, names); !status) return note(status);
-    auto program = device_->compile(builder, params_);
-    if (!program) return note(program.status());
-    auto ticket = device_->submit(*program, StepInput{});
-    auto status = ticket ? device_->wait(*ticket) : ticket.status();
-    device_->destroy_program(*program);
-    return note(status);
-}
-
-Status World::read(const std::string& name, std::span<float> values) {
-    if (!lost_) return lost_;
+Status StateReader::read(const std::string& name, std::span<float> values) {
+    if (!state_.lost()) return state_.lost();
     if (name == "water_depth" || name == "free_surface" || name == "surface_saturation") {
-        if (auto status = publish("publish_heights", {}); !status) return status;
+        if (auto status = publish("publish_heights", {}, {"water_depth", "free_surface", "surface_saturation"}); !status)
+            return status;
         return read_cells(output_[name == "water_depth" ? 0 : name == "free_surface" ? 1 : 2], values);
     }
-    if (plan_.find(name) == nullptr) {
+    if (state_.plan().find(name) == nullptr) {
         std::fill(values.begin(), values.end(), 0.0F);
         return ok_status();
     }
     if (is_velocity(name)) {
         const std::string layer = name.substr(0, name.size() - 1);
-        if (auto status = publish("publish_velocity", {{"velocity_x", layer + "x"}, {"velocity_y", layer + "y"}}); !status)
+        if (auto status = publish("publish_velocity", {{"velocity_x", layer + "x"}, {"velocity_y", layer + "y"}},
+                                  {"centre_velocity_x", "centre_velocity_y"});
+            !status)
             return status;
         return read_cells(output_[name.back() == 'x' ? 0 : 1], values);
     }
-    return read_cells(buffer(name, start_parity_[static_cast<std::size_t>(parity_)]), values);
+    return read_cells(state_.buffer(name, state_.parity()), values);
 }
 
-Result<Ledger> World::read_ledger() {
+Result<Ledger> StateReader::read_ledger() {
     Ledger ledger;
     // Sums the low and high words of one entry over its row of counters.
     const auto sum = [](const std::vector<std::uint32_t>& words, std::size_t row, std::size_t entry) {
@@ -118,12 +103,15 @@ Result<Ledger> World::read_ledger() {
     };
     const auto words = [&](const char* name, std::size_t count) -> Result<std::vector<std::uint32_t>> {
         std::vector<std::uint32_t> values(count);
-        if (auto status = note(device_->read(buffers_.at(name)[0], 0, std::as_writable_bytes(std::span(values)))); !status)
+        if (auto status = state_.note(
+                state_.device().read(state_.buffer(name, state_.parity()), 0, std::as_writable_bytes(std::span(values))));
+            !status)
             return status;
         return values;
     };
-    if (plan_.find("source_ledger") != nullptr) {
-        const std::size_t row = static_cast<std::size_t>(layout_.strips()) * static_cast<std::size_t>(layout_.pitch());
+    if (state_.plan().find("source_ledger") != nullptr) {
+        const std::size_t row =
+            static_cast<std::size_t>(state_.layout().strips()) * static_cast<std::size_t>(state_.layout().pitch());
         auto w = words("source_ledger", row * 2 * LEDGER_ENTRIES);
         if (!w) return w.status();
         ledger.water_in += sum(*w, row, LEDGER_WATER_IN);
@@ -132,14 +120,14 @@ Result<Ledger> World::read_ledger() {
         ledger.sand_out += sum(*w, row, LEDGER_SAND_OUT);
         ledger.refused += sum(*w, row, LEDGER_REFUSED);
     }
-    const auto rim = static_cast<std::size_t>(layout_.rim());
-    if (plan_.find("water_side_ledger") != nullptr) {
+    const auto rim = static_cast<std::size_t>(state_.layout().rim());
+    if (state_.plan().find("water_side_ledger") != nullptr) {
         auto w = words("water_side_ledger", 4 * rim);
         if (!w) return w.status();
         ledger.water_in += sum(*w, rim, 0);
         ledger.water_out += sum(*w, rim, 1);
     }
-    if (plan_.find("sand_side_ledger") != nullptr) {
+    if (state_.plan().find("sand_side_ledger") != nullptr) {
         auto w = words("sand_side_ledger", 4 * rim);
         if (!w) return w.status();
         ledger.sand_in += sum(*w, rim, 0);
@@ -148,28 +136,28 @@ Result<Ledger> World::read_ledger() {
     return ledger;
 }
 
-Result<WorldStats> World::stats() {
-    if (!lost_) return lost_;
+Result<WorldStats> StateReader::stats() {
+    if (!state_.lost()) return state_.lost();
     WorldStats s;
-    const double quantum = ledger_quantum(settings_.method);
+    const double quantum = ledger_quantum(state_.settings().method);
     s.quantum = quantum;
-    s.sand_initial = sand_initial_;
-    s.water_initial = water_initial_;
+    s.sand_initial = state_.sand_initial;
+    s.water_initial = state_.water_initial;
     auto ledger = read_ledger();
     if (!ledger) return ledger.status();
     s.ledger = *ledger;
     for (std::size_t n = 0; n < std::size(hashed_fields); ++n) {
         const std::string name = hashed_fields[n];
-        if (plan_.find(name) == nullptr) continue;
+        if (state_.plan().find(name) == nullptr) continue;
         auto raw = read_raw(name);
         if (!raw) return raw.status();
         const bool sand = name.starts_with("sand_"), height = name.ends_with("_height"), velocity = is_velocity(name);
         // Velocities have one more face than cells along their own axis.
-        const int nx = layout_.nx + (name.ends_with("velocity_x") ? 1 : 0),
-                  ny = layout_.ny + (name.ends_with("velocity_y") ? 1 : 0);
+        const int nx = state_.layout().nx + (name.ends_with("velocity_x") ? 1 : 0),
+                  ny = state_.layout().ny + (name.ends_with("velocity_y") ? 1 : 0);
         for (int j = 0; j < ny; ++j) {
             for (int i = 0; i < nx; ++i) {
-                const float value = (*raw)[layout_.index(i, j)];
+                const float value = (*raw)[state_.layout().index(i, j)];
                 std::uint32_t bits;
                 std::memcpy(&bits, &value, 4);
                 s.hash += mix(
@@ -191,13 +179,13 @@ Result<WorldStats> World::stats() {
             }
         }
     }
-    if (auto status = publish("mark_limits", {}); !status) return status;
+    if (auto status = publish("mark_limits", {}, {"limit_marks"}); !status) return status;
     auto marks = read_buffer(output_[0]);
     if (!marks) return marks.status();
-    for (int j = 0; j <= layout_.ny; ++j) {
-        for (int i = 0; i <= layout_.nx; ++i) {
+    for (int j = 0; j <= state_.layout().ny; ++j) {
+        for (int i = 0; i <= state_.layout().nx; ++i) {
             std::uint32_t mark;
-            std::memcpy(&mark, &(*marks)[layout_.index(i, j)], 4);
+            std::memcpy(&mark, &(*marks)[state_.layout().index(i, j)], 4);
             s.clamped_faces += mark & 255u;
             s.capped_faces += mark >> 8 & 255u;
             s.limited_cells += mark >> 16;

@@ -1,0 +1,45 @@
+// Reading a world's state on the host: fields, ledger, statistics, hash. Every call waits for the device.
+#pragma once
+#include "engine/state_program.hpp"
+#include <span>
+
+namespace wadi {
+
+/// Signed count of ledger quanta moved since creation.
+struct Ledger {
+    std::int64_t water_in = 0, water_out = 0, sand_in = 0, sand_out = 0, refused = 0;
+};
+
+/// The state now; see wadi_world_stats in the plugin's header for meaning and units.
+struct WorldStats {
+    std::int64_t sand_quanta = 0, water_quanta = 0, sand_initial = 0, water_initial = 0;
+    Ledger ledger;
+    double quantum = 0;
+    double largest_sand = 0, largest_water = 0, largest_water_speed = 0, largest_sand_speed = 0, smallest_height = 0;
+    std::uint64_t not_finite = 0, clamped_faces = 0, capped_faces = 0, limited_cells = 0, hash = 0;
+};
+
+class StateReader {
+  public:
+    explicit StateReader(WorldState& state) : state_(state) {}
+
+    /// nx * ny floats of a field by its plan name ("water_height", ...), at cell centres for velocities, or of a published
+    /// field ("water_depth", "free_surface", "surface_saturation"). A field the mask lacks is zero.
+    Status read(const std::string& name, std::span<float> values);
+    Result<WorldStats> stats();
+    /// The raw field with ghosts at its current parity.
+    Result<std::vector<float>> read_raw(const std::string& field);
+
+  private:
+    Status publish(const std::string& stage, const std::map<std::string, std::string>& fields,
+                   const std::vector<const char*>& outputs);
+    Status read_cells(compute::Buffer from, std::span<float> values);
+    Result<std::vector<float>> read_buffer(compute::Buffer from);
+    Result<Ledger> read_ledger();
+
+    WorldState& state_;
+    std::array<compute::Buffer, 3> output_{}; // of publish stages, made when first asked for
+    std::map<std::string, std::unique_ptr<StateProgram>> programs_;
+};
+
+} // namespace wadi

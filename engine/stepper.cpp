@@ -1,0 +1,159 @@
+#include "engine/stepper.hpp"
+#include <algorithm>
+
+namespace wadi {
+
+int Stepper::parts() const { return state_.plan().substep_passes.empty() ? 1 : 1 + state_.plan().substeps; }
+
+void Stepper::drop_programs() {
+    const auto drop = [&](auto& programs) {
+        for (auto& program : programs) state_.device().destroy_program(program);
+    };
+    drop(programs_);
+    drop(timed_programs_);
+    programs_ = timed_programs_ = {};
+    for (auto& programs : part_programs_) {
+        drop(programs);
+        programs.clear();
+    }
+}
+
+Result<compute::Program> Stepper::record_step(Parity& parity, bool timestamps) {
+    compute::ProgramBuilder builder(timestamps ? "timed step" : "step");
+    if (timestamps) builder.timestamp("start");
+    const auto add = [&](const PlanPass& pass) {
+        auto status = state_.append(builder, pass, parity);
+        if (status && timestamps)
+            builder.timestamp(std::string(compute::stage_table()[static_cast<std::size_t>(pass.stage)].name));
+        return status;
+    };
+    for (const auto& pass : state_.plan().water_passes) {
+        if (auto status = add(pass); !status) return status;
+    }
+    for (int t = 0; t < state_.plan().substeps; ++t) {
+        for (const auto& pass : state_.plan().substep_passes) {
+            if (auto status = add(pass); !status) return status;
+        }
+    }
+    return state_.device().compile(builder, state_.params());
+}
+
+// A step flips each ping-pong field a fixed number of times, so two steps bring every field back: two programs suffice.
+Status Stepper::record() {
+    drop_programs();
+    Parity parity;
+    for (int turn = 0; turn < 2; ++turn) {
+        state_.set_start_parity(turn, parity);
+        auto program = record_step(parity, false);
+        if (!program) return state_.note(program.status());
+        programs_[static_cast<std::size_t>(turn)] = *program;
+    }
+    if (!profiling_) return ok_status();
+    profiling_ = false;
+    return set_profiling(true);
+}
+
+Status Stepper::record_parts(std::size_t turn) {
+    Parity parity = state_.parity_of(static_cast<int>(turn));
+    for (int part = 0; part < parts(); ++part) {
+        compute::ProgramBuilder builder(part == 0 ? "water part" : "sand part");
+        for (const auto& pass : part == 0 ? state_.plan().water_passes : state_.plan().substep_passes) {
+            if (auto status = state_.append(builder, pass, parity); !status) return status;
+        }
+        auto program = state_.device().compile(builder, state_.params());
+        if (!program) return program.status();
+        part_programs_[turn].push_back(*program);
+    }
+    return ok_status();
+}
+
+// Submits parts until `parts` of the step are done; the last one makes the step whole.
+Status Stepper::finish(int parts) {
+    const auto turn = static_cast<std::size_t>(state_.turn());
+    if (part_programs_[turn].empty()) {
+        if (auto status = record_parts(turn); !status) return state_.note(status);
+    }
+    for (; parts_done_ < parts; ++parts_done_) {
+        auto ticket = state_.device().submit(part_programs_[turn][static_cast<std::size_t>(parts_done_)], input_);
+        if (!ticket) return state_.note(ticket.status());
+    }
+    if (parts_done_ < this->parts()) return ok_status();
+    parts_done_ = 0;
+    state_.set_turn(1 - state_.turn());
+    ++state_.steps;
+    return ok_status();
+}
+
+Status Stepper::step_part() {
+    if (!state_.lost()) return state_.lost();
+    if (parts_done_ == 0) input_ = inputs_.next(static_cast<int>(state_.steps));
+    return finish(parts_done_ + 1);
+}
+
+Status Stepper::step() {
+    if (!state_.lost()) return state_.lost();
+    if (parts_done_ > 0) return finish(parts());
+    const auto turn = static_cast<std::size_t>(state_.turn());
+    auto ticket = state_.device().submit(profiling_ ? timed_programs_[turn] : programs_[turn],
+                                         inputs_.next(static_cast<int>(state_.steps)));
+    if (!ticket) return state_.note(ticket.status());
+    if (profiling_) {
+        pending_timings_.push_back(*ticket);
+        if (auto status = collect_timings(false); !status) return state_.note(status);
+    }
+    state_.set_turn(1 - state_.turn());
+    ++state_.steps;
+    return ok_status();
+}
+
+Status Stepper::set_profiling(bool on) {
+    if (auto status = collect_timings(true); !status) return state_.note(status);
+    if (on && timed_programs_[0].id == 0) {
+        for (int turn = 0; turn < 2; ++turn) {
+            Parity parity = state_.parity_of(turn);
+            auto program = record_step(parity, true);
+            if (!program) return state_.note(program.status());
+            timed_programs_[static_cast<std::size_t>(turn)] = *program;
+        }
+    }
+    if (on && !profiling_) {
+        stage_milliseconds_.clear();
+        timed_steps_ = 0;
+    }
+    profiling_ = on;
+    return ok_status();
+}
+
+// The device keeps the timings of a few submissions only: fetch them as they finish.
+Status Stepper::collect_timings(bool all) {
+    constexpr std::size_t most_pending = 4;
+    while (!pending_timings_.empty() && (all || pending_timings_.size() > most_pending)) {
+        const auto ticket = pending_timings_.front();
+        pending_timings_.erase(pending_timings_.begin());
+        if (auto status = state_.device().wait(ticket); !status) return status;
+        auto timings = state_.device().timings(ticket);
+        if (!timings) return timings.status();
+        for (const auto& timing : *timings) stage_milliseconds_[timing.label] += timing.milliseconds;
+        ++timed_steps_;
+    }
+    return ok_status();
+}
+
+Result<std::vector<StageTime>> Stepper::stage_times() {
+    if (auto status = collect_timings(true); !status) return state_.note(status);
+    std::vector<StageTime> times;
+    const auto add = [&](const PlanPass& pass, int repeats) {
+        const std::string name(compute::stage_table()[static_cast<std::size_t>(pass.stage)].name);
+        auto found = std::find_if(times.begin(), times.end(), [&](const StageTime& t) { return t.stage == name; });
+        if (found == times.end()) {
+            const double total = stage_milliseconds_.contains(name) ? stage_milliseconds_[name] : 0;
+            found = times.insert(times.end(), {name, timed_steps_ > 0 ? total / static_cast<double>(timed_steps_) : 0, 0});
+        }
+        found->passes += repeats;
+    };
+    for (const auto& pass : state_.plan().water_passes) add(pass, 1);
+    for (const auto& pass : state_.plan().substep_passes) add(pass, state_.plan().substeps);
+    return times;
+}
+
+} // namespace wadi

@@ -1,0 +1,56 @@
+// Runs the step plan: a water step is one program for each of the two buffer parities, or one water part and T sand parts.
+#pragma once
+#include "engine/step_inputs.hpp"
+#include "engine/world_state.hpp"
+
+namespace wadi {
+
+/// Mean time of a stage per water step.
+struct StageTime {
+    std::string stage;
+    double milliseconds = 0;
+    int passes = 0;
+};
+
+class Stepper {
+  public:
+    explicit Stepper(WorldState& state) : state_(state), inputs_(state.settings()) {}
+
+    /// Records the step programs for the state's plan, and which buffers are current before each. After a change of the plan too.
+    Status record();
+    /// Submits one whole water step, or what is left of one that was begun in parts.
+    Status step();
+    /// Submits the next of a water step's parts: the water passes, then each sand substep. The same bits as step().
+    Status step_part();
+    /// Parts of a water step: 1 + T, or 1 without sand.
+    int parts() const;
+    /// Parts of the present step already submitted; 0 between two steps.
+    int parts_done() const { return parts_done_; }
+
+    Status set_profiling(bool on);
+    /// Mean over the steps since profiling was switched on; steps in parts are not timed.
+    Result<std::vector<StageTime>> stage_times();
+
+    StepInputs& inputs() { return inputs_; }
+    const StepInputs& inputs() const { return inputs_; }
+
+  private:
+    Result<compute::Program> record_step(Parity& parity, bool timestamps);
+    Status record_parts(std::size_t turn);
+    Status finish(int parts);
+    Status collect_timings(bool all);
+    void drop_programs();
+
+    WorldState& state_;
+    StepInputs inputs_;
+    std::array<compute::Program, 2> programs_{}, timed_programs_{};
+    std::array<std::vector<compute::Program>, 2> part_programs_;
+    int parts_done_ = 0;
+    StepInput input_{}; // of the step whose parts are being submitted
+    bool profiling_ = false;
+    std::vector<compute::Ticket> pending_timings_;
+    std::map<std::string, double> stage_milliseconds_;
+    std::uint64_t timed_steps_ = 0;
+};
+
+} // namespace wadi

@@ -1,0 +1,188 @@
+#include "engine/world_state.hpp"
+#include "engine/step_inputs.hpp"
+#include "engine/world_params.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace wadi {
+
+namespace {
+
+std::vector<float> with_ghosts(const FieldLayout& layout, const std::vector<float>& cells, bool repeat_edges) {
+    std::vector<float> field(layout.size(), 0.0F);
+    if (cells.empty()) return field;
+    for (int j = -GHOST; j < layout.ny + 1 + GHOST; ++j) {
+        for (int i = -GHOST; i < layout.nx + 1 + GHOST; ++i) {
+            const int x = std::clamp(i, 0, layout.nx - 1), y = std::clamp(j, 0, layout.ny - 1);
+            if (repeat_edges || (x == i && y == j))
+                field[layout.index(i, j)] =
+                    cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(layout.nx) + static_cast<std::size_t>(x)];
+        }
+    }
+    return field;
+}
+
+// Face velocities from cell-centred ones: the mean of the two cells; outer faces are walls until a side opens them.
+std::vector<float> to_faces(const FieldLayout& layout, const std::vector<float>& cells, bool along_x) {
+    std::vector<float> field(layout.size(), 0.0F);
+    if (cells.empty()) return field;
+    const auto at = [&](int i, int j) {
+        return cells[static_cast<std::size_t>(j) * static_cast<std::size_t>(layout.nx) + static_cast<std::size_t>(i)];
+    };
+    for (int j = along_x ? 0 : 1; j < layout.ny; ++j) {
+        for (int i = along_x ? 1 : 0; i < layout.nx; ++i) {
+            field[layout.index(i, j)] = 0.5F * (at(i, j) + (along_x ? at(i - 1, j) : at(i, j - 1)));
+        }
+    }
+    return field;
+}
+
+// Nearest whole quantum, as every height is.
+void round_heights(std::vector<float>& heights, double quantum) {
+    if (quantum <= 0) return;
+    for (auto& h : heights) h = static_cast<float>(std::nearbyint(static_cast<double>(h) / quantum) * quantum);
+}
+
+std::int64_t count_quanta(const std::vector<float>& heights, double quantum) {
+    std::int64_t sum = 0;
+    for (const float h : heights) sum += std::llrint(static_cast<double>(h) / quantum);
+    return sum;
+}
+
+std::span<const std::byte> bytes_of(const auto& values) { return std::as_bytes(std::span(values)); }
+
+} // namespace
+
+WorldState::WorldState(const Settings& settings, std::unique_ptr<compute::Device> device, compute::GroupSize group)
+    : settings_(settings), layout_{settings.grid.nx, settings.grid.ny}, params_(derive_params(settings)),
+      device_(std::move(device)), group_(group) {}
+
+Status WorldState::open(const EffectChoice& effects) {
+    effects_ = effects;
+    plan_ = make_step_plan(effects.mask, settings_.method.substeps);
+    const std::uint64_t bytes = layout_.size() * 4, limit = device_->capabilities().largest_buffer_bytes;
+    if (limit != 0 && bytes > limit) {
+        return error(Code::not_supported, "grid " + std::to_string(layout_.nx) + " x " + std::to_string(layout_.ny) +
+                                              " needs fields of " + std::to_string(bytes >> 20) + " MiB; '" +
+                                              device_->capabilities().name + "' binds at most " + std::to_string(limit >> 20) +
+                                              " MiB");
+    }
+    return allocate();
+}
+
+Result<compute::Buffer> WorldState::make_buffer(const compute::BufferDesc& desc) {
+    auto made = device_->create_buffer(desc);
+    if (made) device_bytes_ += desc.bytes;
+    return made;
+}
+
+void WorldState::free_buffer(compute::Buffer buffer, std::uint64_t bytes) {
+    if (buffer.id == 0) return;
+    device_->destroy_buffer(buffer);
+    device_bytes_ -= bytes;
+}
+
+std::uint64_t WorldState::field_bytes(const PlanField& field) const {
+    if (field.role == FieldRole::shapes) return 2 * MAX_SOURCES * sizeof(vec4);
+    if (field.role != FieldRole::ledger) return layout_.size() * 4;
+    if (field.name != "source_ledger") return static_cast<std::uint64_t>(layout_.rim()) * 4 * 4;
+    return std::uint64_t{2 * LEDGER_ENTRIES} * static_cast<std::uint64_t>(layout_.strips()) *
+           static_cast<std::uint64_t>(layout_.pitch()) * 4;
+}
+
+Status WorldState::allocate() {
+    for (const auto& field : plan_.fields) {
+        if (field.role == FieldRole::scratch) continue;
+        for (std::size_t n = 0; n < (field.ping_pong ? 2u : 1u); ++n) {
+            auto made = make_buffer({field_bytes(field), field.name + (n == 1 ? "_next" : "")});
+            if (!made) return made.status();
+            buffers_[field.name][n] = *made;
+        }
+    }
+    for (int n = 0; n < plan_.scratch_blocks; ++n) {
+        auto made = make_buffer({layout_.size() * 4, "scratch " + std::to_string(n)});
+        if (!made) return made.status();
+        scratch_.push_back(*made);
+    }
+    return ok_status();
+}
+
+Status WorldState::upload(const InitialFields& fields) {
+    const double quantum = height_quantum(settings_.method);
+    const auto put = [&](const char* name, const std::vector<float>& values) {
+        return plan_.find(name) == nullptr ? ok_status() : device_->write(buffers_[name][0], 0, bytes_of(values));
+    };
+    const auto heights = [&](const std::vector<float>& cells, bool repeat_edges) {
+        auto rounded = cells;
+        round_heights(rounded, quantum);
+        return with_ghosts(layout_, rounded, repeat_edges);
+    };
+    const auto sand = heights(fields.sand, false), water = heights(fields.water, false);
+    sand_initial = plan_.find("sand_height") == nullptr ? 0 : count_quanta(sand, ledger_quantum(settings_.method));
+    water_initial = plan_.find("water_height") == nullptr ? 0 : count_quanta(water, ledger_quantum(settings_.method));
+    const auto u = to_faces(layout_, fields.velocity_x, true), v = to_faces(layout_, fields.velocity_y, false);
+    const std::pair<const char*, std::vector<float>> all[] = {
+        {"terrain", heights(fields.terrain, true)},
+        {"sand_height", sand},
+        {"water_height", water},
+        {"water_velocity_x", u},
+        {"water_velocity_y", v},
+        {"mixed_velocity_x", u},
+        {"mixed_velocity_y", v},
+        {"sand_velocity_x", to_faces(layout_, fields.sand_velocity_x, true)},
+        {"sand_velocity_y", to_faces(layout_, fields.sand_velocity_y, false)}};
+    for (const auto& [name, values] : all) {
+        if (auto status = put(name, values); !status) return status;
+    }
+    if (plan_.find("source_shapes") == nullptr) return ok_status();
+    return device_->write(buffers_["source_shapes"][0], 0, bytes_of(source_shapes(settings_)));
+}
+
+compute::Buffer WorldState::buffer(const std::string& name, const Parity& parity) const {
+    constexpr std::string_view suffix = "_next";
+    const bool next = name.ends_with(suffix);
+    const std::string base = next ? name.substr(0, name.size() - suffix.size()) : name;
+    const auto* field = plan_.find(base);
+    if (field == nullptr) return {};
+    if (field->role == FieldRole::scratch) return scratch_[static_cast<std::size_t>(field->memory)];
+    const std::size_t current = parity.contains(base) ? 1 : 0;
+    return buffers_.at(base)[next ? 1 - current : current];
+}
+
+Status WorldState::append(compute::ProgramBuilder& builder, const PlanPass& pass, Parity& parity) const {
+    const auto& stage = compute::stage_table()[static_cast<std::size_t>(pass.stage)];
+    auto pipeline = device_->create_pipeline(pass.stage, plan_.effects, group_);
+    if (!pipeline) return pipeline.status();
+    compute::Dispatch dispatch{
+        *pipeline, pass.stage, plan_.effects, {}, compute::extent_range(stage.extent, params_), std::string(stage.name)};
+    for (const auto& name : pass.fields) dispatch.slots.push_back(name.empty() ? compute::Buffer{} : buffer(name, parity));
+    builder.dispatch(std::move(dispatch));
+    for (const auto& name : pass.flips) {
+        if (!parity.erase(name)) parity.insert(name);
+    }
+    return ok_status();
+}
+
+Status WorldState::append_stage(compute::ProgramBuilder& builder, const char* stage_name, const Parity& parity,
+                                const Slots& slots) const {
+    const int index = compute::find_stage(stage_name);
+    const auto& stage = compute::stage_table()[static_cast<std::size_t>(index)];
+    auto pipeline = device_->create_pipeline(index, plan_.effects, group_);
+    if (!pipeline) return pipeline.status();
+    compute::Dispatch dispatch{*pipeline, index, plan_.effects, {}, compute::extent_range(stage.extent, params_), stage_name};
+    for (const auto& binding : stage.bindings) {
+        const std::string name(binding.name);
+        const bool exists = (plan_.effects & binding.condition) == binding.condition;
+        const auto given = slots.find(name);
+        dispatch.slots.push_back(!exists ? compute::Buffer{} : given != slots.end() ? given->second : buffer(name, parity));
+    }
+    builder.dispatch(std::move(dispatch));
+    return ok_status();
+}
+
+Status WorldState::note(Status status) {
+    if (status.code == Code::device_lost) lost_ = status;
+    return status;
+}
+
+} // namespace wadi

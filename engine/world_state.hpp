@@ -1,0 +1,90 @@
+// What every part of a world shares: settings, plan, device, buffers, and which buffer of each pair is the current one.
+// The parts (stepper, outputs, edits, queries, ...) record their programs against it and know nothing of each other.
+#pragma once
+#include "engine/compute/device.hpp"
+#include "engine/effects.hpp"
+#include "engine/include/wadi/settings.hpp"
+#include "engine/step_plan.hpp"
+#include <array>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace wadi {
+
+/// Ping-pong fields whose second buffer is the current one.
+using Parity = std::set<std::string>;
+
+/// Buffers by the name of a stage's binding.
+using Slots = std::map<std::string, compute::Buffer>;
+
+class WorldState {
+  public:
+    WorldState(const Settings& settings, std::unique_ptr<compute::Device> device, compute::GroupSize group);
+
+    /// Plans for a mask and makes every buffer it needs. Errors: not_supported (a field larger than the device binds),
+    /// out_of_memory.
+    Status open(const EffectChoice& effects);
+    /// Writes the level's fields into the current buffers.
+    Status upload(const InitialFields& fields);
+
+    const Settings& settings() const { return settings_; }
+    const FieldLayout& layout() const { return layout_; }
+    const WorldParams& params() const { return params_; }
+    const EffectChoice& effects() const { return effects_; }
+    const StepPlan& plan() const { return plan_; }
+    compute::Device& device() const { return *device_; }
+    std::uint64_t device_bytes() const { return device_bytes_; }
+
+    /// Which of the two step programs comes next (0 or 1), and the buffers that are current before each.
+    int turn() const { return turn_; }
+    void set_turn(int turn) { turn_ = turn; }
+    const Parity& parity() const { return start_parity_[static_cast<std::size_t>(turn_)]; }
+    const Parity& parity_of(int turn) const { return start_parity_[static_cast<std::size_t>(turn)]; }
+    void set_start_parity(int turn, const Parity& parity) { start_parity_[static_cast<std::size_t>(turn)] = parity; }
+    /// Counts up whenever buffers or pipelines changed so that every program must be recorded anew.
+    std::uint64_t recording() const { return recording_; }
+
+    /// Whole water steps done.
+    std::uint64_t steps = 0;
+    /// Quanta of sand and water at creation.
+    std::int64_t sand_initial = 0, water_initial = 0;
+
+    /// The buffer of a field under a parity; with the suffix "_next" its partner. Null where the plan has no such field.
+    compute::Buffer buffer(const std::string& name, const Parity& parity) const;
+    std::uint64_t field_bytes(const PlanField& field) const;
+    /// A buffer that counts into device_bytes().
+    Result<compute::Buffer> make_buffer(const compute::BufferDesc& desc);
+    void free_buffer(compute::Buffer buffer, std::uint64_t bytes);
+
+    /// Appends a pass of the plan and flips what it flips.
+    Status append(compute::ProgramBuilder& builder, const PlanPass& pass, Parity& parity) const;
+    /// Appends a stage outside the plan. `slots` names the buffers that are not state fields; the rest are found by name.
+    Status append_stage(compute::ProgramBuilder& builder, const char* stage, const Parity& parity, const Slots& slots) const;
+
+    /// ok until the device is lost, then device_lost for ever.
+    const Status& lost() const { return lost_; }
+    /// Remembers a lost device; returns what it was given.
+    Status note(Status status);
+
+  private:
+    Status allocate();
+
+    const Settings settings_;
+    const FieldLayout layout_;
+    const WorldParams params_;
+    EffectChoice effects_;
+    StepPlan plan_;
+    std::unique_ptr<compute::Device> device_;
+    compute::GroupSize group_;
+    std::map<std::string, std::array<compute::Buffer, 2>> buffers_; // state, ledger, shapes
+    std::vector<compute::Buffer> scratch_;
+    std::array<Parity, 2> start_parity_{};
+    int turn_ = 0;
+    std::uint64_t recording_ = 0, device_bytes_ = 0;
+    Status lost_;
+};
+
+} // namespace wadi

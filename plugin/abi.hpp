@@ -1,0 +1,61 @@
+// What every file of the C ABI uses: handles and sizes checked, Status turned into codes, exceptions caught.
+#pragma once
+#include "plugin/include/wadi/wadi.h"
+#include "plugin/world_table.hpp"
+#include <algorithm>
+#include <cstring>
+#include <new>
+#include <string>
+
+namespace wadi::plugin {
+
+/// Keeps the message for wadi_get_last_error() of this thread.
+wadi_result report(const Status& status);
+const std::string& last_error();
+
+inline wadi_result bad_argument(const std::string& message) { return report(error(Code::bad_argument, message)); }
+
+// No exception may reach a host: what the standard library throws becomes an error.
+template <class Call> wadi_result guarded(const char* function, Call call) {
+    try {
+        return call();
+    } catch (const std::bad_alloc&) {
+        return report(error(Code::out_of_memory, std::string(function) + ": out of memory"));
+    } catch (const std::exception& e) {
+        return report(error(Code::internal, std::string(function) + ": " + e.what()));
+    }
+}
+
+template <class Call> wadi_result with_world(const char* function, wadi_world_id id, Call call) {
+    return guarded(function, [&] {
+        HostedWorld* hosted = worlds().find(id);
+        if (hosted == nullptr) return bad_argument(std::string(function) + ": the world id is null or its world was destroyed");
+        return call(*hosted);
+    });
+}
+
+// A struct from a caller built against another version has another size: refuse rather than read past its end.
+template <class Struct> bool right_size(const Struct* s) { return s != nullptr && s->struct_size == sizeof(Struct); }
+
+template <class Struct> wadi_result wrong_struct(const char* function, const char* name) {
+    return bad_argument(std::string(function) + ": " + name + " is NULL or its struct_size is not " +
+                        std::to_string(sizeof(Struct)) + "; use wadi_default_...()");
+}
+
+template <class Struct> Struct sized() {
+    Struct s;
+    std::memset(&s, 0, sizeof s);
+    s.struct_size = sizeof s;
+    return s;
+}
+
+template <std::size_t N> void copy_text(char (&to)[N], const std::string& text) {
+    const std::size_t n = std::min(text.size(), N - 1);
+    std::memcpy(to, text.data(), n);
+    std::memset(to + n, 0, N - n);
+}
+
+/// A field's plan name in the engine; NULL for an unknown field.
+const char* plan_name(wadi_field field);
+
+} // namespace wadi::plugin

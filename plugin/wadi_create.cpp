@@ -1,0 +1,140 @@
+// Devices, and worlds made from levels or arrays.
+#include "engine/level/level.hpp"
+#include "plugin/abi.hpp"
+#include <cstdio>
+
+using namespace wadi;
+using namespace wadi::plugin;
+
+namespace {
+
+Result<std::unique_ptr<compute::Device>> open(const wadi_device_options* options) {
+    const auto defaults = wadi_default_device_options();
+    if (options == nullptr) options = &defaults;
+    compute::DeviceOptions o;
+    o.threads = options->threads;
+    o.validate = options->validate != 0;
+    if (options->log != nullptr) {
+        o.log = [log = options->log, user = options->log_user](int level, const std::string& message) {
+            log(user, level, message.c_str());
+        };
+    }
+    return compute::open_device(options->backend != nullptr ? options->backend : "auto", options->device, o);
+}
+
+LevelOverrides to_overrides(const wadi_level_overrides* o) {
+    LevelOverrides overrides;
+    if (o == nullptr) return overrides;
+    if (o->nx != 0 || o->ny != 0) overrides.size = {o->nx, o->ny};
+    if (o->dt != 0) overrides.dt = o->dt;
+    if (o->method != nullptr) overrides.method = o->method;
+    return overrides;
+}
+
+wadi_result host(Result<Level> level, const wadi_device_options* options, wadi_world_id* id) {
+    if (!level) return report(level.status());
+    auto device = open(options);
+    if (!device) return report(device.status());
+    auto world = World::create(level->settings, level->fields, std::move(*device));
+    if (!world) return report(world.status());
+    *id = plugin::worlds().add({std::move(*world), level->name, level->duration, level->warnings});
+    return report(ok_status());
+}
+
+} // namespace
+
+extern "C" {
+
+wadi_device_options wadi_default_device_options(void) {
+    auto o = sized<wadi_device_options>();
+    o.backend = "auto";
+    o.device = -1;
+    return o;
+}
+
+wadi_level_overrides wadi_default_level_overrides(void) { return sized<wadi_level_overrides>(); }
+wadi_world_arrays wadi_default_world_arrays(void) { return sized<wadi_world_arrays>(); }
+
+wadi_result wadi_list_devices(wadi_device_info* infos, uint32_t* count, char* notes, size_t notes_size) {
+    return guarded(__func__, [&] {
+        if (count == nullptr) return bad_argument("wadi_list_devices: count is NULL");
+        const uint32_t capacity = infos != nullptr ? *count : 0;
+        uint32_t found = 0;
+        std::string why_none;
+        for (const auto& backend : compute::backends()) {
+            std::string why;
+            const auto devices = backend.enumerate(why);
+            if (devices.empty()) why_none += std::string(backend.name) + ": " + why + "\n";
+            for (const auto& device : devices) {
+                if (found < capacity) {
+                    auto& info = infos[found];
+                    info = sized<wadi_device_info>();
+                    copy_text(info.backend, device.backend);
+                    copy_text(info.name, device.name);
+                    info.index = device.index;
+                    info.is_software =
+                        device.kind == compute::DeviceKind::cpu || device.kind == compute::DeviceKind::software_gpu;
+                    info.memory_bytes = device.memory_bytes;
+                }
+                ++found;
+            }
+        }
+        *count = found;
+        if (notes != nullptr && notes_size > 0) std::snprintf(notes, notes_size, "%s", why_none.c_str());
+        return report(ok_status());
+    });
+}
+
+wadi_result wadi_create_world_from_level(const char* path, const wadi_level_overrides* overrides,
+                                         const wadi_device_options* options, wadi_world_id* world) {
+    return guarded(__func__, [&] {
+        if (path == nullptr || world == nullptr) return bad_argument("wadi_create_world_from_level: path or world is NULL");
+        if (overrides != nullptr && !right_size(overrides))
+            return wrong_struct<wadi_level_overrides>("wadi_create_world_from_level", "overrides");
+        if (options != nullptr && !right_size(options))
+            return wrong_struct<wadi_device_options>("wadi_create_world_from_level", "options");
+        const bool json = std::string(path).ends_with(".json");
+        return host(json ? load_level(path, to_overrides(overrides)) : level_from_terrain(path, to_overrides(overrides)), options,
+                    world);
+    });
+}
+
+wadi_result wadi_create_world_from_arrays(const wadi_world_arrays* arrays, const wadi_device_options* options,
+                                          wadi_world_id* world) {
+    return guarded(__func__, [&] {
+        if (!right_size(arrays)) return wrong_struct<wadi_world_arrays>("wadi_create_world_from_arrays", "arrays");
+        if (options != nullptr && !right_size(options))
+            return wrong_struct<wadi_device_options>("wadi_create_world_from_arrays", "options");
+        if (arrays->settings_json == nullptr || world == nullptr)
+            return bad_argument("wadi_create_world_from_arrays: settings_json or world is NULL");
+        auto level = parse_level(arrays->settings_json, "", {});
+        if (!level) return report(level.status());
+        const auto& grid = level->settings.grid;
+        if (arrays->nx != grid.nx || arrays->ny != grid.ny) {
+            return bad_argument("wadi_create_world_from_arrays: arrays of " + std::to_string(arrays->nx) + " x " +
+                                std::to_string(arrays->ny) + " cells, but the settings' grid is " + std::to_string(grid.nx) +
+                                " x " + std::to_string(grid.ny));
+        }
+        const auto cells = static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny);
+        const auto copy = [&](std::vector<float>& to, const float* from) {
+            if (from != nullptr) to.assign(from, from + cells);
+        };
+        copy(level->fields.terrain, arrays->terrain);
+        copy(level->fields.sand, arrays->sand);
+        copy(level->fields.water, arrays->water);
+        copy(level->fields.velocity_x, arrays->velocity_x);
+        copy(level->fields.velocity_y, arrays->velocity_y);
+        level->warnings = level_warnings(level->settings, level->fields);
+        return host(std::move(level), options, world);
+    });
+}
+
+wadi_result wadi_destroy_world(wadi_world_id world) {
+    return guarded(__func__, [&] {
+        if (!plugin::worlds().remove(world))
+            return bad_argument("wadi_destroy_world: the world id is null or its world was destroyed");
+        return report(ok_status());
+    });
+}
+
+} // extern "C"

@@ -1,0 +1,78 @@
+// What a world is and what its stages cost.
+#include "plugin/abi.hpp"
+#include <cstdio>
+
+using namespace wadi;
+using namespace wadi::plugin;
+
+extern "C" {
+
+uint32_t wadi_get_abi_version(void) { return WADI_ABI_VERSION; }
+
+const char* wadi_get_last_error(void) { return last_error().c_str(); }
+
+wadi_world_info wadi_default_world_info(void) { return sized<wadi_world_info>(); }
+
+wadi_result wadi_world_get_info(wadi_world_id id, wadi_world_info* info) {
+    return with_world(__func__, id, [&](HostedWorld& hosted) {
+        if (!right_size(info)) return wrong_struct<wadi_world_info>("wadi_world_get_info", "info");
+        const auto& world = *hosted.world;
+        const auto& capabilities = world.device().capabilities();
+        *info = sized<wadi_world_info>();
+        copy_text(info->name, hosted.name);
+        info->nx = world.settings().grid.nx;
+        info->ny = world.settings().grid.ny;
+        info->dx = world.settings().grid.dx;
+        info->dt = world.settings().dt;
+        info->substeps = world.plan().substeps;
+        info->duration = hosted.duration;
+        info->passes_per_water_step = static_cast<uint32_t>(world.plan().water_passes.size());
+        info->passes_per_sand_substep = static_cast<uint32_t>(world.plan().substep_passes.size());
+        info->bytes_per_cell = world.plan().bytes_per_cell();
+        info->device_bytes = world.device_bytes();
+        copy_text(info->backend, capabilities.backend);
+        copy_text(info->device_name, capabilities.name + " (" + capabilities.driver + ")");
+        info->exact_float = capabilities.exact_float ? 1 : 0;
+        info->warning_count = static_cast<uint32_t>(hosted.warnings.size());
+        return report(ok_status());
+    });
+}
+
+const char* wadi_world_get_warning(wadi_world_id id, uint32_t n) {
+    const auto* hosted = plugin::worlds().find(id);
+    return hosted != nullptr && n < hosted->warnings.size() ? hosted->warnings[n].c_str() : nullptr;
+}
+
+size_t wadi_world_describe_plan(wadi_world_id id, char* text, size_t size) {
+    size_t length = 0;
+    with_world(__func__, id, [&](HostedWorld& hosted) {
+        const std::string plan = hosted.world->describe_plan();
+        length = plan.size();
+        if (text != nullptr && size > 0) std::snprintf(text, size, "%s", plan.c_str());
+        return report(ok_status());
+    });
+    return length;
+}
+
+wadi_result wadi_world_set_profiling(wadi_world_id id, int32_t on) {
+    return with_world(__func__, id, [&](HostedWorld& hosted) { return report(hosted.world->set_profiling(on != 0)); });
+}
+
+wadi_result wadi_world_get_stage_timings(wadi_world_id id, wadi_stage_timing* timings, uint32_t* count) {
+    return with_world(__func__, id, [&](HostedWorld& hosted) {
+        if (count == nullptr) return bad_argument("wadi_world_get_stage_timings: count is NULL");
+        auto times = hosted.world->stage_times();
+        if (!times) return report(times.status());
+        const uint32_t capacity = timings != nullptr ? *count : 0;
+        *count = static_cast<uint32_t>(times->size());
+        for (uint32_t n = 0; n < std::min(capacity, *count); ++n) {
+            const auto& time = (*times)[n];
+            copy_text(timings[n].name, time.stage);
+            timings[n].milliseconds = time.milliseconds;
+            timings[n].passes = static_cast<uint32_t>(time.passes);
+        }
+        return report(ok_status());
+    });
+}
+
+} // extern "C"
