@@ -16,7 +16,6 @@ struct FieldCheck {
     std::span<const float> got;
     std::span<const float> narrow;     // reference<float>
     std::span<const double> wide;      // reference<double>
-    std::vector<bool> skip;            // cells not compared; empty = none
     std::span<const double> unrounded; // reference<double> with the quantum off; empty = not needed
 };
 

@@ -60,7 +60,7 @@ std::string locate_against_reference(compute::Device& device, const Scene& scene
                 const auto low = reference_field(references.narrow, stage, name, true);
                 const auto high = reference_field(references.wide, stage, name, true);
                 const auto plain = reference_field(references.unrounded, stage, name, true);
-                const FieldCheck check{out.field, values_of(name.base, runner.params()), got, low, high, {}, plain};
+                const FieldCheck check{out.field, values_of(name.base, runner.params()), got, low, high, plain};
                 const Verdict verdict = compare_fields({check}, runner.layout(), static_cast<double>(runner.params().quantum));
                 if (verdict.outcome == Outcome::fail) return where(runner, step, n, verdict.detail);
             }

@@ -18,6 +18,7 @@ struct Options {
     std::vector<std::string> backends, required, layers;
     std::string stage, chosen_case, output = "console";
     bool validate = false;
+    int max_cells = 0; // of a case's grid; 0 = no limit
     PerfOptions perf;
 };
 
@@ -27,6 +28,12 @@ struct Job {
     const Layer* layer;
     CaseSpec spec;
 };
+
+// Cells of the grid that a case names; 0 where it names none.
+int cells_of(const CaseSpec& spec) {
+    int nx = 0, ny = 0;
+    return std::sscanf(spec.get("grid", "").c_str(), "%dx%d", &nx, &ny) == 2 ? nx * ny : 0;
+}
 
 // The cases that the options choose. A case with parameters need not be a listed one: any that its layer can make is run.
 Result<std::vector<Job>> choose(const Options& options) {
@@ -47,13 +54,14 @@ Result<std::vector<Job>> choose(const Options& options) {
         for (CaseSpec& spec : layer->list()) {
             if (!options.stage.empty() && spec.name != options.stage) continue;
             if (!wanted.name.empty() && spec.name != wanted.name) continue;
+            if (options.max_cells > 0 && cells_of(spec) > options.max_cells) continue;
             if (known && !wanted.parameters.empty()) continue;
             known = true;
             jobs.push_back({layer, wanted.parameters.empty() ? std::move(spec) : wanted});
         }
     }
     if (!known) return error(Code::bad_argument, "--case " + wanted.name + ": no such case; `conformance list` prints all");
-    if (jobs.empty()) return error(Code::bad_argument, "no case is left by --layer, --stage and --case");
+    if (jobs.empty()) return error(Code::bad_argument, "no case is left by --layer, --stage, --case and --max-cells");
     return jobs;
 }
 
@@ -186,12 +194,14 @@ int run(int argc, char** argv) {
         ->check(CLI::IsMember({"contract", "stage", "step", "invariant"}));
     app.add_option("--stage", options.stage, "only the cases of this stage");
     app.add_option("--case", options.chosen_case, "NAME, or NAME(key=value,...) as a failure prints it");
+    app.add_option("--max-cells", options.max_cells, "only cases whose grid has at most so many cells")
+        ->check(CLI::Range(1, 1 << 20));
     app.add_option("--output", options.output, "console or csv")->check(CLI::IsMember({"console", "csv"}));
     app.add_flag("--validate", options.validate, "validation layers on; any message fails its case");
     app.add_subcommand("test", "run the cases (the default)");
     CLI::App* perf = app.add_subcommand("perf", "time every stage and whole steps");
-    perf->add_option("--max-size", options.perf.max_size, "largest grid side, from 256 by doubling")
-        ->check(CLI::Range(256, 16384));
+    perf->add_option("--max-size", options.perf.max_size, "largest grid side, from 128 by doubling")
+        ->check(CLI::Range(128, 16384));
     perf->add_option("--repeats", options.perf.repeats, "runs per row")->check(CLI::Range(1, 10000));
     const CLI::App* list = app.add_subcommand("list", "print the cases and devices");
     const CLI::App* coverage = app.add_subcommand("coverage", "print which masks, grids, scenes and methods each stage meets");

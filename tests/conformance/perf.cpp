@@ -15,14 +15,19 @@ using compute::Device;
 using compute::ProgramBuilder;
 
 constexpr std::uint32_t ALL = 2047;
-constexpr int least_size = 256;
+constexpr int least_size = 128;
+constexpr double wake_up_ms = 700, warm_up_ms = 20;   // busy before the first row, and before each
+constexpr int burst = 4;                              // submissions in flight while the host is timed: below every backend's ring
 constexpr std::uint64_t least_copy_bytes = 64u << 20; // past the caches of most devices
 
 struct Row {
-    std::string name;
+    std::string name = {};
     int size = 0;
-    double bytes = 0, floor_bytes = 0; // of one run; the floor: whole steps only
-    std::vector<double> milliseconds;
+    double bytes = 0; // moved by one run
+    std::vector<double> milliseconds = {};
+    // Whole steps only.
+    double floor_bytes = 0, bytes_per_cell = 0, world_bytes = 0;
+    std::vector<double> host_microseconds = {}; // of submit()
 };
 
 double quantile(std::vector<double> values, double q) {
@@ -31,33 +36,57 @@ double quantile(std::vector<double> values, double q) {
     return values[std::min(values.size() - 1, static_cast<std::size_t>(q * static_cast<double>(values.size())))];
 }
 
-// Runs programs in turn; the time of each by the device's clock, or by the host's where the device has none.
+double since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+// Runs programs in turn; the time of each by the device's clock, or by the host's where the device has none. An idle device
+// lowers its clocks, so rows begin when it has been busy for a while.
 Result<std::vector<double>> time_programs(Device& device, const std::vector<compute::Program>& programs,
-                                          const std::vector<StepInput>& inputs, int repeats) {
+                                          const std::vector<StepInput>& inputs, int repeats, double busy_ms = warm_up_ms) {
     std::vector<double> milliseconds;
-    for (int n = -2; n < repeats; ++n) { // two to warm up
-        const auto turn = static_cast<std::size_t>(n + 2);
+    const auto begin = std::chrono::steady_clock::now();
+    for (std::size_t turn = 0; milliseconds.size() < static_cast<std::size_t>(repeats); ++turn) {
+        const bool warm = turn >= 2 && since(begin) >= busy_ms;
         const auto start = std::chrono::steady_clock::now();
         auto ticket = device.submit(programs[turn % programs.size()], inputs[turn % inputs.size()]);
         if (!ticket) return ticket.status();
         if (auto status = device.wait(*ticket); !status) return status;
-        double elapsed = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+        double elapsed = since(start);
         if (device.capabilities().timestamps) {
             auto times = device.timings(*ticket);
             if (!times) return times.status();
             elapsed = 0;
             for (const auto& time : *times) elapsed += time.milliseconds;
         }
-        if (n >= 0) milliseconds.push_back(elapsed);
+        if (warm || !milliseconds.empty()) milliseconds.push_back(elapsed);
     }
     return milliseconds;
 }
 
+// What submit() costs the calling thread, in bursts that never wait for the ring of submissions [us].
+Result<std::vector<double>> time_host(Device& device, const std::vector<compute::Program>& programs, const StepInput& input,
+                                      int repeats) {
+    std::vector<double> microseconds;
+    while (microseconds.size() < static_cast<std::size_t>(repeats)) {
+        compute::Ticket last;
+        for (int n = 0; n < burst; ++n) {
+            const auto start = std::chrono::steady_clock::now();
+            auto ticket = device.submit(programs[static_cast<std::size_t>(n) % programs.size()], input);
+            microseconds.push_back(1e3 * since(start));
+            if (!ticket) return ticket.status();
+            last = *ticket;
+        }
+        if (auto status = device.wait(last); !status) return status;
+    }
+    return microseconds;
+}
+
 Result<std::vector<double>> time_program(Device& device, const ProgramBuilder& builder, const WorldParams& params,
-                                         const StepInput& input, int repeats) {
+                                         const StepInput& input, int repeats, double busy_ms = warm_up_ms) {
     auto program = device.compile(builder, params);
     if (!program) return program.status();
-    auto times = time_programs(device, {*program}, {input}, repeats);
+    auto times = time_programs(device, {*program}, {input}, repeats, busy_ms);
     device.destroy_program(*program);
     return times;
 }
@@ -80,7 +109,7 @@ Result<double> measure_copy(Device& device, std::uint64_t bytes, int repeats) {
     builder.timestamp("start");
     builder.copy({*from, *to, 0, 0, bytes});
     builder.timestamp("copy");
-    auto times = time_program(device, builder, WorldParams{}, StepInput{}, repeats);
+    auto times = time_program(device, builder, WorldParams{}, StepInput{}, repeats, wake_up_ms);
     device.destroy_buffer(*from);
     device.destroy_buffer(*to);
     if (!times) return times.status();
@@ -143,9 +172,10 @@ Status measure_stages(Device& device, int size, const PerfOptions& options, std:
             if (auto status = runner.append(builder, pass); !status) return status;
             builder.timestamp(name);
             const bool wanted = options.stage.empty() || options.stage == name;
-            auto times = time_program(device, builder, runner.params(), inputs[0], wanted ? options.repeats : 1);
+            auto times =
+                time_program(device, builder, runner.params(), inputs[0], wanted ? options.repeats : 1, wanted ? warm_up_ms : 0);
             if (!times) return times.status();
-            if (wanted) rows.push_back({name, size, runner.bytes_of(pass), 0, *times});
+            if (wanted) rows.push_back({.name = name, .size = size, .bytes = runner.bytes_of(pass), .milliseconds = *times});
         }
     }
     return ok_status();
@@ -158,29 +188,36 @@ Status measure_step(Device& device, int size, const char* name, std::uint32_t ef
     if (!scene) return scene.status();
     PassRunner runner(device, *scene);
     if (auto status = runner.open(); !status) return status;
-    Row row{name, size, 0, 0, {}};
-    std::vector<compute::Program> programs;
+    Row row{.name = name, .size = size, .bytes_per_cell = runner.plan().bytes_per_cell()};
+    row.world_bytes = 4.0 * static_cast<double>(runner.layout().size()) * runner.plan().field_buffers();
+    std::vector<compute::Program> timed, plain; // a step for each parity, with timestamps and without
     Status status;
     for (int parity = 0; parity < 2 && status; ++parity) {
-        ProgramBuilder builder(name);
-        builder.timestamp("start");
+        ProgramBuilder with(name), without(name);
+        with.timestamp("start");
         for (const PlanPass* pass : runner.passes()) {
             if (parity == 0) row.bytes += runner.bytes_of(*pass);
-            if (status = runner.append(builder, *pass); !status) break;
+            if (status = runner.append(with, *pass); !status) break;
+            without.dispatch(std::get<compute::Dispatch>(with.ops().back()));
         }
-        builder.timestamp("step");
-        auto program = status ? device.compile(builder, runner.params()) : Result<compute::Program>(status);
-        status = program.status();
-        if (program) programs.push_back(*program);
+        with.timestamp("step");
+        for (auto* built : {&with, &without}) {
+            auto program = status ? device.compile(*built, runner.params()) : Result<compute::Program>(status);
+            status = program.status();
+            if (program) (built == &with ? timed : plain).push_back(*program);
+        }
     }
     const double cells = static_cast<double>(size) * size;
     for (const auto& field : runner.plan().fields)
         if (field.role == FieldRole::state) row.floor_bytes += cells * (field.name == "terrain" ? 4 : 8);
-    auto times = status ? time_programs(device, programs, inputs_of(*scene, options.repeats + 2), options.repeats)
-                        : Result<std::vector<double>>(status);
-    for (const compute::Program program : programs) device.destroy_program(program);
-    if (!times) return times.status();
+    const auto inputs = inputs_of(*scene, options.repeats + 2);
+    auto times = status ? time_programs(device, timed, inputs, options.repeats) : Result<std::vector<double>>(status);
+    auto host = times ? time_host(device, plain, inputs[0], 5 * options.repeats) : times;
+    for (const auto* programs : {&timed, &plain})
+        for (const compute::Program program : *programs) device.destroy_program(program);
+    if (!host) return host.status();
     row.milliseconds = *times;
+    row.host_microseconds = *host;
     rows.push_back(row);
     return ok_status();
 }
@@ -190,29 +227,37 @@ void print(const Session& session, const Device& device, const PerfOptions& opti
     const char* clock = device.capabilities().timestamps ? "device" : "host";
     const std::string label = session.target().label();
     if (options.csv && first)
-        std::printf("backend,device,driver,clock,row,size,repeats,median_ms,p95_ms,bytes,GB_per_s,share_of_ceiling,cells_per_s,"
-                    "floor_ms,ceiling_copy_GB_per_s,ceiling_stage_GB_per_s\n");
+        std::printf(
+            "backend,device,driver,clock,row,size,repeats,median_ms,p95_ms,bytes,GB_per_s,share_of_ceiling,cells_per_s,"
+            "floor_ms,bytes_per_cell,world_bytes,host_us_median,host_us_p95,ceiling_copy_GB_per_s,ceiling_stage_GB_per_s\n");
     if (!options.csv) {
         std::printf(
             "\n%s: %s (%s), %s clock, %d repeats\ncopy ceiling %.1f GB/s (Copy operation %.1f, stage publish_velocity %.1f)\n",
             label.c_str(), device.capabilities().name.c_str(), device.capabilities().driver.c_str(), clock, options.repeats,
             ceiling.best() * 1e-9, ceiling.copy * 1e-9, ceiling.stage * 1e-9);
-        std::printf("%-30s %6s %10s %10s %9s %7s %10s %9s\n", "row", "size", "median ms", "p95 ms", "GB/s", "share", "Mcells/s",
-                    "floor ms");
+        std::printf("%-30s %6s %10s %10s %9s %7s %10s %9s %7s %9s %9s %9s\n", "row", "size", "median ms", "p95 ms", "GB/s",
+                    "share", "Mcells/s", "floor ms", "B/cell", "world MiB", "host us", "host p95");
     }
     for (const Row& row : rows) {
         const double median = quantile(row.milliseconds, 0.5), p95 = quantile(row.milliseconds, 0.95);
         const double rate = row.bytes / (median * 1e-3), cells = static_cast<double>(row.size) * row.size / (median * 1e-3);
         const double floor_ms = row.floor_bytes / ceiling.best() * 1e3;
+        const bool step = row.floor_bytes > 0;
+        const double host = quantile(row.host_microseconds, 0.5), host_p95 = quantile(row.host_microseconds, 0.95);
         if (options.csv) {
-            std::printf("%s,%s,%s,%s,%s,%d,%zu,%.6f,%.6f,%.0f,%.3f,%.4f,%.0f,%.6f,%.3f,%.3f\n", label.c_str(),
+            std::printf("%s,%s,%s,%s,%s,%d,%zu,%.6f,%.6f,%.0f,%.3f,%.4f,%.0f,", label.c_str(),
                         csv_field(device.capabilities().name).c_str(), csv_field(device.capabilities().driver).c_str(), clock,
                         csv_field(row.name).c_str(), row.size, row.milliseconds.size(), median, p95, row.bytes, rate * 1e-9,
-                        rate / ceiling.best(), cells, floor_ms, ceiling.copy * 1e-9, ceiling.stage * 1e-9);
+                        rate / ceiling.best(), cells);
+            step ? std::printf("%.6f,%.1f,%.0f,%.2f,%.2f,", floor_ms, row.bytes_per_cell, row.world_bytes, host, host_p95)
+                 : std::printf(",,,,,");
+            std::printf("%.3f,%.3f\n", ceiling.copy * 1e-9, ceiling.stage * 1e-9);
         } else {
             std::printf("%-30s %6d %10.4f %10.4f %9.2f %6.0f%% %10.1f", row.name.c_str(), row.size, median, p95, rate * 1e-9,
                         100 * rate / ceiling.best(), cells * 1e-6);
-            row.floor_bytes > 0 ? std::printf(" %9.4f\n", floor_ms) : std::printf("\n");
+            step ? std::printf(" %9.4f %7.0f %9.1f %9.2f %9.2f\n", floor_ms, row.bytes_per_cell, row.world_bytes / 1048576, host,
+                               host_p95)
+                 : std::printf("\n");
         }
     }
     std::fflush(stdout);

@@ -138,7 +138,7 @@ Verdict check_published(const StageRun& run) {
                 exact[layout.index(i, j)] = published<double>(run, name, i, j);
             }
         }
-        FieldCheck check{name, {0, 0, layout.nx, layout.ny}, run.buffer(name.c_str()).floats(), narrow, exact, {}, {}};
+        FieldCheck check{name, {0, 0, layout.nx, layout.ny}, run.buffer(name.c_str()).floats(), narrow, exact, {}};
         verdict = worse(verdict, compare_fields({check}, layout, 0));
     }
     return verdict;

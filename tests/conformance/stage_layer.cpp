@@ -35,14 +35,13 @@ Verdict compare_with_reference(const StageRun& run) {
         FieldName name;
         std::vector<float> narrow;
         std::vector<double> wide;
-        std::vector<bool> skip;
         std::size_t binding;
     };
     std::map<std::string, std::vector<Output>> vectors;
     for (std::size_t b = 0; b < run.buffers.size(); ++b) {
         const auto& binding = run.stage.bindings[b];
         if (!run.buffers[b].exists || binding.access == Access::in || binding.type != compute::Scalar::f32) continue;
-        Output out{field_of(stage, std::string(binding.name), run.scene.effects), {}, {}, {}, b};
+        Output out{field_of(stage, std::string(binding.name), run.scene.effects), {}, {}, b};
         out.narrow = reference_field(narrow, stage, out.name, true);
         out.wide = reference_field(wide, stage, out.name, true);
         if (stage == "open_sides") {
@@ -60,7 +59,6 @@ Verdict compare_with_reference(const StageRun& run) {
                                   run.buffers[out.binding].floats(),
                                   out.narrow,
                                   out.wide,
-                                  out.skip,
                                   {}});
         const double quanta = truncates(stage) ? static_cast<double>(run.params.quantum) : 0.0;
         verdict = worse(verdict, compare_fields(components, layout, quanta));

@@ -100,7 +100,7 @@ Verdict against_reference_run(const Scene& scene, int steps, Session& session) {
         const auto low = reference_field(references.narrow, "", {field.name, false}, true);
         const auto high = reference_field(references.wide, "", {field.name, false}, true);
         const auto plain = reference_field(references.unrounded, "", {field.name, false}, true);
-        const FieldCheck check{field.name, values_of(field.name, range), *got, low, high, {}, plain};
+        const FieldCheck check{field.name, values_of(field.name, range), *got, low, high, plain};
         verdict = worse(verdict, compare_fields({check}, layout, height_quantum(scene.settings.method)));
     }
     if (verdict.outcome != Outcome::fail) return verdict;
