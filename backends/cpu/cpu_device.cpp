@@ -84,11 +84,17 @@ Result<compute::Buffer> CpuDevice::create_buffer(const compute::BufferDesc& desc
     memory.data = memory.block.get() + ((64 - address % 64) % 64) + stagger;
     memory.bytes = desc.bytes;
     memory.label = desc.label;
+    memory.host = desc.host != compute::HostAccess::none;
     allocated_ += desc.bytes;
     ++counters_.allocations;
     const compute::Buffer handle{next_buffer_++};
     buffers_.emplace(handle.id, std::move(memory));
     return handle;
+}
+
+std::span<std::byte> CpuDevice::mapped(compute::Buffer buffer) {
+    auto* memory = find(buffer);
+    return memory != nullptr && memory->host ? std::span(memory->data, memory->bytes) : std::span<std::byte>{};
 }
 
 void CpuDevice::destroy_buffer(compute::Buffer buffer) {
@@ -165,6 +171,8 @@ Result<compute::Program> CpuDevice::compile(const compute::ProgramBuilder& build
                 if (on && memory == nullptr)
                     return error(Code::bad_argument,
                                  "'" + d->label + "': the buffer of " + std::string(bindings[b].name) + " does not exist");
+                if (on && memory->host)
+                    return error(Code::bad_argument, "'" + d->label + "': " + compute::only_copies(memory->label));
                 step.buffers.push_back(on ? memory->data : nullptr);
                 step.sizes.push_back(on ? memory->bytes : 0);
             }
@@ -185,6 +193,8 @@ Result<compute::Program> CpuDevice::compile(const compute::ProgramBuilder& build
             auto* to = find(fill->buffer);
             if (to == nullptr)
                 return error(Code::bad_argument, "program '" + builder.label() + "': fill of a buffer that does not exist");
+            if (to->host)
+                return error(Code::bad_argument, "program '" + builder.label() + "': " + compute::only_copies(to->label));
             step.to = to->data;
             step.bytes = to->bytes / 4 * 4;
             step.word = fill->word;

@@ -21,6 +21,7 @@ class CpuDevice final : public compute::Device {
     const compute::Capabilities& capabilities() const override { return capabilities_; }
     compute::DeviceCounters counters() const override { return counters_; }
     Result<compute::Buffer> create_buffer(const compute::BufferDesc& desc) override;
+    std::span<std::byte> mapped(compute::Buffer buffer) override;
     void destroy_buffer(compute::Buffer buffer) override;
     Status write(compute::Buffer buffer, std::uint64_t offset, std::span<const std::byte> bytes) override;
     Status read(compute::Buffer buffer, std::uint64_t offset, std::span<std::byte> bytes) override;
@@ -39,6 +40,7 @@ class CpuDevice final : public compute::Device {
         std::byte* data = nullptr; // 64-byte aligned, staggered
         std::uint64_t bytes = 0;
         std::string label;
+        bool host = false; // for upload or readback
     };
     /// One operation, ready to run.
     struct Step {

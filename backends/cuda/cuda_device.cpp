@@ -35,6 +35,8 @@ class CudaDevice final : public compute::Device {
         return unless_lost<Result<compute::Buffer>>([&] { return buffers_.create(desc); });
     }
 
+    std::span<std::byte> mapped(compute::Buffer buffer) override { return buffers_.mapped(buffer); }
+
     void destroy_buffer(compute::Buffer buffer) override {
         if (buffers_.find(buffer) == nullptr) return;
         const CurrentContext current(*context_);

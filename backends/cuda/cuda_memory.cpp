@@ -1,4 +1,5 @@
 #include "backends/cuda/cuda_memory.hpp"
+#include <cstring>
 
 namespace wadi::cuda {
 namespace {
@@ -11,19 +12,24 @@ std::string free_text() {
 
 } // namespace
 
-Result<Memory> allocate(Context& c, std::uint64_t bytes, std::string label) {
+Result<Memory> allocate(Context& c, std::uint64_t bytes, std::string label, bool host) {
     void* data = nullptr;
-    Status s = c.check(cudaMalloc(&data, bytes), "cudaMalloc", label);
+    const cudaError_t made = host ? cudaHostAlloc(&data, bytes, cudaHostAllocDefault) : cudaMalloc(&data, bytes);
+    Status s = c.check(made, host ? "cudaHostAlloc" : "cudaMalloc", label);
     if (!s) {
         if (s.code == Code::out_of_memory) s.message += ", " + std::to_string(bytes) + " bytes asked for" + free_text();
         return s;
     }
     ++c.counters.allocations;
-    return Memory{static_cast<std::byte*>(data), bytes, std::move(label)};
+    return Memory{static_cast<std::byte*>(data), bytes, std::move(label), host};
 }
 
 void release(Context& c, Memory& memory) {
-    if (memory.data != nullptr) c.note(cudaFree(memory.data), "cudaFree", memory.label);
+    if (memory.data != nullptr && memory.host) {
+        c.note(cudaFreeHost(memory.data), "cudaFreeHost", memory.label);
+    } else if (memory.data != nullptr) {
+        c.note(cudaFree(memory.data), "cudaFree", memory.label);
+    }
     memory.data = nullptr;
 }
 
@@ -31,14 +37,14 @@ void release(Context& c, Memory& memory) {
 // with the GPU), hence the wait.
 Status copy_in(Context& c, const Memory& memory, std::uint64_t offset, std::span<const std::byte> bytes) {
     if (bytes.empty()) return ok_status();
-    const cudaError_t r = cudaMemcpyAsync(memory.data + offset, bytes.data(), bytes.size(), cudaMemcpyHostToDevice, c.stream);
+    const cudaError_t r = cudaMemcpyAsync(memory.data + offset, bytes.data(), bytes.size(), cudaMemcpyDefault, c.stream);
     if (Status s = c.check(r, "write", memory.label); !s) return s;
     return c.check(cudaStreamSynchronize(c.stream), "write", memory.label);
 }
 
 Status copy_out(Context& c, const Memory& memory, std::uint64_t offset, std::span<std::byte> bytes) {
     if (bytes.empty()) return ok_status();
-    const cudaError_t r = cudaMemcpyAsync(bytes.data(), memory.data + offset, bytes.size(), cudaMemcpyDeviceToHost, c.stream);
+    const cudaError_t r = cudaMemcpyAsync(bytes.data(), memory.data + offset, bytes.size(), cudaMemcpyDefault, c.stream);
     if (Status s = c.check(r, "read", memory.label); !s) return s;
     return c.check(cudaStreamSynchronize(c.stream), "read", memory.label);
 }
@@ -59,10 +65,12 @@ Result<compute::Buffer> Buffers::create(const compute::BufferDesc& desc) {
     }
     buffers_.reserve(buffers_.size() + 1); // so that nothing can fail once the memory exists
     auto owner = std::make_unique<Memory>();
-    auto memory = allocate(c_, desc.bytes, desc.label);
+    auto memory = allocate(c_, desc.bytes, desc.label, desc.host != compute::HostAccess::none);
     if (!memory) return memory.status();
     *owner = std::move(*memory);
-    if (Status s = c_.check(cudaMemsetAsync(owner->data, 0, owner->bytes, c_.stream), "cudaMemsetAsync", owner->label); !s) {
+    if (owner->host) {
+        std::memset(owner->data, 0, owner->bytes);
+    } else if (Status s = c_.check(cudaMemsetAsync(owner->data, 0, owner->bytes, c_.stream), "cudaMemsetAsync", owner->label); !s) {
         release(c_, *owner);
         return s;
     }
@@ -79,6 +87,11 @@ void Buffers::destroy(compute::Buffer buffer) {
 
 const Memory* Buffers::find(compute::Buffer buffer) const {
     return buffer.id == 0 || buffer.id > buffers_.size() ? nullptr : buffers_[buffer.id - 1].get();
+}
+
+std::span<std::byte> Buffers::mapped(compute::Buffer buffer) const {
+    const Memory* memory = find(buffer);
+    return memory != nullptr && memory->host ? std::span(memory->data, memory->bytes) : std::span<std::byte>{};
 }
 
 Result<const Memory*> Buffers::find_range(compute::Buffer buffer, std::uint64_t offset, std::uint64_t bytes,

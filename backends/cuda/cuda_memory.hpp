@@ -8,13 +8,14 @@
 namespace wadi::cuda {
 
 struct Memory {
-    std::byte* data = nullptr; // device address
+    std::byte* data = nullptr; // device address; of page-locked host memory the one address that both use
     std::uint64_t bytes = 0;
     std::string label;
+    bool host = false; // page-locked host memory
 };
 
 /// Contents are undefined. Errors: out_of_memory with the label and what is free.
-Result<Memory> allocate(Context& context, std::uint64_t bytes, std::string label);
+Result<Memory> allocate(Context& context, std::uint64_t bytes, std::string label, bool host = false);
 void release(Context& context, Memory& memory);
 /// Ordered after everything submitted before; they wait until the copy is done.
 Status copy_in(Context& context, const Memory& memory, std::uint64_t offset, std::span<const std::byte> bytes);
@@ -32,6 +33,9 @@ class Buffers {
     void destroy(compute::Buffer buffer);
     /// Null for a handle that is not alive.
     const Memory* find(compute::Buffer buffer) const;
+
+    /// Empty unless made for the host.
+    std::span<std::byte> mapped(compute::Buffer buffer) const;
 
     Status write(compute::Buffer buffer, std::uint64_t offset, std::span<const std::byte> bytes);
     Status read(compute::Buffer buffer, std::uint64_t offset, std::span<std::byte> bytes);

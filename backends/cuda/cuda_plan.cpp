@@ -76,6 +76,7 @@ class Planner {
                             "no buffer has the handle " + std::to_string(d.slots[slot].id) + " of binding " +
                                 std::string(binding.name));
             }
+            if (on && memory->host) return fail(Code::bad_argument, where, compute::only_copies(memory->label));
             call.slots.push_back(on ? memory->data : nullptr);
         }
         if (call.slots.empty()) call.slots.push_back(nullptr); // the kernel's struct of slots holds at least one
@@ -117,6 +118,7 @@ class Planner {
         const Memory* memory = buffers_.find(fill.buffer);
         if (memory == nullptr)
             return fail(Code::bad_argument, "fill", "no buffer has the handle " + std::to_string(fill.buffer.id));
+        if (memory->host) return fail(Code::bad_argument, "fill", compute::only_copies(memory->label));
         if (memory->bytes < 4) return Call(NoCall{});
         return Call(FillCall{memory->data, memory->bytes / 4, fill.word});
     }

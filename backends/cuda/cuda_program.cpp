@@ -96,7 +96,7 @@ Status CompiledProgram::add_node(cudaGraphNode_t& node, cudaGraph_t graph, const
     }
     if (const auto* copy = std::get_if<CopyCall>(&call)) {
         const cudaError_t r = cudaGraphAddMemcpyNode1D(&node, graph, after.data(), after.size(), copy->to, copy->from,
-                                                       copy->bytes, cudaMemcpyDeviceToDevice);
+                                                       copy->bytes, cudaMemcpyDefault);
         return c_.check(r, "cudaGraphAddMemcpyNode1D", label_);
     }
     if (const auto* fill = std::get_if<FillCall>(&call)) {
@@ -135,7 +135,7 @@ Status CompiledProgram::run(Call& call, std::size_t slot) {
         return c_.check(r, "cudaLaunchKernel", label_);
     }
     if (const auto* copy = std::get_if<CopyCall>(&call)) {
-        const cudaError_t r = cudaMemcpyAsync(copy->to, copy->from, copy->bytes, cudaMemcpyDeviceToDevice, c_.stream);
+        const cudaError_t r = cudaMemcpyAsync(copy->to, copy->from, copy->bytes, cudaMemcpyDefault, c_.stream);
         return c_.check(r, "cudaMemcpyAsync", label_);
     }
     if (const auto* fill = std::get_if<FillCall>(&call)) {

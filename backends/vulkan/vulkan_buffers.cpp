@@ -1,4 +1,5 @@
 #include "backends/vulkan/vulkan_buffers.hpp"
+#include <cstring>
 
 namespace wadi::vulkan {
 
@@ -25,10 +26,14 @@ Result<compute::Buffer> Buffers::create(const compute::BufferDesc& desc) {
     }
     buffers_.reserve(buffers_.size() + 1); // so that nothing can fail once the buffer exists
     auto owner = std::make_unique<Memory>();
-    auto memory = allocate(c_, desc.bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, Place::device, desc.label);
+    const bool host = desc.host != compute::HostAccess::none;
+    auto memory = allocate(c_, desc.bytes, host ? 0u : VkBufferUsageFlags{VK_BUFFER_USAGE_STORAGE_BUFFER_BIT},
+                           host ? Place::host : Place::device, desc.label);
     if (!memory) return memory.status();
     *owner = std::move(*memory);
-    if (Status s = transfers_.zero(*owner); !s) {
+    if (host) {
+        std::memset(owner->mapped, 0, owner->bytes);
+    } else if (Status s = transfers_.zero(*owner); !s) {
         release(c_, *owner);
         return s;
     }
@@ -45,6 +50,12 @@ void Buffers::destroy(compute::Buffer buffer) {
 
 const Memory* Buffers::find(compute::Buffer buffer) const {
     return buffer.id == 0 || buffer.id > buffers_.size() ? nullptr : buffers_[buffer.id - 1].get();
+}
+
+std::span<std::byte> Buffers::mapped(compute::Buffer buffer) const {
+    const Memory* memory = find(buffer);
+    if (memory == nullptr || memory->mapped == nullptr) return {};
+    return {static_cast<std::byte*>(memory->mapped), memory->bytes};
 }
 
 Result<const Memory*> Buffers::find_range(compute::Buffer buffer, std::uint64_t offset, std::uint64_t bytes,

@@ -22,6 +22,9 @@ class Buffers {
     /// Bound where a condition is off; 4 KiB that no stage touches.
     const Memory& null_buffer() const { return null_; }
 
+    /// Empty unless made for the host.
+    std::span<std::byte> mapped(compute::Buffer buffer) const;
+
     Status write(compute::Buffer buffer, std::uint64_t offset, std::span<const std::byte> bytes);
     Status read(compute::Buffer buffer, std::uint64_t offset, std::span<std::byte> bytes);
 

@@ -42,6 +42,8 @@ class VulkanDevice final : public compute::Device {
         return unless_lost<Result<compute::Buffer>>([&] { return buffers_.create(desc); });
     }
 
+    std::span<std::byte> mapped(compute::Buffer buffer) override { return buffers_.mapped(buffer); }
+
     void destroy_buffer(compute::Buffer buffer) override {
         if (buffer.id == 0) return;
         context_->wait_idle();

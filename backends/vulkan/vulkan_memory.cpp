@@ -41,10 +41,11 @@ VkPipelineStageFlags stages(Kinds kinds) {
     VkPipelineStageFlags flags = 0;
     if (kinds.compute) flags |= VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
     if (kinds.transfer) flags |= VK_PIPELINE_STAGE_TRANSFER_BIT;
+    if (kinds.host) flags |= VK_PIPELINE_STAGE_HOST_BIT;
     return flags;
 }
 
-constexpr Kinds everything{true, true};
+constexpr Kinds everything{.compute = true, .transfer = true};
 
 // Of one copy through the staging buffer.
 constexpr std::uint64_t chunk_bytes = 8u << 20;
@@ -80,6 +81,7 @@ void record_barrier(const Context& c, VkCommandBuffer commands, Kinds before, Ki
     if (after.compute)
         barrier.dstAccessMask |= VK_ACCESS_UNIFORM_READ_BIT | VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
     if (after.transfer) barrier.dstAccessMask |= VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
+    if (after.host) barrier.dstAccessMask |= VK_ACCESS_HOST_READ_BIT;
     c.vk.vkCmdPipelineBarrier(commands, stages(before), stages(after), 0, 1, &barrier, 0, nullptr, 0, nullptr);
 }
 
@@ -167,11 +169,7 @@ Status Transfers::read(const Memory& from, std::uint64_t offset, std::span<std::
         if (!commands) return commands.status();
         const VkBufferCopy region{offset + done, 0, part.size()};
         c_.vk.vkCmdCopyBuffer(*commands, from.buffer, staging_.buffer, 1, &region);
-        auto barrier = vk_struct<VkMemoryBarrier>(VK_STRUCTURE_TYPE_MEMORY_BARRIER);
-        barrier.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
-        barrier.dstAccessMask = VK_ACCESS_HOST_READ_BIT;
-        c_.vk.vkCmdPipelineBarrier(*commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &barrier, 0,
-                                   nullptr, 0, nullptr);
+        record_barrier(c_, *commands, {.transfer = true}, {.host = true});
         if (Status s = once_.submit(); !s) return s;
         if (Status s = once_.wait(); !s) return s;
         const std::byte* staged = static_cast<const std::byte*>(staging_.mapped);

@@ -25,7 +25,8 @@ class Planner {
         Kinds before;
         for (std::size_t n = 0; n < ops.size(); ++n) {
             if (c_.options.full_barriers) {
-                plan_.commands.emplace_back(BarrierCommand{{true, true}, {true, true}});
+                constexpr Kinds all{.compute = true, .transfer = true};
+                plan_.commands.emplace_back(BarrierCommand{all, all});
             } else if (planned[n]) {
                 plan_.commands.emplace_back(BarrierCommand{before, kinds_until_barrier(ops, planned, n)});
             }
@@ -33,6 +34,7 @@ class Planner {
             before = {before.compute || kinds.compute, before.transfer || kinds.transfer};
             if (Status s = std::visit([&](const auto& op) { return add(op); }, ops[n]); !s) return s;
         }
+        if (host_reads_) plan_.commands.emplace_back(BarrierCommand{{.transfer = true}, {.host = true}});
         return ok_status();
     }
 
@@ -74,6 +76,8 @@ class Planner {
                             "no buffer has the handle " + std::to_string(d.slots[slot].id) + " of binding " +
                                 std::string(info.bindings[slot].name));
             }
+            if (!p_.buffers.mapped(d.slots[slot]).empty())
+                return fail(Code::bad_argument, where, compute::only_copies(p_.buffers.find(d.slots[slot])->label));
         }
         return ok_status();
     }
@@ -172,6 +176,7 @@ class Planner {
         }
         if (copy.bytes > 0) {
             plan_.commands.emplace_back(CopyCommand{from->buffer, to->buffer, {copy.from_offset, copy.to_offset, copy.bytes}});
+            host_reads_ |= to->mapped != nullptr;
         }
         return ok_status();
     }
@@ -180,6 +185,7 @@ class Planner {
         const Memory* memory = p_.buffers.find(fill.buffer);
         if (memory == nullptr)
             return fail(Code::bad_argument, "fill", "no buffer has the handle " + std::to_string(fill.buffer.id));
+        if (memory->mapped != nullptr) return fail(Code::bad_argument, "fill", compute::only_copies(memory->label));
         plan_.commands.emplace_back(FillCommand{memory->buffer, fill.word});
         return ok_status();
     }
@@ -196,6 +202,7 @@ class Planner {
     Plan& plan_;
     std::map<SetKey, VkDescriptorSet> sets_;
     std::uint32_t timestamps_ = 0;
+    bool host_reads_ = false; // a copy goes to mapped memory
 };
 
 } // namespace

@@ -56,10 +56,10 @@ Status Submissions::record_input(const Slot& slot, const StepInput& input) {
     auto info = vk_struct<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
     info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
     if (Status s = c_.check(c_.vk.vkBeginCommandBuffer(slot.input, &info), "vkBeginCommandBuffer"); !s) return s;
-    const Kinds all{true, true};
+    const Kinds all{.compute = true, .transfer = true};
     record_barrier(c_, slot.input, all, all);
     c_.vk.vkCmdUpdateBuffer(slot.input, input_.buffer, 0, sizeof(input), &input);
-    record_barrier(c_, slot.input, {false, true}, {true, false});
+    record_barrier(c_, slot.input, {.transfer = true}, {.compute = true});
     return c_.check(c_.vk.vkEndCommandBuffer(slot.input), "vkEndCommandBuffer");
 }
 

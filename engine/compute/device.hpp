@@ -41,9 +41,13 @@ struct DeviceOptions {
 /// Reads WADI_VALIDATE, WADI_FULL_BARRIERS and WADI_NO_REPLAY into options that the caller left off.
 void apply_environment(DeviceOptions& options);
 
+/// Memory that the host reads or writes in place.
+enum class HostAccess : std::uint8_t { none, upload, readback };
+
 struct BufferDesc {
     std::uint64_t bytes = 0;
     std::string label; // for errors
+    HostAccess host = HostAccess::none;
 };
 
 /// Threads per group along i and j (GPU backends; the CPU ignores it). 0 = the backend's choice for the stage.
@@ -82,6 +86,11 @@ class Device {
 
     /// A linear buffer, filled with zeros. Errors: bad_argument (0 bytes, or above largest_buffer_bytes), out_of_memory.
     virtual Result<Buffer> create_buffer(const BufferDesc& desc) = 0;
+    /// Where the host reads or writes a buffer made for upload or readback; empty for other buffers. Valid until the buffer or the
+    /// device is destroyed. What the host wrote before submit() is what that submission copies from; what a submission copied
+    /// here may be read once its ticket has finished. Such buffers take part in copies only: compile() refuses them in
+    /// dispatches and fills.
+    virtual std::span<std::byte> mapped(Buffer buffer) = 0;
     /// Frees a buffer; programs that use it must not be submitted again. Null is ignored. Waits for work in flight.
     virtual void destroy_buffer(Buffer buffer) = 0;
     /// Copies host bytes into a buffer, ordered after all earlier and before all later submissions. May wait.

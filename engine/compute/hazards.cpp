@@ -124,4 +124,8 @@ Status validate(const ProgramBuilder& builder) {
     return ok_status();
 }
 
+std::string only_copies(const std::string& label) {
+    return "buffer '" + label + "' is the host's memory, which only copies may use";
+}
+
 } // namespace wadi::compute

@@ -2,6 +2,7 @@
 #pragma once
 #include "engine/compute/program.hpp"
 #include "engine/compute/status.hpp"
+#include <string>
 #include <vector>
 
 namespace wadi::compute {
@@ -28,5 +29,8 @@ std::vector<std::vector<int>> plan_dependencies(const std::vector<Op>& ops);
 /// Rejects a program that no backend may run: wrong slot counts, null where a buffer must be, one buffer bound
 /// twice in a dispatch with a write among them. The message names the operation's label and the binding.
 Status validate(const ProgramBuilder& builder);
+
+/// Why compile() refuses a dispatch or fill of a buffer made for upload or readback.
+std::string only_copies(const std::string& label);
 
 } // namespace wadi::compute

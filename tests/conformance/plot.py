@@ -10,7 +10,7 @@ import perf_table
 
 COLOURS = ["#0b6fa4", "#c8501e", "#3a8a3a", "#7a4fa3", "#a38a1e", "#555555"]
 STEPS = [("step, all effects", ""), ("step, dry sand", "6 3"), ("step, water only", "2 3")]
-WIDTH, HEIGHT, LEFT, TOP = 440, 340, 62, 46
+WIDTH, HEIGHT, LEFT, TOP = 440, 340, 76, 46
 
 
 class Panel:

@@ -20,6 +20,7 @@ class BorrowedDevice final : public compute::Device {
         if (made) buffers_.insert(made->id);
         return made;
     }
+    std::span<std::byte> mapped(compute::Buffer buffer) override { return device_.mapped(buffer); }
     void destroy_buffer(compute::Buffer buffer) override {
         buffers_.erase(buffer.id);
         device_.destroy_buffer(buffer);
