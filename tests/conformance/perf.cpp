@@ -45,9 +45,19 @@ double since(std::chrono::steady_clock::time_point start) {
 Result<std::vector<double>> time_programs(Device& device, const std::vector<compute::Program>& programs,
                                           const std::vector<StepInput>& inputs, int repeats, double busy_ms = warm_up_ms) {
     std::vector<double> milliseconds;
-    const auto begin = std::chrono::steady_clock::now();
-    for (std::size_t turn = 0; milliseconds.size() < static_cast<std::size_t>(repeats); ++turn) {
-        const bool warm = turn >= 2 && since(begin) >= busy_ms;
+    std::size_t turn = 0;
+    for (const auto begin = std::chrono::steady_clock::now(); turn < 2 || since(begin) < busy_ms;) {
+        Status status;
+        compute::Ticket last;
+        for (int n = 0; n < burst && status; ++n, ++turn) {
+            auto ticket = device.submit(programs[turn % programs.size()], inputs[turn % inputs.size()]);
+            status = ticket ? ok_status() : ticket.status();
+            if (ticket) last = *ticket;
+        }
+        if (status) status = device.wait(last);
+        if (!status) return status;
+    }
+    for (int n = 0; n < repeats; ++n, ++turn) {
         const auto start = std::chrono::steady_clock::now();
         auto ticket = device.submit(programs[turn % programs.size()], inputs[turn % inputs.size()]);
         if (!ticket) return ticket.status();
@@ -59,7 +69,7 @@ Result<std::vector<double>> time_programs(Device& device, const std::vector<comp
             elapsed = 0;
             for (const auto& time : *times) elapsed += time.milliseconds;
         }
-        if (warm || !milliseconds.empty()) milliseconds.push_back(elapsed);
+        milliseconds.push_back(elapsed);
     }
     return milliseconds;
 }
