@@ -16,7 +16,7 @@ using compute::ProgramBuilder;
 
 constexpr std::uint32_t ALL = 2047;
 constexpr int least_size = 128;
-constexpr double wake_up_ms = 700, warm_up_ms = 20;   // busy before the first row, and before each
+constexpr double wake_up_ms = 700, warm_up_ms = 150;  // busy ahead of the first row, and of each
 constexpr int burst = 4;                              // submissions in flight while the host is timed: below every backend's ring
 constexpr std::uint64_t least_copy_bytes = 64u << 20; // past the caches of most devices
 
