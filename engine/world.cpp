@@ -34,6 +34,23 @@ Result<WorldStats> World::stats() {
     return status ? reader_.stats() : Result<WorldStats>(status);
 }
 
+Result<std::uint64_t> World::hash() {
+    auto status = finish_step();
+    return status ? reader_.hash() : Result<std::uint64_t>(status);
+}
+
+Status World::at_boundary() { return snapshots_.at_boundary(); }
+
+Status World::save(std::span<std::byte> to) {
+    auto status = finish_step();
+    return status ? snapshots_.save(to) : status;
+}
+
+Status World::load(std::span<const std::byte> from) {
+    auto status = snapshots_.load(from);
+    return status ? at_boundary() : status;
+}
+
 Result<std::vector<float>> World::read_raw(const std::string& field) {
     auto status = finish_step();
     return status ? reader_.read_raw(field) : Result<std::vector<float>>(status);

@@ -131,9 +131,8 @@ wadi_result wadi_create_world_from_arrays(const wadi_world_arrays* arrays, const
 
 wadi_result wadi_destroy_world(wadi_world_id world) {
     return guarded(__func__, [&] {
-        if (!plugin::worlds().remove(world))
-            return bad_argument("wadi_destroy_world: the world id is null or its world was destroyed");
-        return report(ok_status());
+        const Entry entry = plugin::worlds().remove(world);
+        return entry == Entry::entered ? report(ok_status()) : refused("wadi_destroy_world", entry);
     });
 }
 

@@ -4,7 +4,8 @@
  * column 0 the west side (x = 0); heights point up.
  * A struct that the caller fills begins with struct_size: call its wadi_default_*() function, then change what you need.
  * Every function that can fail returns a wadi_result; wadi_get_last_error() then has one line of text for this thread.
- * No function aborts, throws or prints. A world is used by one thread at a time; different worlds are independent.
+ * No function aborts, throws or prints. A world is used by one thread at a time: a call that meets another one inside the same
+ * world does nothing and returns WADI_ERROR_BUSY. Different worlds are independent.
  */
 #ifndef WADI_H
 #define WADI_H
@@ -39,7 +40,9 @@ typedef enum wadi_result {
     WADI_ERROR_NOT_SUPPORTED = 4, /* this build or device cannot do it */
     WADI_ERROR_OUT_OF_MEMORY = 5,
     WADI_ERROR_DEVICE_LOST = 6,   /* sticky for the world; destroy it and create another */
-    WADI_ERROR_INTERNAL = 7       /* our bug: please report the message */
+    WADI_ERROR_INTERNAL = 7,      /* our bug: please report the message */
+    WADI_NOT_READY = 8,           /* not an error: ask again later */
+    WADI_ERROR_BUSY = 9           /* another thread is inside a call on this world; nothing was done */
 } wadi_result;
 
 /** One line about the last error on this thread; never NULL, valid until the next call on this thread. */
@@ -204,6 +207,61 @@ typedef struct wadi_stage_timing {
 } wadi_stage_timing;
 /** Mean times since profiling was switched on. *count: capacity in, stages out; timings may be NULL to ask the number. */
 WADI_API wadi_result wadi_world_get_stage_timings(wadi_world_id world, wadi_stage_timing* timings, uint32_t* count);
+
+/* ---- Snapshots ---- */
+
+/** Saves the state to memory, to the bit: fields, ledgers and running totals, not the level itself. *size: bytes at `data` in,
+ *  bytes of the snapshot out; data may be NULL to ask the number, which waits for nothing. Waits for the steps asked for.
+ *  Errors: BAD_ARGUMENT (size NULL or too small), DEVICE_LOST. */
+WADI_API wadi_result wadi_world_save(wadi_world_id world, void* data, size_t* size);
+/** Goes to a saved state: the world continues as the saved one would have, in every bit, on any backend that passes the
+ *  exact-float test. The snapshot must be of a world of the same level settings (grid, dt, material, method, sides, sources, rain);
+ *  initial fields may differ, and effects that only this world has start from zero. Waits for the device.
+ *  Errors, all leaving the world unchanged: BAD_FILE (no snapshot, a newer version, truncated, changed), BAD_ARGUMENT (of another
+ *  level, or with effects that this world lacks), DEVICE_LOST. */
+WADI_API wadi_result wadi_world_load(wadi_world_id world, const void* data, size_t size);
+/** wadi_world_save to a file, written as path + ".part" and renamed when it is whole. Errors: NOT_FOUND (the folder cannot be
+ *  written to), BAD_FILE (writing failed). */
+WADI_API wadi_result wadi_world_save_file(wadi_world_id world, const char* path);
+/** wadi_world_load from a file. Errors: NOT_FOUND, and those of wadi_world_load. */
+WADI_API wadi_result wadi_world_load_file(wadi_world_id world, const char* path);
+
+/** Asks for a snapshot of the state after the steps asked for so far, or, in the middle of a step that runs in parts, after that
+ *  step. Returns at once: the device copies the state aside. The first call allocates room for it. A snapshot asked for earlier
+ *  that nobody has begun to fetch is forgotten. NOT_READY: the device or a worker is still at an earlier one. */
+WADI_API wadi_result wadi_world_begin_save(wadi_world_id world, uint64_t* ticket);
+/** Fetches it: NOT_READY until the snapshot lies in `data`, then OK, once. Never waits: a worker thread fills `data`, so from the
+ *  first call on that memory must stay where it is, and the same pointer must be passed, until a call returns something else than
+ *  NOT_READY or the world is destroyed. *size as in wadi_world_save; data may be NULL to ask the number.
+ *  Errors: BAD_ARGUMENT (another ticket, another data, size NULL or too small), DEVICE_LOST. */
+WADI_API wadi_result wadi_world_end_save(wadi_world_id world, uint64_t ticket, void* data, size_t* size);
+
+/** 64-bit hash of the state, ghosts and terrain excluded: wadi_world_stats.hash without the rest. Equal states have equal hashes on
+ *  every backend that passes the exact-float test. Waits for the steps asked for and reads the whole state. */
+WADI_API wadi_result wadi_world_get_hash(wadi_world_id world, uint64_t* hash);
+
+/* ---- Introspection ---- */
+
+typedef struct wadi_memory_item {
+    char label[64];               /* the field, or what the buffer is for */
+    uint64_t bytes;
+} wadi_memory_item;
+/** Every buffer the world holds on its device, those for the host to read included; they add up to wadi_world_info.device_bytes.
+ *  *count: capacity in, buffers out; items may be NULL to ask the number. Does not wait. */
+WADI_API wadi_result wadi_world_get_memory(wadi_world_id world, wadi_memory_item* items, uint32_t* count);
+
+typedef struct wadi_effect_info {
+    char name[32];                /* as level files write it */
+    int32_t on;                   /* 1 = its passes run and its fields exist */
+    char why[160];                /* one sentence: why it is on or off */
+} wadi_effect_info;
+/** The effects and why each is on or off. *count: capacity in, effects out; effects may be NULL to ask the number. Does not
+ *  wait. */
+WADI_API wadi_result wadi_world_get_effects(wadi_world_id world, wadi_effect_info* effects, uint32_t* count);
+
+/** OK, or what broke the world for good (DEVICE_LOST) with wadi_get_last_error() saying how. Does not wait: a fault that the
+ *  device has not reported yet is not known. */
+WADI_API wadi_result wadi_world_get_error(wadi_world_id world);
 
 #ifdef __cplusplus
 }
