@@ -1,5 +1,6 @@
 // A world: its state on a device, and the parts that step it and answer for it. Each part has a file of its own.
 #pragma once
+#include "engine/edits.hpp"
 #include "engine/snapshots.hpp"
 #include "engine/state_reader.hpp"
 #include "engine/stepper.hpp"
@@ -34,6 +35,10 @@ class World {
     Status load(std::span<const std::byte> from);
     Snapshots& snapshots() { return snapshots_; }
 
+    /// Checks edits and queues them for their steps (edits.hpp). Errors: bad_argument, nothing queued.
+    Status edit(std::span<const Edit> edits);
+    Edits& edits() { return edits_; }
+
     Status set_profiling(bool on) { return stepper_.set_profiling(on); }
     /// Mean over the steps since profiling was switched on.
     Result<std::vector<StageTime>> stage_times() { return stepper_.stage_times(); }
@@ -53,6 +58,7 @@ class World {
   private:
     World(const Settings& settings, std::unique_ptr<compute::Device> device, compute::GroupSize group)
         : state_(settings, std::move(device), group) {
+        stepper_.set_before_step([this] { return edits_.before_step(); });
         stepper_.set_after_step([this] { return at_boundary(); });
     }
     /// Brings the world to a boundary between two steps.
@@ -64,6 +70,7 @@ class World {
     Stepper stepper_{state_};
     StateReader reader_{state_};
     Snapshots snapshots_{state_, stepper_};
+    Edits edits_{state_, stepper_};
 };
 
 } // namespace wadi
