@@ -45,6 +45,7 @@ Status World::restore(const Snapshot& snapshot) {
     }
     state_.steps = snapshot.steps;
     stepper_.inputs().set_totals(snapshot.totals);
+    frames_.went_back();
     return ok_status();
 }
 

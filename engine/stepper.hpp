@@ -26,6 +26,8 @@ class Stepper {
     int parts() const;
     /// Parts of the present step already submitted; 0 between two steps.
     int parts_done() const { return parts_done_; }
+    /// Of the newest submission; null before the first.
+    compute::Ticket ticket() const { return ticket_; }
 
     Status set_profiling(bool on);
     /// Mean over the steps since profiling was switched on; steps in parts are not timed.
@@ -46,6 +48,7 @@ class Stepper {
     std::array<compute::Program, 2> programs_{}, timed_programs_{};
     std::array<std::vector<compute::Program>, 2> part_programs_;
     int parts_done_ = 0;
+    compute::Ticket ticket_;
     StepInput input_{}; // of the step whose parts are being submitted
     bool profiling_ = false;
     std::vector<compute::Ticket> pending_timings_;

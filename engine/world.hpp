@@ -1,5 +1,6 @@
 // A world: its state on a device, and the parts that step it and answer for it. Each part has a file of its own.
 #pragma once
+#include "engine/frame_driver.hpp"
 #include "engine/state_reader.hpp"
 #include "engine/stepper.hpp"
 
@@ -21,8 +22,12 @@ class World {
     static Result<std::unique_ptr<World>> create(const Settings& settings, const InitialFields& fields,
                                                  std::unique_ptr<compute::Device> device, compute::GroupSize group = {});
 
-    /// Submits water steps; returns before the device has finished them.
+    /// Submits water steps beside the clock of update(); returns before the device has finished them. A step that an update began
+    /// in parts is finished first and counts as that update's.
     Status step(std::uint32_t count);
+    /// Submits the water steps that fall due after `nanoseconds` more of host time; returns at once.
+    Status update(std::uint64_t nanoseconds, Frame& frame);
+    Status set_update_settings(const UpdateSettings& settings) { return frames_.set(settings); }
     std::uint64_t steps() const { return state_.steps; }
     double time() const { return static_cast<double>(state_.steps) * settings().dt; }
 
@@ -57,6 +62,7 @@ class World {
 
     WorldState state_; // first: the parts refer to it
     Stepper stepper_{state_};
+    FrameDriver frames_{state_, stepper_};
     StateReader reader_{state_};
 };
 

@@ -4,6 +4,7 @@
 namespace wadi::vulkan {
 
 Status Submissions::open() {
+    c_.capabilities.queue_depth = ring;
     auto input = allocate(c_, sizeof(StepInput), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, Place::device, "step input");
     if (!input) return input.status();
     input_ = std::move(*input);
