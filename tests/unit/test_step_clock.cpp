@@ -2,6 +2,7 @@
 #include "engine/step_clock.hpp"
 #include <cmath>
 #include <doctest/doctest.h>
+#include <initializer_list>
 
 using wadi::StepClock;
 
