@@ -38,7 +38,7 @@ class StateReader {
     Result<Ledger> read_ledger();
 
     WorldState& state_;
-    std::array<compute::Buffer, 3> output_{}; // of publish stages, made when first asked for
+    std::array<compute::Buffer, 2> output_{}; // of publish stages, made when first asked for
     std::map<std::string, std::unique_ptr<StateProgram>> programs_;
 };
 

@@ -109,7 +109,7 @@ struct StepInput {
     int step;                   // index of the water step
     float rain;                 // depth of rain in this step [m], a whole number of quanta
     float evaporation;          // largest depth that evaporates in this step [m]
-    float pad0;
+    float interpolation;        // of published outputs: 0 = previous, 1 = current
     vec4 source[MAX_SOURCES];   // depth added (negative: removed) [m], face velocity x, y [m/s], 1 if velocity is set
     vec4 side[4];               // west, east, south, north: discharge per width [m2/s] or level [m],
                                 // least ghost depth [m], first and last index of the open span
