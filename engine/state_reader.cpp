@@ -73,10 +73,11 @@ Status StateReader::publish(const std::string& stage, const std::map<std::string
 
 Status StateReader::read(const std::string& name, std::span<float> values) {
     if (!state_.lost()) return state_.lost();
-    if (name == "water_depth" || name == "free_surface" || name == "surface_saturation") {
-        if (auto status = publish("publish_heights", {}, {"water_depth", "free_surface", "surface_saturation"}); !status)
-            return status;
-        return read_cells(output_[name == "water_depth" ? 0 : name == "free_surface" ? 1 : 2], values);
+    for (const char* published : {"water_depth", "free_surface", "surface_saturation"}) {
+        if (name != published) continue;
+        const std::string stage = name == "surface_saturation" ? "publish_saturation" : "publish_" + name;
+        auto status = publish(stage, {}, {published});
+        return status ? read_cells(output_[0], values) : status;
     }
     if (state_.plan().find(name) == nullptr) {
         std::fill(values.begin(), values.end(), 0.0F);

@@ -43,7 +43,7 @@ class StateReader {
     Result<std::uint64_t> hash_fields(const Look& look);
 
     WorldState& state_;
-    std::array<compute::Buffer, 3> output_{}; // of publish stages, made when first asked for
+    std::array<compute::Buffer, 2> output_{}; // of publish stages, made when first asked for
     std::map<std::string, std::unique_ptr<StateProgram>> programs_;
 };
 

@@ -94,6 +94,7 @@ Status Stepper::finish(int parts) {
     for (; parts_done_ < parts; ++parts_done_) {
         auto ticket = state_.device().submit(part_programs_[turn][static_cast<std::size_t>(parts_done_)], input_);
         if (!ticket) return state_.note(ticket.status());
+        ticket_ = *ticket;
     }
     return parts_done_ < this->parts() ? ok_status() : complete_step();
 }
@@ -134,6 +135,7 @@ Status Stepper::step() {
     auto ticket = state_.device().submit(profiling_ ? timed_programs_[turn] : programs_[turn],
                                          inputs_.next(static_cast<int>(state_.steps)));
     if (!ticket) return state_.note(ticket.status());
+    ticket_ = *ticket;
     if (profiling_) {
         pending_timings_.push_back(*ticket);
         if (auto status = collect_timings(false); !status) return state_.note(status);

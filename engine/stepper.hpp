@@ -34,6 +34,8 @@ class Stepper {
     int parts() const;
     /// Parts of the present step already submitted; 0 between two steps.
     int parts_done() const { return parts_done_; }
+    /// Of the newest submission; null before the first.
+    compute::Ticket ticket() const { return ticket_; }
 
     /// Chooses the effects for what the world holds from now on; between two steps only. Where that changes the mask, buffers are
     /// allocated and freed and everything is recorded anew, the state kept to the bit. Errors: out_of_memory, nothing changed.
@@ -69,6 +71,7 @@ class Stepper {
     std::array<compute::Program, 2> programs_{}, timed_programs_{};
     std::array<std::vector<compute::Program>, 2> part_programs_;
     int parts_done_ = 0;
+    compute::Ticket ticket_;
     StepInput input_{}; // of the step whose parts are being submitted
     std::function<Status()> before_step_, after_step_;
     bool profiling_ = false;

@@ -17,13 +17,24 @@ Result<std::unique_ptr<World>> World::create(const Settings& settings, const Ini
 }
 
 Status World::step(std::uint32_t count) {
+    if (auto status = finish_step(); !status) return status;
     for (std::uint32_t n = 0; n < count; ++n) {
         if (auto status = stepper_.step(); !status) return status;
     }
     return state_.lost();
 }
 
-Status World::finish_step() { return stepper_.parts_done() == 0 ? state_.lost() : stepper_.step(); }
+Status World::update(std::uint64_t nanoseconds, Frame& frame) {
+    if (auto status = frames_.take_steps(nanoseconds, frame); !status) return status;
+    return frames_.begin_parts();
+}
+
+Status World::finish_step() {
+    if (stepper_.parts_done() == 0) return state_.lost();
+    auto status = stepper_.step();
+    if (status) frames_.finished_early();
+    return status;
+}
 
 Status World::read(const std::string& name, std::span<float> values) {
     auto status = finish_step();

@@ -2,6 +2,7 @@
 #pragma once
 #include "engine/edits.hpp"
 #include "engine/snapshots.hpp"
+#include "engine/frame_driver.hpp"
 #include "engine/state_reader.hpp"
 #include "engine/stepper.hpp"
 
@@ -15,8 +16,12 @@ class World {
     static Result<std::unique_ptr<World>> create(const Settings& settings, const InitialFields& fields,
                                                  std::unique_ptr<compute::Device> device, compute::GroupSize group = {});
 
-    /// Submits water steps; returns before the device has finished them.
+    /// Submits water steps beside the clock of update(); returns before the device has finished them. A step that an update began
+    /// in parts is finished first and counts as that update's.
     Status step(std::uint32_t count);
+    /// Submits the water steps that fall due after `nanoseconds` more of host time; returns at once.
+    Status update(std::uint64_t nanoseconds, Frame& frame);
+    Status set_update_settings(const UpdateSettings& settings) { return frames_.set(settings); }
     std::uint64_t steps() const { return state_.steps; }
     double time() const { return static_cast<double>(state_.steps) * settings().dt; }
 
@@ -68,6 +73,7 @@ class World {
 
     WorldState state_; // first: the parts refer to it
     Stepper stepper_{state_};
+    FrameDriver frames_{state_, stepper_};
     StateReader reader_{state_};
     Snapshots snapshots_{state_, stepper_};
     Edits edits_{state_, stepper_};

@@ -118,7 +118,7 @@ struct StepInput {
     int step;                   // index of the water step
     float rain;                 // depth of rain in this step [m], a whole number of quanta
     float evaporation;          // largest depth that evaporates in this step [m]
-    int edit_count;             // edits in this submission of apply_edits
+    float interpolation;        // of published outputs: 0 = previous, 1 = current
     vec4 source[MAX_SOURCES];   // depth added (negative: removed) [m], face velocity x, y [m/s], 1 if velocity is set
     vec4 side[4];               // west, east, south, north: discharge per width [m2/s] or level [m],
                                 // least ghost depth [m], first and last index of the open span
@@ -126,5 +126,9 @@ struct StepInput {
     // 1/length^2, kind), brush (amount [m], layer, 0, 0), push (strength, velocity x, y [m/s], 0). Stamp: (x, y of the low
     // corner, width, height), (columns, rows, page, kind), (metres per unit of the image, layer, columns and rows per cell).
     vec4 edit[EDIT_VECTORS * MAX_EDITS];
+    int edit_count;             // edits in this submission of apply_edits
+    int pad0;
+    int pad1;
+    int pad2;
 };
 #endif

@@ -3,6 +3,7 @@
 namespace wadi::cuda {
 
 Status Submissions::open() {
+    c_.capabilities.queue_depth = ring;
     auto input = allocate(c_, sizeof(StepInput), "step input");
     if (!input) return input.status();
     input_ = std::move(*input);

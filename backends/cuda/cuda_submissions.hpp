@@ -8,7 +8,7 @@ namespace wadi::cuda {
 class Submissions {
   public:
     /// Submissions in flight at most; also the number of copies of anything that one submission must own.
-    static constexpr std::size_t ring = 8;
+    static constexpr std::size_t ring = 32;
 
     explicit Submissions(Context& context) : c_(context) {}
     ~Submissions();

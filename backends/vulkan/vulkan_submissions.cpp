@@ -10,6 +10,7 @@ VkSemaphore semaphore_of(const compute::SyncPoint& point) { return reinterpret_c
 } // namespace
 
 Status Submissions::open() {
+    c_.capabilities.queue_depth = ring;
     auto input = allocate(c_, sizeof(StepInput), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, Place::device, "step input");
     if (!input) return input.status();
     input_ = std::move(*input);

@@ -27,6 +27,7 @@ struct Capabilities {
     std::uint64_t largest_buffer_bytes = 0; // of one buffer bound to a stage
     bool exact_float = false;               // measured: + - * / sqrt agree with the CPU in every bit
     bool timestamps = false;
+    std::uint32_t queue_depth = 0; // submissions in flight before submit() waits for the oldest
 };
 
 /// A host's own Vulkan device to run on instead of one that we open. Handles as Vulkan's, opaque here; all must outlive the

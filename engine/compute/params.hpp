@@ -14,7 +14,7 @@ static_assert(sizeof(WorldParams) <= 512, "WorldParams must stay within 512 byte
 static_assert(sizeof(WorldParams) % 4 == 0 && alignof(WorldParams) == 4);
 static_assert(sizeof(StepInput) <= 2048, "StepInput must stay within 2 KiB");
 static_assert(offsetof(StepInput, source) == 16 && offsetof(StepInput, side) == 16 + 16 * MAX_SOURCES);
-static_assert(offsetof(StepInput, edit) == offsetof(StepInput, side) + 16 * 4);
+static_assert(offsetof(StepInput, edit) == offsetof(StepInput, side) + 16 * 4 && sizeof(StepInput) % 16 == 0);
 
 /// The layout every field shares: GHOST ghost cells around, one more column and row for the last faces.
 /// u[i,j] is the west face and v[i,j] the south face of cell (i,j).
@@ -28,6 +28,8 @@ struct FieldLayout {
         return static_cast<std::size_t>(j + GHOST) * static_cast<std::size_t>(pitch()) + static_cast<std::size_t>(i + GHOST);
     }
     int strips() const { return (ny + 1 + STRIP - 1) / STRIP; }
+    /// Tiles of STRIP x STRIP cells in a row of them; the last may hold no cell.
+    int tile_columns() const { return (nx + STRIP) / STRIP; }
     int rim() const { return 2 * (nx + ny); }
 };
 } // namespace wadi

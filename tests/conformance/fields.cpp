@@ -60,8 +60,18 @@ FieldName field_of(const std::string& stage, const std::string& binding, std::ui
     if (name.next) name.base.resize(name.base.size() - 5);
     const bool mixture = (effects & EFFECT_MIXTURE) != 0;
     if (name.base.starts_with("drag_velocity")) name.base = (mixture ? "mixed" : "water") + name.base.substr(4);
-    if (stage == "publish_velocity" && name.base.starts_with("velocity")) name.base = "water_" + name.base;
+    if ((stage == "publish_velocity" || stage == "publish_flow") && name.base.starts_with("velocity"))
+        name.base = "water_" + name.base;
     if (stage == "account_sides" && name.base.starts_with("flux")) name.base = "water_" + name.base;
+    // Stages that read published fields: any fields do, equal in some places and not in others.
+    const std::map<std::string, const char*> stand_ins = {{"previous_output", "sand_height"}, {"current_output", "water_height"}};
+    const std::map<std::string, const char*> surfaces = {{"sand_surface", "terrain"},
+                                                         {"previous_sand_surface", "terrain"},
+                                                         {"free_surface", "water_height"},
+                                                         {"previous_free_surface", "sand_height"}};
+    if (const auto found = stand_ins.find(binding); found != stand_ins.end()) name.base = found->second;
+    const auto surface = surfaces.find(binding);
+    if (stage == "measure_strips" && surface != surfaces.end()) name.base = surface->second;
     return name;
 }
 

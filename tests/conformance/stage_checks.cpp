@@ -113,45 +113,28 @@ Verdict check_source_ledger(const StageRun& run) {
     return {};
 }
 
-// A published field in either precision, from a cell's inputs.
-template <class Real> Real published(const StageRun& run, const std::string& name, int i, int j) {
-    const auto in = [&](const char* binding, int a, int b) { return static_cast<Real>(run.before(binding, a, b)); };
-    if (name == "centre_velocity_x") return Real(0.5) * (in("velocity_x", i, j) + in("velocity_x", i + 1, j));
-    if (name == "centre_velocity_y") return Real(0.5) * (in("velocity_y", i, j) + in("velocity_y", i, j + 1));
-    const Real water = in("water_height", i, j), sand = in("sand_height", i, j);
-    if (name == "water_depth") return std::max(water - sand, Real(0));
-    if (name == "free_surface") return in("terrain", i, j) + std::max(water, sand);
-    return sand > static_cast<Real>(run.params.dry_threshold) ? water / (water + sand) : Real(0);
-}
-
-Verdict check_published(const StageRun& run) {
-    const FieldLayout layout{run.params.nx, run.params.ny};
-    Verdict verdict;
-    for (const auto& binding : run.stage.bindings) {
-        if (binding.access != compute::Access::out) continue;
-        const std::string name(binding.name);
-        std::vector<float> narrow(layout.size(), 0.0F);
-        std::vector<double> exact(layout.size(), 0.0);
-        for (int j = 0; j < layout.ny; ++j) {
-            for (int i = 0; i < layout.nx; ++i) {
-                narrow[layout.index(i, j)] = published<float>(run, name, i, j);
-                exact[layout.index(i, j)] = published<double>(run, name, i, j);
-            }
-        }
-        FieldCheck check{name, {0, 0, layout.nx, layout.ny}, run.buffer(name.c_str()).floats(), narrow, exact, {}};
-        verdict = worse(verdict, compare_fields({check}, layout, 0));
-    }
-    return verdict;
-}
-
 struct Definition {
     const char* stage;
     Verdict (*check)(const StageRun& run);
 };
 
 constexpr Definition definitions[] = {
-    {"account_sides", check_side_ledger}, {"apply_rain", check_source_ledger},   {"apply_sources", check_source_ledger},
-    {"publish_heights", check_published}, {"publish_velocity", check_published}, {"mark_limits", check_marks},
+    {"fold_tiles", check_tiles},
+    {"interpolate_output", check_published},
+    {"measure_strips", check_strips},
+    {"publish_flow", check_published},
+    {"publish_foam", check_published},
+    {"publish_free_surface", check_published},
+    {"publish_normal", check_published},
+    {"publish_sand_surface", check_published},
+    {"publish_saturation", check_published},
+    {"publish_smooth_surface", check_published},
+    {"publish_velocity", check_published},
+    {"publish_water_depth", check_published},
+    {"account_sides", check_side_ledger},
+    {"apply_rain", check_source_ledger},
+    {"apply_sources", check_source_ledger},
+    {"mark_limits", check_marks},
 };
 
 } // namespace

@@ -1,6 +1,7 @@
 #include "tests/conformance/stage_inputs.hpp"
 #include "tests/conformance/compare.hpp"
 #include "tests/conformance/fields.hpp"
+#include "tests/conformance/stage_checks.hpp"
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -17,6 +18,10 @@ const std::uint32_t nan_word = std::bit_cast<std::uint32_t>(std::numeric_limits<
 // Behind the flip of the water height the cells outside open sides hold depths of an older step.
 constexpr std::array stages_with_stale_ghosts = {"integrate_water_velocity", "compute_saturation", "compute_momentum_exchange",
                                                  "integrate_sand_velocity", "apply_friction"};
+
+std::size_t components_of(compute::Scalar type) {
+    return type == compute::Scalar::vec4 ? 4 : type == compute::Scalar::vec2 ? 2 : 1;
+}
 
 bool contains(const compute::Range2& r, int i, int j) { return i >= r.i0 && i < r.i1 && j >= r.j0 && j < r.j1; }
 
@@ -50,9 +55,10 @@ void fill_field(BenchBuffer& buffer, const std::string& stage, const compute::St
     const FieldLayout layout{params.nx, params.ny};
     const FieldName name = field_of(stage, std::string(binding.name), scene.effects);
     const bool out = binding.access == Access::out;
-    buffer.before.assign(layout.size(), out ? std::bit_cast<std::uint32_t>(untouched_value()) : nan_word);
-    buffer.may_change.assign(layout.size(), false);
-    buffer.must_change.assign(layout.size(), false);
+    const std::size_t components = components_of(binding.type);
+    buffer.before.assign(components * layout.size(), out ? std::bit_cast<std::uint32_t>(untouched_value()) : nan_word);
+    buffer.may_change.assign(components * layout.size(), false);
+    buffer.must_change.assign(components * layout.size(), false);
     // compute_water_flux reads the mixed flux only where diffusion has written it.
     const bool entry_unused =
         name.base.starts_with("mixed_flux") && (scene.effects & EFFECT_DIFFUSION) == 0 && binding.access == Access::inout;
@@ -61,9 +67,11 @@ void fill_field(BenchBuffer& buffer, const std::string& stage, const compute::St
     const auto range = written_range(stage, name.base, params);
     for_layout(layout, [&](int i, int j, std::size_t word) {
         if (!contains(range, i, j)) return;
-        buffer.may_change[word] = true;
-        if (out) buffer.before[word] = nan_word;
-        buffer.must_change[word] = buffer.before[word] == nan_word;
+        for (std::size_t at = word * components; at < (word + 1) * components; ++at) {
+            buffer.may_change[at] = true;
+            if (out) buffer.before[at] = nan_word;
+            buffer.must_change[at] = buffer.before[at] == nan_word;
+        }
     });
 }
 
@@ -71,6 +79,29 @@ void fill_words(BenchBuffer& buffer, std::vector<std::uint32_t> words, bool may_
     buffer.may_change.assign(words.size(), may_change);
     buffer.must_change.assign(words.size(), false);
     buffer.before = std::move(words);
+}
+
+// What measure_strips and fold_tiles read and write, which is no field; false for any other binding.
+bool fill_tiles(BenchBuffer& buffer, const compute::StageBinding& binding, const FieldLayout& layout) {
+    const bool strips = binding.name.starts_with("strip_");
+    if (!strips && !binding.name.starts_with("tile_")) return false;
+    if (binding.access == Access::in) {
+        fill_words(buffer, binding.name == "strip_range" ? strip_ranges(layout) : strip_changes(layout), false);
+        return true;
+    }
+    const std::size_t components = components_of(binding.type);
+    const std::size_t row = static_cast<std::size_t>(strips ? layout.pitch() : layout.tile_columns());
+    const std::size_t written = strips ? static_cast<std::size_t>(layout.nx + 1) : row;
+    const std::size_t words = components * row * static_cast<std::size_t>(layout.strips());
+    fill_words(buffer, std::vector<std::uint32_t>(words, std::bit_cast<std::uint32_t>(untouched_value())), false);
+    for (std::size_t at = 0; at < words; ++at) {
+        if (at / components % row >= written) continue;
+        buffer.may_change[at] = true;
+        // Tiles that are kept: some never measured, the others changed in step 3.
+        buffer.before[at] = binding.access == Access::out ? nan_word : at % 3 == 0 ? ~0u : 3u;
+        buffer.must_change[at] = binding.type == compute::Scalar::vec4;
+    }
+    return true;
 }
 
 std::vector<std::uint32_t> ledger_words(std::size_t count) {
@@ -107,7 +138,7 @@ std::vector<BenchBuffer> stage_buffers(const compute::StageInfo& stage, const Sc
                        true);
         } else if (binding.name == "side_ledger") {
             fill_words(buffers[b], ledger_words(4 * static_cast<std::size_t>(layout.rim())), true);
-        } else {
+        } else if (!fill_tiles(buffers[b], binding, layout)) {
             fill_field(buffers[b], std::string(stage.name), binding, scene, pilot, params);
         }
     }

@@ -264,6 +264,42 @@ WADI_API wadi_result wadi_world_get_effects(wadi_world_id world, wadi_effect_inf
  *  device has not reported yet is not known. */
 WADI_API wadi_result wadi_world_get_error(wadi_world_id world);
 
+/* ---- Per frame ---- */
+
+/** How wadi_world_update turns host time into water steps. */
+typedef struct wadi_update_settings {
+    uint32_t struct_size;
+    uint32_t max_steps_per_update; /* 1 ... 1024, default 8: time beyond it is dropped */
+    uint32_t max_steps_in_flight;  /* 0 ... 64, default 8: once the device has this many unfinished water steps (or its queue of
+                                      submissions is full), time is dropped; 0 = drop nothing for that reason, the call may wait */
+    int32_t spread;                /* 1 = a water step is submitted as 1 water part and T sand parts, evenly over its dt; the bits are
+                                      the same, the load has no peak every dt; default 0 */
+} wadi_update_settings;
+WADI_API wadi_update_settings wadi_default_update_settings(void);
+/** Takes effect with the next update. Does not wait. Errors: BAD_ARGUMENT (out of range; the settings stay as they were). */
+WADI_API wadi_result wadi_world_set_update_settings(wadi_world_id world, const wadi_update_settings* settings);
+
+/** What one update did. */
+typedef struct wadi_frame {
+    uint32_t struct_size;
+    uint32_t steps;                /* water steps that became whole in this update */
+    uint64_t total_steps;          /* whole water steps since creation */
+    double time;                   /* simulated: total_steps * dt [s] */
+    double interpolation;          /* in [0, 1): how far the host's clock is from the last whole step to the one to come. A renderer
+                                      shows (1 - f) * last but one + f * last, one dt late, and moves evenly */
+    uint64_t dropped_nanoseconds;       /* host time that became no step in this update; steps is then less than it asks for */
+    uint64_t dropped_nanoseconds_total; /* and since the world was created */
+} wadi_frame;
+WADI_API wadi_frame wadi_default_frame(void);
+
+/** Advances by `host_nanoseconds` of host time since the last update (0 is allowed). Steps are fixed: after a total of t
+ *  nanoseconds, less those dropped, floor(t / dt) water steps are done (dt as the double dt * 1e9, the quotient exact), so the same
+ *  total gives the same bits in frames of any length. Does not wait for the device: what it submits runs beside the host.
+ *  wadi_world_step may be called between updates: its steps are beside this clock, which goes on where it was. Every call that
+ *  reads or changes the state first finishes a step that `spread` began; the update in which it falls due does not repeat it.
+ *  Errors: BAD_ARGUMENT (world, struct_size), DEVICE_LOST. */
+WADI_API wadi_result wadi_world_update(wadi_world_id world, uint64_t host_nanoseconds, wadi_frame* frame);
+
 #ifdef __cplusplus
 }
 #endif

@@ -1,0 +1,77 @@
+// Worlds behind the C ABI for tests: sand and water on a slope, on every backend that has a device here.
+#pragma once
+#include <cmath>
+#include <cstdint>
+#include <doctest/doctest.h>
+#include <string>
+#include <vector>
+#include <wadi/wadi.h>
+
+namespace plugin_test {
+
+/// Backends with a device here, the CPU first.
+inline std::vector<std::string> backends() {
+    uint32_t count = 0;
+    REQUIRE(wadi_list_devices(nullptr, &count, nullptr, 0) == WADI_OK);
+    std::vector<wadi_device_info> infos(count);
+    REQUIRE(wadi_list_devices(infos.data(), &count, nullptr, 0) == WADI_OK);
+    std::vector<std::string> names;
+    for (const auto& info : infos)
+        if (names.empty() || names.back() != info.backend) names.emplace_back(info.backend);
+    return names;
+}
+
+/// nx * ny cells of 0.5 m, dt [s], sand and water that meet; destroyed at the end.
+struct World {
+    wadi_world_id id{};
+    int nx, ny;
+    explicit World(const std::string& backend, int columns = 40, int rows = 36, double dt = 0.01, int threads = 0)
+        : nx(columns), ny(rows) {
+        std::vector<float> terrain, sand, water;
+        for (int j = 0; j < ny; ++j) {
+            for (int i = 0; i < nx; ++i) {
+                terrain.push_back(0.02F * static_cast<float>(i));
+                sand.push_back(i > nx / 3 && i < nx / 2 ? 1.0F : 0.0F);
+                water.push_back(i < nx / 3 ? 1.5F : 0.0F);
+            }
+        }
+        const std::string settings = R"({"format_version": 1, "name": "slope", "grid": {"nx": )" + std::to_string(nx) +
+                                     R"(, "ny": )" + std::to_string(ny) + R"(, "dx": 0.5}, "dt": )" + std::to_string(dt) + "}";
+        auto arrays = wadi_default_world_arrays();
+        arrays.settings_json = settings.c_str();
+        arrays.nx = nx;
+        arrays.ny = ny;
+        arrays.terrain = terrain.data();
+        arrays.sand = sand.data();
+        arrays.water = water.data();
+        auto options = wadi_default_device_options();
+        options.backend = backend.c_str();
+        options.threads = threads;
+        REQUIRE_MESSAGE(wadi_create_world_from_arrays(&arrays, &options, &id) == WADI_OK, std::string(wadi_get_last_error()));
+    }
+    ~World() { wadi_destroy_world(id); }
+    World(const World&) = delete;
+    World& operator=(const World&) = delete;
+
+    wadi_frame update(uint64_t nanoseconds) const {
+        auto frame = wadi_default_frame();
+        REQUIRE_MESSAGE(wadi_world_update(id, nanoseconds, &frame) == WADI_OK, std::string(wadi_get_last_error()));
+        return frame;
+    }
+    wadi_world_stats stats() const {
+        auto stats = wadi_default_world_stats();
+        REQUIRE(wadi_world_get_stats(id, &stats) == WADI_OK);
+        return stats;
+    }
+    std::vector<float> read(wadi_field field) const {
+        std::vector<float> values(static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny));
+        REQUIRE(wadi_world_read_field(id, field, values.data(), values.size()) == WADI_OK);
+        return values;
+    }
+    /// Returns once the device has done all that was submitted.
+    void wait() const { read(WADI_FIELD_TERRAIN); }
+};
+
+inline bool error_mentions(const std::string& text) { return std::string(wadi_get_last_error()).find(text) != std::string::npos; }
+
+} // namespace plugin_test

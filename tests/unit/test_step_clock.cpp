@@ -1,0 +1,44 @@
+// StepClock against exact division, for periods that are no whole number of nanoseconds.
+#include "engine/step_clock.hpp"
+#include <cmath>
+#include <doctest/doctest.h>
+#include <initializer_list>
+
+using wadi::StepClock;
+
+TEST_CASE("steps are floor(total / dt) for any dt and any frames") {
+    for (const double dt : {1e-7, 1.0 / 60, 1.0 / 3, 0.001, 0.0123456789, 1.7e-6, 100.0}) {
+        CAPTURE(dt);
+        StepClock clock(dt);
+        const long double period = static_cast<long double>(dt * 1e9);
+        std::uint64_t total = 0, steps = 0, random = 99;
+        for (int n = 0; n < 20000; ++n) {
+            random = random * 6364136223846793005u + 1442695040888963407u;
+            const auto frame = static_cast<std::uint64_t>(static_cast<double>(random >> 40) / 1e7 * dt * 1e9);
+            total += frame;
+            CHECK(clock.add(frame) == 0);
+            for (; clock.due(); ++steps) clock.take();
+            const auto wanted = static_cast<std::uint64_t>(static_cast<long double>(total) / period);
+            REQUIRE(steps == wanted);
+            const auto phase = static_cast<double>(static_cast<long double>(total) / period - static_cast<long double>(wanted));
+            REQUIRE(std::abs(clock.phase() - phase) < 1e-6);
+        }
+    }
+}
+
+TEST_CASE("dropped time leaves the clock a nanosecond before the next step") {
+    StepClock clock(1.0 / 60);
+    CHECK(clock.add(100000000) == 0);
+    CHECK(clock.drop() == 100000000 - 16666666);
+    CHECK_FALSE(clock.due());
+    CHECK(clock.phase() < 1);
+    CHECK(clock.drop() == 0);
+    CHECK(clock.add(1) == 0);
+    CHECK(clock.due());
+    clock.take();
+    CHECK(clock.phase() < 1e-6);
+    CHECK(clock.add(~std::uint64_t{0}) > 0);
+    CHECK(clock.due());
+    CHECK(clock.drop() > (std::uint64_t{1} << 61));
+    CHECK_FALSE(clock.due());
+}
