@@ -1,5 +1,7 @@
 // A world: its state on a device, and the parts that step it and answer for it. Each part has a file of its own.
 #pragma once
+#include "engine/queries.hpp"
+#include "engine/roll_back.hpp"
 #include "engine/snapshots.hpp"
 #include "engine/state_reader.hpp"
 #include "engine/stepper.hpp"
@@ -34,6 +36,13 @@ class World {
     Status load(std::span<const std::byte> from);
     Snapshots& snapshots() { return snapshots_; }
 
+    const RollBack& roll_back() const { return roll_back_; }
+    /// Goes to the newest kept step <= `step`; errors: RollBack::go_back.
+    Result<std::uint64_t> roll_back_to(std::uint64_t step);
+    /// RollBack::set for the state between two steps.
+    Status set_rollback(std::uint32_t frames, std::uint32_t interval);
+    Queries& queries() { return queries_; }
+
     Status set_profiling(bool on) { return stepper_.set_profiling(on); }
     /// Mean over the steps since profiling was switched on.
     Result<std::vector<StageTime>> stage_times() { return stepper_.stage_times(); }
@@ -53,7 +62,10 @@ class World {
   private:
     World(const Settings& settings, std::unique_ptr<compute::Device> device, compute::GroupSize group)
         : state_(settings, std::move(device), group) {
-        stepper_.set_after_step([this] { return at_boundary(); });
+        stepper_.set_after_step([this] {
+            auto status = roll_back_.after_step();
+            return status ? at_boundary() : status;
+        });
     }
     /// Brings the world to a boundary between two steps.
     Status finish_step();
@@ -64,6 +76,8 @@ class World {
     Stepper stepper_{state_};
     StateReader reader_{state_};
     Snapshots snapshots_{state_, stepper_};
+    RollBack roll_back_{state_, stepper_};
+    Queries queries_{state_, stepper_};
 };
 
 } // namespace wadi

@@ -7,6 +7,8 @@
 #define GHOST 2          // ghost cells on each side of every field
 #define STRIP 32         // rows of one ledger strip
 #define MAX_SOURCES 32   // sources and sinks of one world
+#define POINT_ROW 64     // points in one row of a POINTS stage
+#define SAMPLE_FLOATS 12 // results per point of sample_points
 #define SOURCE_DISC 0
 #define SOURCE_BOX 1
 #define MATERIAL_WATER 0
@@ -109,7 +111,7 @@ struct StepInput {
     int step;                   // index of the water step
     float rain;                 // depth of rain in this step [m], a whole number of quanta
     float evaporation;          // largest depth that evaporates in this step [m]
-    float pad0;
+    int point_count;            // points of a POINTS stage
     vec4 source[MAX_SOURCES];   // depth added (negative: removed) [m], face velocity x, y [m/s], 1 if velocity is set
     vec4 side[4];               // west, east, south, north: discharge per width [m2/s] or level [m],
                                 // least ghost depth [m], first and last index of the open span

@@ -152,6 +152,7 @@ struct Definition {
 constexpr Definition definitions[] = {
     {"account_sides", check_side_ledger}, {"apply_rain", check_source_ledger},   {"apply_sources", check_source_ledger},
     {"publish_heights", check_published}, {"publish_velocity", check_published}, {"mark_limits", check_marks},
+    {"sample_points", check_samples},
 };
 
 } // namespace

@@ -23,6 +23,7 @@ bool has_definition(const std::string& stage);
 /// The direct check of a stage; ok where it has none.
 Verdict check_definition(const StageRun& run);
 
-Verdict check_marks(const StageRun& run); // marks_check.cpp
+Verdict check_marks(const StageRun& run);   // marks_check.cpp
+Verdict check_samples(const StageRun& run); // samples_check.cpp
 
 } // namespace wadi::conformance
