@@ -115,7 +115,7 @@ Status RollBack::keep() {
     return ok_status();
 }
 
-Status RollBack::after_step() { return state_.steps % interval_ == 0 ? keep() : ok_status(); }
+Status RollBack::after_step() { return frames_.empty() || state_.steps % interval_ != 0 ? ok_status() : keep(); }
 
 Status RollBack::restart() {
     for (auto& frame : frames_) frame.kept = false;
