@@ -251,8 +251,9 @@ std::string cuda(const Stage& s, unsigned tested) {
       << " {\n#include \"stage_cuda.h\"\n#include \"stages/" << s.name << ".stage\"\n"
       << "struct Slots { void* at[" << (s.bindings.empty() ? 1 : s.bindings.size()) << "]; };\n"
       << "template <unsigned E, int X, int Y> __global__ void __launch_bounds__(X > 0 ? X * Y : 1024)\n"
-      << "run(const WorldParams P, const StepInput* __restrict__ input, const Slots b) {\n    const " << s.struct_name
-      << "<E> stage{P, *input";
+      << "run(const WorldParams P, const StepInput* __restrict__ input, const Slots b) {\n    const StepInput& S = *input;\n    "
+         "const "
+      << s.struct_name << "<E> stage{P, S";
     for (const auto& b : s.bindings)
         o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << b.type << "*>(b.at[" << b.slot << "])";
     o << "};\n    const int i = static_cast<int>(blockIdx.x * (X > 0 ? X : blockDim.x) + threadIdx.x)" << origin(s.extent, "i")
