@@ -51,7 +51,10 @@ Result<std::uint64_t> World::hash() {
     return status ? reader_.hash() : Result<std::uint64_t>(status);
 }
 
-Status World::at_boundary() { return snapshots_.at_boundary(); }
+Status World::at_boundary() {
+    auto status = snapshots_.at_boundary();
+    return status ? queries_.at_boundary() : status;
+}
 
 Status World::save(std::span<std::byte> to) {
     auto status = finish_step();
@@ -67,7 +70,20 @@ Status World::edit(std::span<const Edit> edits) {
 Status World::load(std::span<const std::byte> from) {
     auto status = snapshots_.load(from);
     if (status) edits_.forget();
+    if (status) status = roll_back_.restart();
     return status ? at_boundary() : status;
+}
+
+Status World::set_rollback(std::uint32_t frames, std::uint32_t interval) {
+    auto status = finish_step();
+    return status ? roll_back_.set(frames, interval) : status;
+}
+
+Result<std::uint64_t> World::roll_back_to(std::uint64_t step) {
+    auto reached = roll_back_.go_back(step);
+    if (!reached) return reached;
+    auto status = at_boundary();
+    return status ? reached : status;
 }
 
 Result<std::vector<float>> World::read_raw(const std::string& field) {

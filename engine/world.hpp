@@ -1,8 +1,10 @@
 // A world: its state on a device, and the parts that step it and answer for it. Each part has a file of its own.
 #pragma once
 #include "engine/edits.hpp"
-#include "engine/snapshots.hpp"
 #include "engine/frame_driver.hpp"
+#include "engine/queries.hpp"
+#include "engine/roll_back.hpp"
+#include "engine/snapshots.hpp"
 #include "engine/state_reader.hpp"
 #include "engine/stepper.hpp"
 
@@ -43,6 +45,12 @@ class World {
     /// Checks edits and queues them for their steps (edits.hpp). Errors: bad_argument, nothing queued.
     Status edit(std::span<const Edit> edits);
     Edits& edits() { return edits_; }
+    const RollBack& roll_back() const { return roll_back_; }
+    /// Goes to the newest kept step <= `step`; errors: RollBack::go_back.
+    Result<std::uint64_t> roll_back_to(std::uint64_t step);
+    /// RollBack::set for the state between two steps.
+    Status set_rollback(std::uint32_t frames, std::uint32_t interval);
+    Queries& queries() { return queries_; }
 
     Status set_profiling(bool on) { return stepper_.set_profiling(on); }
     /// Mean over the steps since profiling was switched on.
@@ -64,7 +72,10 @@ class World {
     World(const Settings& settings, std::unique_ptr<compute::Device> device, compute::GroupSize group)
         : state_(settings, std::move(device), group) {
         stepper_.set_before_step([this] { return edits_.before_step(); });
-        stepper_.set_after_step([this] { return at_boundary(); });
+        stepper_.set_after_step([this] {
+            auto status = roll_back_.after_step();
+            return status ? at_boundary() : status;
+        });
     }
     /// Brings the world to a boundary between two steps.
     Status finish_step();
@@ -77,6 +88,8 @@ class World {
     StateReader reader_{state_};
     Snapshots snapshots_{state_, stepper_};
     Edits edits_{state_, stepper_};
+    RollBack roll_back_{state_, stepper_};
+    Queries queries_{state_, stepper_};
 };
 
 } // namespace wadi

@@ -221,12 +221,13 @@ Status WorldState::append(compute::ProgramBuilder& builder, const PlanPass& pass
 }
 
 Status WorldState::append_stage(compute::ProgramBuilder& builder, const char* stage_name, const Parity& parity,
-                                const Slots& slots) const {
+                                const Slots& slots, int most_points) const {
     const int index = compute::find_stage(stage_name);
     const auto& stage = compute::stage_table()[static_cast<std::size_t>(index)];
     auto pipeline = device_->create_pipeline(index, plan_.effects, group_);
     if (!pipeline) return pipeline.status();
-    compute::Dispatch dispatch{*pipeline, index, plan_.effects, {}, compute::extent_range(stage.extent, params_), stage_name};
+    compute::Dispatch dispatch{*pipeline, index, plan_.effects, {}, compute::extent_range(stage.extent, params_, most_points),
+                               stage_name};
     for (const auto& binding : stage.bindings) {
         const std::string name(binding.name);
         const bool exists = (plan_.effects & binding.condition) == binding.condition;

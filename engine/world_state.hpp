@@ -84,7 +84,9 @@ class WorldState {
     /// Appends a pass of the plan and flips what it flips.
     Status append(compute::ProgramBuilder& builder, const PlanPass& pass, Parity& parity) const;
     /// Appends a stage outside the plan. `slots` names the buffers that are not state fields; the rest are found by name.
-    Status append_stage(compute::ProgramBuilder& builder, const char* stage, const Parity& parity, const Slots& slots) const;
+    /// `most_points`: for a stage over POINTS.
+    Status append_stage(compute::ProgramBuilder& builder, const char* stage, const Parity& parity, const Slots& slots,
+                        int most_points = 0) const;
 
     /// ok until the device is lost, then device_lost for ever.
     const Status& lost() const { return lost_; }

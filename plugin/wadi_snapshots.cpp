@@ -66,6 +66,30 @@ wadi_result wadi_world_end_save(wadi_world_id id, uint64_t ticket, void* data, s
     });
 }
 
+wadi_result wadi_world_set_rollback(wadi_world_id id, uint32_t frames, uint32_t interval_steps) {
+    return with_world(__func__, id,
+                      [&](HostedWorld& hosted) { return report(hosted.world->set_rollback(frames, interval_steps)); });
+}
+
+wadi_result wadi_world_get_rollback_steps(wadi_world_id id, uint64_t* steps, uint32_t* count) {
+    return with_world(__func__, id, [&](HostedWorld& hosted) {
+        if (count == nullptr) return bad_argument("wadi_world_get_rollback_steps: count is NULL");
+        const auto kept = hosted.world->roll_back().steps();
+        const uint32_t capacity = steps != nullptr ? *count : 0;
+        *count = static_cast<uint32_t>(kept.size());
+        std::copy_n(kept.begin(), std::min(capacity, *count), steps);
+        return report(ok_status());
+    });
+}
+
+wadi_result wadi_world_roll_back(wadi_world_id id, uint64_t step, uint64_t* reached) {
+    return with_world(__func__, id, [&](HostedWorld& hosted) {
+        auto to = hosted.world->roll_back_to(step);
+        if (to && reached != nullptr) *reached = *to;
+        return report(to.status());
+    });
+}
+
 wadi_result wadi_world_get_hash(wadi_world_id id, uint64_t* hash) {
     return with_world(__func__, id, [&](HostedWorld& hosted) {
         if (hash == nullptr) return bad_argument("wadi_world_get_hash: hash is NULL");

@@ -16,6 +16,8 @@
 #define LAYER_TERRAIN 0
 #define LAYER_SAND 1
 #define LAYER_WATER 2
+#define POINT_ROW 64     // points in one row of a POINTS stage
+#define SAMPLE_FLOATS 12 // results per point of sample_points
 #define SOURCE_DISC 0
 #define SOURCE_BOX 1
 #define MATERIAL_WATER 0
@@ -127,8 +129,8 @@ struct StepInput {
     // corner, width, height), (columns, rows, page, kind), (metres per unit of the image, layer, columns and rows per cell).
     vec4 edit[EDIT_VECTORS * MAX_EDITS];
     int edit_count;             // edits in this submission of apply_edits
+    int point_count;            // points of a POINTS stage
     int pad0;
     int pad1;
-    int pad2;
 };
 #endif

@@ -10,7 +10,7 @@ int find_stage(std::string_view name) {
     return -1;
 }
 
-Range2 extent_range(Extent extent, const WorldParams& p) {
+Range2 extent_range(Extent extent, const WorldParams& p, int most_points) {
     switch (extent) {
     case Extent::cells:
         return {0, 0, p.nx, p.ny};
@@ -22,6 +22,8 @@ Range2 extent_range(Extent extent, const WorldParams& p) {
         return {0, 0, p.nx + 1, p.strips};
     case Extent::source_box:
         return {p.source_i0, p.source_s0, p.source_i1, p.source_s1};
+    case Extent::points:
+        return {0, 0, POINT_ROW, (most_points + POINT_ROW - 1) / POINT_ROW};
     }
     return {};
 }

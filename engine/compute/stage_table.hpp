@@ -17,7 +17,8 @@ enum class Scalar : std::uint8_t { f32, u32, i32, vec2, vec4 };
 /// Which (i, j) a stage runs over.
 /// cells: nx x ny. faces: (nx+1) x (ny+1). rim: 2(nx+ny) x 1, the outer faces in the order west, east, south, north.
 /// strips: nx+1 columns x ceil((ny+1)/STRIP). source_box: the strips that hold all sources (origin not zero).
-enum class Extent : std::uint8_t { cells, faces, rim, strips, source_box };
+/// points: no grid, a list; point n is i = n % POINT_ROW, j = n / POINT_ROW. StepInput::point_count says how many there are.
+enum class Extent : std::uint8_t { cells, faces, rim, strips, source_box, points };
 
 struct StageBinding {
     std::string_view name;
@@ -45,7 +46,8 @@ struct Range2 {
 };
 
 /// The index range a stage covers for these parameters: the one place that turns an Extent into numbers.
-/// The kernels' own guards in shaders/tools/stagec.cpp are written from the same rules.
-Range2 extent_range(Extent extent, const WorldParams& params);
+/// The kernels' own guards in shaders/tools/stagec.cpp are written from the same rules. `most_points`: the largest point_count
+/// that the program is for.
+Range2 extent_range(Extent extent, const WorldParams& params, int most_points = 0);
 
 } // namespace wadi::compute

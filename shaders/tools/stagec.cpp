@@ -57,7 +57,7 @@ struct Stage {
     std::vector<std::string> tested; // effect names that HAS() or a condition asks
 };
 
-const std::set<std::string> extents = {"CELLS", "FACES", "RIM", "STRIPS", "SOURCE_BOX"};
+const std::set<std::string> extents = {"CELLS", "FACES", "RIM", "STRIPS", "SOURCE_BOX", "POINTS"};
 
 std::string strip_comments(const std::string& text) {
     std::string out;
@@ -141,7 +141,7 @@ Stage parse(const std::string& path) {
         }
     }
     if (stage.struct_name.empty()) fail(path + ": no STAGE(Name)");
-    if (!extents.count(stage.extent)) fail(path + ": EXTENT must be CELLS, FACES, RIM, STRIPS or SOURCE_BOX");
+    if (!extents.count(stage.extent)) fail(path + ": EXTENT must be CELLS, FACES, RIM, STRIPS, SOURCE_BOX or POINTS");
     stage.tested.assign(tested.begin(), tested.end());
     return stage;
 }
@@ -186,6 +186,7 @@ std::string guard(const std::string& extent) {
     if (extent == "FACES") return "i <= P.nx && j <= P.ny";
     if (extent == "RIM") return "i < 2 * (P.nx + P.ny) && j < 1";
     if (extent == "STRIPS") return "i <= P.nx && j < P.strips";
+    if (extent == "POINTS") return "i < POINT_ROW && j * POINT_ROW + i < S.point_count";
     return "i < P.source_i1 && j < P.source_s1";
 }
 
@@ -221,6 +222,8 @@ std::string cpp(const Stage& s, const std::string& isa, unsigned tested) {
         o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << b.type << "*>(b[" << b.slot << "])";
     }
     o << "};\n#endif\n    for (int j = j0; j < j1; ++j) {\n        const " << s.struct_name << "<E> local = stage;\n"
+      << (s.extent == "POINTS" ? "        const int row = S.point_count - j * POINT_ROW;\n        i1 = row < i1 ? row : i1;\n"
+                               : "")
       << "#if defined(__GNUC__) && !defined(__clang__)\n#pragma GCC ivdep\n#elif defined(__clang__)\n#pragma clang loop "
          "vectorize(assume_safety)\n#endif\n"
       << "        for (int i = i0; i < i1; ++i) local.kernel(i, j);\n    }\n}\n} // namespace\n"
@@ -248,8 +251,9 @@ std::string cuda(const Stage& s, unsigned tested) {
       << " {\n#include \"stage_cuda.h\"\n#include \"stages/" << s.name << ".stage\"\n"
       << "struct Slots { void* at[" << (s.bindings.empty() ? 1 : s.bindings.size()) << "]; };\n"
       << "template <unsigned E, int X, int Y> __global__ void __launch_bounds__(X > 0 ? X * Y : 1024)\n"
-      << "run(const WorldParams P, const StepInput* __restrict__ input, const Slots b) {\n    const " << s.struct_name
-      << "<E> stage{P, *input";
+      << "run(const WorldParams P, const StepInput* __restrict__ input, const Slots b) {\n    const StepInput& S = *input;\n    "
+         "const "
+      << s.struct_name << "<E> stage{P, S";
     for (const auto& b : s.bindings)
         o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << b.type << "*>(b.at[" << b.slot << "])";
     o << "};\n    const int i = static_cast<int>(blockIdx.x * (X > 0 ? X : blockDim.x) + threadIdx.x)" << origin(s.extent, "i")

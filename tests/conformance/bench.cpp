@@ -19,8 +19,8 @@ Status dispatch(compute::Device& device, int stage, std::uint32_t effects, const
     auto pipeline = device.create_pipeline(stage, effects, group);
     if (!pipeline) return pipeline.status();
     compute::ProgramBuilder builder("bench " + std::string(info.name));
-    builder.dispatch(
-        {*pipeline, stage, effects, std::move(slots), compute::extent_range(info.extent, params), std::string(info.name)});
+    builder.dispatch({*pipeline, stage, effects, std::move(slots), compute::extent_range(info.extent, params, input.point_count),
+                      std::string(info.name)});
     auto program = device.compile(builder, params);
     if (!program) return program.status();
     auto ticket = device.submit(*program, input);

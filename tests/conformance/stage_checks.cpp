@@ -135,6 +135,7 @@ constexpr Definition definitions[] = {
     {"apply_rain", check_source_ledger},
     {"apply_sources", check_source_ledger},
     {"mark_limits", check_marks},
+    {"sample_points", check_samples},
 };
 
 } // namespace

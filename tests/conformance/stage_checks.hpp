@@ -31,5 +31,6 @@ Verdict check_tiles(const StageRun& run);     // tiles_check.cpp
 /// Words of fold_tiles' inputs, in the layout of measure_strips' outputs.
 std::vector<std::uint32_t> strip_ranges(const FieldLayout& layout);
 std::vector<std::uint32_t> strip_changes(const FieldLayout& layout);
+Verdict check_samples(const StageRun& run); // samples_check.cpp
 
 } // namespace wadi::conformance

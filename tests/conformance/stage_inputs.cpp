@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <limits>
 
 namespace wadi::conformance {
@@ -104,6 +105,21 @@ bool fill_tiles(BenchBuffer& buffer, const compute::StageBinding& binding, const
     return true;
 }
 
+// Spread over the grid and a little beyond it; the first ones on a corner, a cell centre and a face.
+std::vector<std::uint32_t> point_words(const WorldParams& params) {
+    const double width = params.nx * static_cast<double>(params.dx), height = params.ny * static_cast<double>(params.dx);
+    const double half = 0.5 * static_cast<double>(params.dx);
+    std::vector<std::uint32_t> words;
+    for (int n = 0; n < sampled_points; ++n) {
+        const auto spread = [n](double step) { return 1.2 * std::fmod(step * (n + 1), 1.0) - 0.1; };
+        double x = width * spread(0.7548776662), y = height * spread(0.5698402910);
+        if (n < 3) x = y = n * half;
+        words.push_back(std::bit_cast<std::uint32_t>(static_cast<float>(x)));
+        words.push_back(std::bit_cast<std::uint32_t>(static_cast<float>(y)));
+    }
+    return words;
+}
+
 std::vector<std::uint32_t> ledger_words(std::size_t count) {
     std::vector<std::uint32_t> words(count);
     for (std::size_t n = 0; n < count; ++n) words[n] = ledger_start(n);
@@ -132,6 +148,11 @@ std::vector<BenchBuffer> stage_buffers(const compute::StageInfo& stage, const Sc
             for (const vec4& shape : source_shapes(scene.settings))
                 for (const float x : {shape.x, shape.y, shape.z, shape.w}) words.push_back(std::bit_cast<std::uint32_t>(x));
             fill_words(buffers[b], std::move(words), false);
+        } else if (binding.name == "points") {
+            fill_words(buffers[b], point_words(params), false);
+        } else if (binding.name == "samples") {
+            fill_words(buffers[b], std::vector<std::uint32_t>(std::size_t{sampled_points} * SAMPLE_FLOATS, nan_word), true);
+            buffers[b].must_change = buffers[b].may_change;
         } else if (binding.name == "source_ledger") {
             fill_words(buffers[b],
                        ledger_words(std::size_t{2 * LEDGER_ENTRIES} * static_cast<std::size_t>(layout.strips() * layout.pitch())),

@@ -137,6 +137,7 @@ Pilot make_pilot(const Scene& scene, const std::string& stage) {
     }
     pilot.input = inputs.next(scene.pilot_steps);
     pilot.input.interpolation = 0.3F;
+    pilot.input.point_count = stage == "sample_points" ? sampled_points : 0;
     if (scene.rough_stretch) settle_stretch(s, true);
     const bool in_step =
         std::any_of(std::begin(steps<float>), std::end(steps<float>), [&](const auto& step) { return stage == step.stage; });

@@ -14,6 +14,8 @@ bool has_counterpart(const std::string& stage);
 /// Runs one stage; a stage without a counterpart changes nothing.
 template <class Real> void run_reference_stage(reference::Solver<Real>& solver, const std::string& stage);
 
+constexpr int sampled_points = 150; // of a stage over POINTS: some rows, the last one not full
+
 /// The state in front of a stage, the same in both precisions.
 struct Pilot {
     std::unique_ptr<reference::Solver<float>> narrow;

@@ -237,9 +237,81 @@ WADI_API wadi_result wadi_world_begin_save(wadi_world_id world, uint64_t* ticket
  *  Errors: BAD_ARGUMENT (another ticket, another data, size NULL or too small), DEVICE_LOST. */
 WADI_API wadi_result wadi_world_end_save(wadi_world_id world, uint64_t ticket, void* data, size_t* size);
 
+/** Keeps earlier states on the device: the newest `frames` (0 ... 256; 0 = off, frees them) of the state now and of every later step
+ *  that is a multiple of interval_steps (1 or more). Each takes the bytes of a snapshot, allocated here. States kept before are
+ *  forgotten. Does not wait, but may when it frees. Errors: BAD_ARGUMENT, OUT_OF_MEMORY (nothing is kept then), DEVICE_LOST. */
+WADI_API wadi_result wadi_world_set_rollback(wadi_world_id world, uint32_t frames, uint32_t interval_steps);
+/** Steps that can be gone back to, oldest first. *count: capacity in, steps out; steps may be NULL to ask the number. */
+WADI_API wadi_result wadi_world_get_rollback_steps(wadi_world_id world, uint64_t* steps, uint32_t* count);
+/** Goes back to the newest kept step <= `step`, written to *reached (may be NULL); later kept steps are forgotten. The world goes on
+ *  from there as it did the first time, in every bit, given the same input. Does not wait. Errors: BAD_ARGUMENT (no step that old
+ *  is kept; world unchanged), DEVICE_LOST. */
+WADI_API wadi_result wadi_world_roll_back(wadi_world_id world, uint64_t step, uint64_t* reached);
+
 /** 64-bit hash of the state, ghosts and terrain excluded: wadi_world_stats.hash without the rest. Equal states have equal hashes on
  *  every backend that passes the exact-float test. Waits for the steps asked for and reads the whole state. */
 WADI_API wadi_result wadi_world_get_hash(wadi_world_id world, uint64_t* hash);
+
+/* ---- Queries ---- */
+
+/** The state at one point. */
+typedef struct wadi_query_result {
+    float terrain;                /* ground height [m]; heights and depths are bilinear between cell centres */
+    float sand_depth;             /* [m] */
+    float water_depth;            /* pure water above the sand [m]; 0 where all four cells around are dry */
+    float surface;                /* visible surface, ground + max(sand, water) [m]. At the water's edge it leads from the water's level
+                                     in the last wet cell to the ground of the dry one, as a mesh through the cell centres does */
+    float velocity[2];            /* of the pure water, between faces [m/s]; 0 on dry faces */
+    float normal[3];              /* of the visible surface, unit length, up; slopes bilinear between cell centres */
+    float saturation;             /* W/(W + hs) of the sand, 0 without sand */
+    int32_t inside;               /* 0: the point is outside the grid, all else is 0 */
+} wadi_query_result;
+
+/** Asks for the state at `count` (1 ... 65536) points of the world: x, y of each in metres from the south-west corner of the grid.
+ *  Answered for the state after the steps asked for so far or, in the middle of a step that runs in parts, after that step. Never
+ *  waits; the first eight calls, and the first eight with more points than before (in powers of two, 1024 at least), allocate, and
+ *  the latter wait for the device. Eight batches may be under way.
+ *  NOT_READY: all eight are; ask again later. Errors: BAD_ARGUMENT (count, a coordinate that is NaN or infinite), DEVICE_LOST. */
+WADI_API wadi_result wadi_world_query(wadi_world_id world, const float* xy, uint32_t count, uint64_t* ticket);
+/** The answers in the order of the points, their number and the step they are of. NOT_READY until they are there; never waits. They
+ *  may be fetched again until eight later batches were asked for. results may be NULL to ask count and step only; count and step
+ *  may be NULL. Errors: BAD_ARGUMENT (unknown or too old a ticket, capacity below the number), DEVICE_LOST. */
+WADI_API wadi_result wadi_world_get_query(wadi_world_id world, uint64_t ticket, wadi_query_result* results, uint32_t capacity,
+                                          uint32_t* count, uint64_t* step);
+
+#define WADI_BODY_BOX 0
+#define WADI_BODY_SPHERE 1
+
+/** A body in the water. World axes: x east, y north, z up. */
+typedef struct wadi_body {
+    uint32_t struct_size;
+    int32_t shape;                /* WADI_BODY_BOX or WADI_BODY_SPHERE */
+    float position[3];            /* of its middle [m] */
+    float orientation[4];         /* unit quaternion x, y, z, w from the body's axes to the world's; spheres ignore it */
+    float half_size[3];           /* box: half edges along its own axes [m], above 0 */
+    float radius;                 /* sphere [m], above 0 */
+    float velocity[3];            /* [m/s] */
+    float angular_velocity[3];    /* about the world's axes [rad/s] */
+    float water_density;          /* [kg/m3], 0 or more; default 1000 */
+    float gravity;                /* [m/s2], 0 or more; default 9.81 */
+    float linear_drag;            /* of the whole body [kg/s], 0 or more; default 0 */
+    float quadratic_drag;         /* drag coefficient, dimensionless, 0 or more; default 1 */
+    int32_t samples;              /* columns per side, 1 ... 16; default 4 */
+} wadi_body;
+WADI_API wadi_body wadi_default_body(void);
+
+/** The points to pass to wadi_world_query for a body: samples * samples for a box, those within the circle for a sphere. *count:
+ *  points that fit xy in, points out; xy may be NULL to ask the number. Needs no world. Errors: BAD_ARGUMENT. */
+WADI_API wadi_result wadi_buoyancy_points(const wadi_body* body, float* xy, uint32_t* count);
+/** Force [N] and torque about the body's middle [N m] of the water, from the answers for those points (the body may have moved
+ *  meanwhile). The body is cut into columns, upright or along its steepest axis. Where V of a column lies between bed and surface:
+ *  buoyancy  water_density * gravity * V, upwards, at the middle of that part;
+ *  drag      V / volume * (linear_drag * du + water_density * quadratic_drag * area * |du| * du / 2) there, with du the water's
+ *            velocity (vertical: 0) less the body's, area = pi radius^2 or volume^(2/3) of a box.
+ *  The weight of the body is not in it; points outside the grid give nothing. Errors: BAD_ARGUMENT (body, count not that of
+ *  wadi_buoyancy_points). */
+WADI_API wadi_result wadi_buoyancy_force(const wadi_body* body, const wadi_query_result* results, uint32_t count, float force[3],
+                                         float torque[3]);
 
 /* ---- Introspection ---- */
 

@@ -1,0 +1,73 @@
+// One world is for one thread at a time: a second one is turned away unharmed. Different worlds are independent.
+#include "tests/plugin/abi_worlds.hpp"
+#include <atomic>
+#include <doctest/doctest.h>
+#include <thread>
+
+using namespace wadi::test;
+
+TEST_CASE("two threads on one world: each call works or says BUSY, and what was done is what was counted") {
+    auto world = mixed_world("cpu", 24);
+    std::atomic<unsigned> stepped{0}, busy{0}, wrong{0};
+    const auto hammer = [&] {
+        for (int n = 0; n < 300; ++n) {
+            const auto result = wadi_world_step(world.id, 1);
+            if (result == WADI_OK) ++stepped;
+            if (result == WADI_ERROR_BUSY) ++busy;
+            if (result == WADI_ERROR_BUSY && !error_mentions("wadi_world_step: another call is inside this world")) ++wrong;
+            if (result != WADI_OK && result != WADI_ERROR_BUSY) ++wrong;
+            uint64_t hash = 0;
+            if (n % 20 == 0 && wadi_world_get_hash(world.id, &hash) == WADI_ERROR_BUSY) ++busy;
+            if (n % 50 == 0 && wadi_world_get_warning(world.id, 1000) != nullptr) ++wrong;
+        }
+    };
+    std::thread first(hammer), second(hammer);
+    first.join();
+    second.join();
+    CHECK(wrong == 0);
+    MESSAGE("stepped " << stepped.load() << ", busy " << busy.load());
+    CHECK(steps_of(world) == stepped);
+    auto alone = mixed_world("cpu", 24);
+    step(alone, stepped);
+    CHECK(hash_of(alone) == hash_of(world));
+}
+
+TEST_CASE("a world in use by another thread is not destroyed; once it is, the other thread is told") {
+    unsigned busy = 0;
+    for (int round = 0; round < 20; ++round) {
+        auto world = mixed_world("cpu", 24);
+        std::atomic<bool> inside{false};
+        wadi_result last = WADI_OK;
+        std::thread other([&] {
+            uint64_t hash = 0;
+            for (last = WADI_OK; last == WADI_OK || last == WADI_ERROR_BUSY;) {
+                last = wadi_world_get_hash(world.id, &hash);
+                inside = true;
+            }
+        });
+        while (!inside) std::this_thread::yield();
+        wadi_result destroyed = wadi_destroy_world(world.id);
+        for (; destroyed == WADI_ERROR_BUSY; destroyed = wadi_destroy_world(world.id)) ++busy;
+        other.join();
+        CHECK(destroyed == WADI_OK);
+        CHECK(last == WADI_ERROR_BAD_ARGUMENT);
+    }
+    CHECK(busy > 0);
+}
+
+TEST_CASE("four threads with a world each: the same bits as alone") {
+    auto alone = mixed_world("cpu", 24);
+    step(alone, 60);
+    const auto expected = hash_of(alone);
+    std::vector<std::thread> threads;
+    std::atomic<unsigned> right{0};
+    for (int n = 0; n < 4; ++n) {
+        threads.emplace_back([&] {
+            auto world = mixed_world("cpu", 24);
+            step(world, 60);
+            if (hash_of(world) == expected) ++right;
+        });
+    }
+    for (auto& thread : threads) thread.join();
+    CHECK(right == 4);
+}
