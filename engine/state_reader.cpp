@@ -1,6 +1,7 @@
 #include "engine/state_reader.hpp"
 #include "engine/world_params.hpp"
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -137,6 +138,30 @@ Result<Ledger> StateReader::read_ledger() {
     return ledger;
 }
 
+Result<std::uint64_t> StateReader::hash_fields(const Look& look) {
+    std::uint64_t hash = 0;
+    for (std::size_t n = 0; n < std::size(hashed_fields); ++n) {
+        const std::string name = hashed_fields[n];
+        if (state_.plan().find(name) == nullptr) continue;
+        auto raw = read_raw(name);
+        if (!raw) return raw.status();
+        // Velocities have one more face than cells along their own axis.
+        const int nx = state_.layout().nx + (name.ends_with("velocity_x") ? 1 : 0),
+                  ny = state_.layout().ny + (name.ends_with("velocity_y") ? 1 : 0);
+        for (int j = 0; j < ny; ++j) {
+            const auto row = std::span<const float>(*raw).subspan(state_.layout().index(0, j), static_cast<std::size_t>(nx));
+            for (std::size_t i = 0; i < row.size(); ++i) {
+                hash += mix(mix((std::uint64_t{n} << 56) ^ (static_cast<std::uint64_t>(j) << 28) ^ i) +
+                            std::bit_cast<std::uint32_t>(row[i]));
+            }
+            if (look) look(name, row);
+        }
+    }
+    return hash;
+}
+
+Result<std::uint64_t> StateReader::hash() { return state_.lost() ? hash_fields({}) : Result<std::uint64_t>(state_.lost()); }
+
 Result<WorldStats> StateReader::stats() {
     if (!state_.lost()) return state_.lost();
     WorldStats s;
@@ -147,39 +172,25 @@ Result<WorldStats> StateReader::stats() {
     auto ledger = read_ledger();
     if (!ledger) return ledger.status();
     s.ledger = *ledger;
-    for (std::size_t n = 0; n < std::size(hashed_fields); ++n) {
-        const std::string name = hashed_fields[n];
-        if (state_.plan().find(name) == nullptr) continue;
-        auto raw = read_raw(name);
-        if (!raw) return raw.status();
+    auto hash = hash_fields([&](const std::string& name, std::span<const float> row) {
         const bool sand = name.starts_with("sand_"), height = name.ends_with("_height"), velocity = is_velocity(name);
-        // Velocities have one more face than cells along their own axis.
-        const int nx = state_.layout().nx + (name.ends_with("velocity_x") ? 1 : 0),
-                  ny = state_.layout().ny + (name.ends_with("velocity_y") ? 1 : 0);
-        for (int j = 0; j < ny; ++j) {
-            for (int i = 0; i < nx; ++i) {
-                const float value = (*raw)[state_.layout().index(i, j)];
-                std::uint32_t bits;
-                std::memcpy(&bits, &value, 4);
-                s.hash += mix(
-                    mix((std::uint64_t{n} << 56) ^ (static_cast<std::uint64_t>(j) << 28) ^ static_cast<std::uint64_t>(i)) + bits);
-                if (!std::isfinite(value)) {
-                    ++s.not_finite;
-                    continue;
-                }
-                const double x = static_cast<double>(value);
-                if (height) {
-                    (sand ? s.sand_quanta : s.water_quanta) += std::llrint(x / quantum);
-                    auto& largest = sand ? s.largest_sand : s.largest_water;
-                    largest = std::max(largest, x);
-                    s.smallest_height = std::min(s.smallest_height, x);
-                } else if (velocity) {
-                    auto& largest = sand ? s.largest_sand_speed : s.largest_water_speed;
-                    largest = std::max(largest, std::abs(x));
-                }
+        for (const float value : row) {
+            const double x = static_cast<double>(value);
+            if (!std::isfinite(value)) {
+                ++s.not_finite;
+            } else if (height) {
+                (sand ? s.sand_quanta : s.water_quanta) += std::llrint(x / quantum);
+                auto& largest = sand ? s.largest_sand : s.largest_water;
+                largest = std::max(largest, x);
+                s.smallest_height = std::min(s.smallest_height, x);
+            } else if (velocity) {
+                auto& largest = sand ? s.largest_sand_speed : s.largest_water_speed;
+                largest = std::max(largest, std::abs(x));
             }
         }
-    }
+    });
+    if (!hash) return hash.status();
+    s.hash = *hash;
     if (auto status = publish("mark_limits", {}, {"limit_marks"}); !status) return status;
     auto marks = read_buffer(output_[0]);
     if (!marks) return marks.status();

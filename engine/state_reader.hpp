@@ -27,6 +27,8 @@ class StateReader {
     /// field ("water_depth", "free_surface", "surface_saturation"). A field the mask lacks is zero.
     Status read(const std::string& name, std::span<float> values);
     Result<WorldStats> stats();
+    /// The hash of the statistics alone: fields are read, nothing is run.
+    Result<std::uint64_t> hash();
     /// The raw field with ghosts at its current parity.
     Result<std::vector<float>> read_raw(const std::string& field);
 
@@ -36,6 +38,9 @@ class StateReader {
     Status read_cells(compute::Buffer from, std::span<float> values);
     Result<std::vector<float>> read_buffer(compute::Buffer from);
     Result<Ledger> read_ledger();
+    /// Reads every hashed field and hashes it; `look` sees each of its rows as well, ghosts excluded.
+    using Look = std::function<void(const std::string& field, std::span<const float> row)>;
+    Result<std::uint64_t> hash_fields(const Look& look);
 
     WorldState& state_;
     std::array<compute::Buffer, 2> output_{}; // of publish stages, made when first asked for

@@ -78,11 +78,24 @@ Status Stepper::finish(int parts) {
         if (!ticket) return state_.note(ticket.status());
         ticket_ = *ticket;
     }
-    if (parts_done_ < this->parts()) return ok_status();
+    return parts_done_ < this->parts() ? ok_status() : complete_step();
+}
+
+Status Stepper::complete_step() {
     parts_done_ = 0;
     state_.set_turn(1 - state_.turn());
     ++state_.steps;
-    return ok_status();
+    return after_step_ ? after_step_() : ok_status();
+}
+
+HostTotals Stepper::totals() const { return {state_.steps, state_.sand_initial, state_.water_initial, inputs_.totals()}; }
+
+void Stepper::set_totals(const HostTotals& totals) {
+    parts_done_ = 0;
+    state_.steps = totals.steps;
+    state_.sand_initial = totals.sand_initial;
+    state_.water_initial = totals.water_initial;
+    inputs_.set_totals(totals.inputs);
 }
 
 Status Stepper::step_part() {
@@ -103,9 +116,7 @@ Status Stepper::step() {
         pending_timings_.push_back(*ticket);
         if (auto status = collect_timings(false); !status) return state_.note(status);
     }
-    state_.set_turn(1 - state_.turn());
-    ++state_.steps;
-    return ok_status();
+    return complete_step();
 }
 
 Status Stepper::set_profiling(bool on) {

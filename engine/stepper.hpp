@@ -2,6 +2,7 @@
 #pragma once
 #include "engine/step_inputs.hpp"
 #include "engine/world_state.hpp"
+#include <functional>
 
 namespace wadi {
 
@@ -10,6 +11,13 @@ struct StageTime {
     std::string stage;
     double milliseconds = 0;
     int passes = 0;
+};
+
+/// What a step boundary is besides the fields on the device.
+struct HostTotals {
+    std::uint64_t steps = 0;
+    std::int64_t sand_initial = 0, water_initial = 0; // quanta the books began with
+    StepInputs::Totals inputs;
 };
 
 class Stepper {
@@ -29,6 +37,13 @@ class Stepper {
     /// Of the newest submission; null before the first.
     compute::Ticket ticket() const { return ticket_; }
 
+    /// Called whenever a step has become whole: work that was asked for in the middle of a step, or that is due every so many.
+    void set_after_step(std::function<Status()> call) { after_step_ = std::move(call); }
+
+    HostTotals totals() const;
+    /// Goes to another step boundary. Parts already submitted are given up: the caller overwrites every kept field.
+    void set_totals(const HostTotals& totals);
+
     Status set_profiling(bool on);
     /// Mean over the steps since profiling was switched on; steps in parts are not timed.
     Result<std::vector<StageTime>> stage_times();
@@ -40,6 +55,7 @@ class Stepper {
     Result<compute::Program> record_step(Parity& parity, bool timestamps);
     Status record_parts(std::size_t turn);
     Status finish(int parts);
+    Status complete_step();
     Status collect_timings(bool all);
     void drop_programs();
 
@@ -50,6 +66,7 @@ class Stepper {
     int parts_done_ = 0;
     compute::Ticket ticket_;
     StepInput input_{}; // of the step whose parts are being submitted
+    std::function<Status()> after_step_;
     bool profiling_ = false;
     std::vector<compute::Ticket> pending_timings_;
     std::map<std::string, double> stage_milliseconds_;

@@ -24,8 +24,18 @@ Status World::step(std::uint32_t count) {
 }
 
 Status World::update(std::uint64_t nanoseconds, Frame& frame) {
+    outputs_.begin_update();
     if (auto status = frames_.take_steps(nanoseconds, frame); !status) return status;
+    if (auto status = outputs_.publish(stepper_.parts_done() == 0, frame.interpolation); !status) return status;
     return frames_.begin_parts();
+}
+
+Status World::set_update_settings(const UpdateSettings& settings) {
+    const UpdateSettings before = frames_.settings();
+    if (auto status = frames_.set(settings); !status) return status;
+    auto status = outputs_.set_interpolation(settings.interpolate_outputs);
+    if (!status) static_cast<void>(frames_.set(before));
+    return status;
 }
 
 Status World::finish_step() {
@@ -43,6 +53,24 @@ Status World::read(const std::string& name, std::span<float> values) {
 Result<WorldStats> World::stats() {
     auto status = finish_step();
     return status ? reader_.stats() : Result<WorldStats>(status);
+}
+
+Result<std::uint64_t> World::hash() {
+    auto status = finish_step();
+    return status ? reader_.hash() : Result<std::uint64_t>(status);
+}
+
+Status World::at_boundary() { return snapshots_.at_boundary(); }
+
+Status World::save(std::span<std::byte> to) {
+    auto status = finish_step();
+    return status ? snapshots_.save(to) : status;
+}
+
+Status World::load(std::span<const std::byte> from) {
+    auto status = snapshots_.load(from);
+    if (status) frames_.went_back();
+    return status ? at_boundary() : status;
 }
 
 Result<std::vector<float>> World::read_raw(const std::string& field) {

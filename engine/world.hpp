@@ -1,18 +1,12 @@
 // A world: its state on a device, and the parts that step it and answer for it. Each part has a file of its own.
 #pragma once
 #include "engine/frame_driver.hpp"
+#include "engine/outputs.hpp"
+#include "engine/snapshots.hpp"
 #include "engine/state_reader.hpp"
 #include "engine/stepper.hpp"
 
 namespace wadi {
-
-/// The state of a world between two steps: current buffers of all state fields with their ghosts, ledgers, running totals.
-struct Snapshot {
-    std::uint64_t steps = 0;
-    std::uint32_t effects = 0;
-    std::map<std::string, std::vector<std::uint32_t>> fields; // words as they lie on the device
-    StepInputs::Totals totals;
-};
 
 class World {
   public:
@@ -25,9 +19,11 @@ class World {
     /// Submits water steps beside the clock of update(); returns before the device has finished them. A step that an update began
     /// in parts is finished first and counts as that update's.
     Status step(std::uint32_t count);
-    /// Submits the water steps that fall due after `nanoseconds` more of host time; returns at once.
+    /// Submits the water steps that fall due after `nanoseconds` more of host time, and what outputs() publishes; returns at
+    /// once.
     Status update(std::uint64_t nanoseconds, Frame& frame);
-    Status set_update_settings(const UpdateSettings& settings) { return frames_.set(settings); }
+    Status set_update_settings(const UpdateSettings& settings);
+    Outputs& outputs() { return outputs_; }
     std::uint64_t steps() const { return state_.steps; }
     double time() const { return static_cast<double>(state_.steps) * settings().dt; }
 
@@ -36,10 +32,15 @@ class World {
     Result<WorldStats> stats();
     Result<std::vector<float>> read_raw(const std::string& field);
 
-    /// Everything that the next step depends on, to the bit. Survives the loss of the device.
-    Result<Snapshot> snapshot();
-    /// Goes back (or on) to a snapshot of a world with the same settings and fields. Errors: bad_argument where it does not fit.
-    Status restore(const Snapshot& snapshot);
+    /// The hash of the statistics alone.
+    Result<std::uint64_t> hash();
+
+    /// Everything that the next step depends on, to the bit (snapshot_format.hpp). `to` has snapshots().bytes() bytes.
+    Status save(std::span<std::byte> to);
+    /// Goes back (or on) to a snapshot of a world of the same level; errors: Snapshots::load. Parts of a step are given up, and
+    /// frames kept for roll-back belong to another past: they are forgotten.
+    Status load(std::span<const std::byte> from);
+    Snapshots& snapshots() { return snapshots_; }
 
     Status set_profiling(bool on) { return stepper_.set_profiling(on); }
     /// Mean over the steps since profiling was switched on.
@@ -49,21 +50,30 @@ class World {
     const Settings& settings() const { return state_.settings(); }
     const StepPlan& plan() const { return state_.plan(); }
     const EffectChoice& effects() const { return state_.effects(); }
+    /// device_lost with its text once the device is lost.
+    const Status& lost() const { return state_.lost(); }
     compute::Device& device() const { return state_.device(); }
     std::uint64_t device_bytes() const { return state_.device_bytes(); }
+    const std::vector<MemoryItem>& memory() const { return state_.memory(); }
     /// The plan as text: effects and reasons, passes, buffers, bytes per cell.
     std::string describe_plan() const;
 
   private:
     World(const Settings& settings, std::unique_ptr<compute::Device> device, compute::GroupSize group)
-        : state_(settings, std::move(device), group) {}
+        : state_(settings, std::move(device), group) {
+        stepper_.set_after_step([this] { return at_boundary(); });
+    }
     /// Brings the world to a boundary between two steps.
     Status finish_step();
+    /// What waits for such a boundary.
+    Status at_boundary();
 
     WorldState state_; // first: the parts refer to it
     Stepper stepper_{state_};
     FrameDriver frames_{state_, stepper_};
+    Outputs outputs_{state_};
     StateReader reader_{state_};
+    Snapshots snapshots_{state_, stepper_};
 };
 
 } // namespace wadi

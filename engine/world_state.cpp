@@ -72,7 +72,10 @@ Status WorldState::open(const EffectChoice& effects) {
 
 Result<compute::Buffer> WorldState::make_buffer(const compute::BufferDesc& desc) {
     auto made = device_->create_buffer(desc);
-    if (made) device_bytes_ += desc.bytes;
+    if (made) {
+        device_bytes_ += desc.bytes;
+        memory_.push_back({*made, desc.label, desc.bytes});
+    }
     return made;
 }
 
@@ -80,6 +83,15 @@ void WorldState::free_buffer(compute::Buffer buffer, std::uint64_t bytes) {
     if (buffer.id == 0) return;
     device_->destroy_buffer(buffer);
     device_bytes_ -= bytes;
+    std::erase_if(memory_, [&](const MemoryItem& item) { return item.buffer == buffer; });
+}
+
+std::vector<KeptField> WorldState::kept_fields() const {
+    std::vector<KeptField> kept;
+    for (const auto& field : plan_.fields) {
+        if (field.role == FieldRole::state || field.role == FieldRole::ledger) kept.push_back({field.name, field_bytes(field)});
+    }
+    return kept;
 }
 
 std::uint64_t WorldState::field_bytes(const PlanField& field) const {

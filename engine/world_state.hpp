@@ -20,6 +20,19 @@ using Parity = std::set<std::string>;
 /// Buffers by the name of a stage's binding.
 using Slots = std::map<std::string, compute::Buffer>;
 
+/// One buffer on the device.
+struct MemoryItem {
+    compute::Buffer buffer;
+    std::string label;
+    std::uint64_t bytes = 0;
+};
+
+/// A field that the next step depends on, or a ledger: what snapshots and roll-back frames hold.
+struct KeptField {
+    std::string name;
+    std::uint64_t bytes = 0;
+};
+
 class WorldState {
   public:
     WorldState(const Settings& settings, std::unique_ptr<compute::Device> device, compute::GroupSize group);
@@ -37,6 +50,8 @@ class WorldState {
     const StepPlan& plan() const { return plan_; }
     compute::Device& device() const { return *device_; }
     std::uint64_t device_bytes() const { return device_bytes_; }
+    /// Every buffer that counts into device_bytes().
+    const std::vector<MemoryItem>& memory() const { return memory_; }
 
     /// Which of the two step programs comes next (0 or 1), and the buffers that are current before each.
     int turn() const { return turn_; }
@@ -55,6 +70,7 @@ class WorldState {
     /// The buffer of a field under a parity; with the suffix "_next" its partner. Null where the plan has no such field.
     compute::Buffer buffer(const std::string& name, const Parity& parity) const;
     std::uint64_t field_bytes(const PlanField& field) const;
+    std::vector<KeptField> kept_fields() const;
     /// A buffer that counts into device_bytes().
     Result<compute::Buffer> make_buffer(const compute::BufferDesc& desc);
     void free_buffer(compute::Buffer buffer, std::uint64_t bytes);
@@ -84,6 +100,7 @@ class WorldState {
     std::array<Parity, 2> start_parity_{};
     int turn_ = 0;
     std::uint64_t recording_ = 0, device_bytes_ = 0;
+    std::vector<MemoryItem> memory_;
     Status lost_;
 };
 

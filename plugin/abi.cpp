@@ -29,6 +29,10 @@ wadi_result report(const Status& status) {
         return WADI_ERROR_DEVICE_LOST;
     case Code::internal:
         return WADI_ERROR_INTERNAL;
+    case Code::not_ready:
+        return WADI_NOT_READY;
+    case Code::busy:
+        return WADI_ERROR_BUSY;
     }
     return WADI_ERROR_INTERNAL;
 }

@@ -26,11 +26,19 @@ template <class Call> wadi_result guarded(const char* function, Call call) {
     }
 }
 
+/// Why a world cannot be entered, as an error of `function`.
+inline wadi_result refused(const char* function, Entry entry) {
+    return entry == Entry::busy
+               ? report(error(Code::busy, std::string(function) + ": another call is inside this world; a world is used by one "
+                                                                  "thread at a time"))
+               : bad_argument(std::string(function) + ": the world id is null or its world was destroyed");
+}
+
+// The world is marked as in use for as long as the call lasts; no lock is held.
 template <class Call> wadi_result with_world(const char* function, wadi_world_id id, Call call) {
     return guarded(function, [&] {
-        HostedWorld* hosted = worlds().find(id);
-        if (hosted == nullptr) return bad_argument(std::string(function) + ": the world id is null or its world was destroyed");
-        return call(*hosted);
+        const EnteredWorld entered(worlds(), id);
+        return entered.hosted() == nullptr ? refused(function, entered.entry()) : call(*entered.hosted());
     });
 }
 

@@ -39,8 +39,15 @@ wadi_result wadi_world_get_info(wadi_world_id id, wadi_world_info* info) {
 }
 
 const char* wadi_world_get_warning(wadi_world_id id, uint32_t n) {
-    const auto* hosted = plugin::worlds().find(id);
-    return hosted != nullptr && n < hosted->warnings.size() ? hosted->warnings[n].c_str() : nullptr;
+    const char* warning = nullptr;
+    with_world(__func__, id, [&](HostedWorld& hosted) {
+        if (n >= hosted.warnings.size())
+            return bad_argument("wadi_world_get_warning: n is " + std::to_string(n) + " of " +
+                                std::to_string(hosted.warnings.size()));
+        warning = hosted.warnings[n].c_str();
+        return report(ok_status());
+    });
+    return warning;
 }
 
 size_t wadi_world_describe_plan(wadi_world_id id, char* text, size_t size) {

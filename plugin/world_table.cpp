@@ -13,19 +13,33 @@ wadi_world_id WorldTable::add(HostedWorld hosted) {
     return {static_cast<std::uint32_t>(n + 1), slot.generation};
 }
 
-HostedWorld* WorldTable::find(wadi_world_id id) {
-    const std::lock_guard lock(mutex_);
+WorldTable::Slot* WorldTable::find(wadi_world_id id) {
     if (id.index == 0 || id.index > slots_.size()) return nullptr;
     auto& slot = slots_[id.index - 1];
-    return slot.generation == id.generation ? slot.hosted.get() : nullptr;
+    return slot.generation == id.generation && slot.hosted ? &slot : nullptr;
 }
 
-bool WorldTable::remove(wadi_world_id id) {
-    std::unique_ptr<HostedWorld> gone;
+Entry WorldTable::enter(wadi_world_id id, HostedWorld*& hosted) {
     const std::lock_guard lock(mutex_);
-    if (id.index == 0 || id.index > slots_.size() || slots_[id.index - 1].generation != id.generation) return false;
-    gone = std::move(slots_[id.index - 1].hosted);
-    return gone != nullptr;
+    auto* slot = find(id);
+    if (slot == nullptr || slot->busy) return slot == nullptr ? Entry::unknown : Entry::busy;
+    slot->busy = true;
+    hosted = slot->hosted.get();
+    return Entry::entered;
+}
+
+void WorldTable::leave(wadi_world_id id) {
+    const std::lock_guard lock(mutex_);
+    find(id)->busy = false;
+}
+
+Entry WorldTable::remove(wadi_world_id id) {
+    std::unique_ptr<HostedWorld> gone; // destroyed after the lock is given back: that may take its time
+    const std::lock_guard lock(mutex_);
+    auto* slot = find(id);
+    if (slot == nullptr || slot->busy) return slot == nullptr ? Entry::unknown : Entry::busy;
+    gone = std::move(slot->hosted);
+    return Entry::entered;
 }
 
 WorldTable& worlds() {

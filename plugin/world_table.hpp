@@ -18,20 +18,46 @@ struct HostedWorld {
     std::vector<std::string> warnings;
 };
 
+enum class Entry { entered, unknown, busy };
+
 class WorldTable {
   public:
     wadi_world_id add(HostedWorld hosted);
-    /// Null when the id is not of a living world. The pointer stays valid until that id is removed.
-    HostedWorld* find(wadi_world_id id);
-    bool remove(wadi_world_id id);
+    /// Only one caller is inside a world at a time; one that entered must leave.
+    Entry enter(wadi_world_id id, HostedWorld*& hosted);
+    void leave(wadi_world_id id);
+    Entry remove(wadi_world_id id);
 
   private:
     struct Slot {
         std::uint32_t generation = 0;
+        bool busy = false; // a call is inside
         std::unique_ptr<HostedWorld> hosted;
     };
-    std::mutex mutex_;
+    /// Null when the id is not of a living world. The mutex must be held.
+    Slot* find(wadi_world_id id);
+
+    std::mutex mutex_; // held to look worlds up, not while one is used
     std::vector<Slot> slots_;
+};
+
+/// Inside a world from construction to destruction, if it could be entered.
+class EnteredWorld {
+  public:
+    EnteredWorld(WorldTable& table, wadi_world_id id) : table_(table), id_(id), entry_(table.enter(id, hosted_)) {}
+    ~EnteredWorld() {
+        if (hosted_ != nullptr) table_.leave(id_);
+    }
+    EnteredWorld(const EnteredWorld&) = delete;
+    EnteredWorld& operator=(const EnteredWorld&) = delete;
+    HostedWorld* hosted() const { return hosted_; }
+    Entry entry() const { return entry_; }
+
+  private:
+    WorldTable& table_;
+    const wadi_world_id id_;
+    HostedWorld* hosted_ = nullptr;
+    const Entry entry_;
 };
 
 WorldTable& worlds();

@@ -20,6 +20,10 @@ const char* code_name(Code code) {
         return "device_lost";
     case Code::internal:
         return "internal";
+    case Code::not_ready:
+        return "not_ready";
+    case Code::busy:
+        return "busy";
     }
     return "unknown";
 }

@@ -15,6 +15,8 @@ enum class Code {
     out_of_memory, // host or device memory
     device_lost,   // sticky: every later call on the device returns it
     internal,      // our own bug
+    not_ready,     // not an error: ask again later
+    busy,          // another thread is inside a call on the same world
 };
 
 /// The name of a code as it is printed: "bad_argument" and so on.

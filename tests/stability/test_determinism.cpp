@@ -115,23 +115,22 @@ TEST_CASE("saved, stepped on, restored and stepped again: the same bits, on ever
         CAPTURE(backend);
         auto world = make_world(scene, {backend});
         step(*world, 25);
-        auto saved = world->snapshot();
-        REQUIRE(saved);
+        const auto saved = save(*world);
         step(*world, 20);
         CHECK(hash_of(*world) == expected);
-        REQUIRE(world->restore(*saved));
+        REQUIRE(world->load(saved));
         CHECK(world->steps() == 25);
         step(*world, 20);
         CHECK(hash_of(*world) == expected);
         auto other = make_world(scene); // on the CPU
         step(*other, 3);
-        REQUIRE(other->restore(*saved));
+        REQUIRE(other->load(saved));
         step(*other, 20);
         CHECK(hash_of(*other) == expected);
         auto stats = other->stats();
         REQUIRE(stats);
         CHECK(stats->water_quanta == stats->water_initial + stats->ledger.water_in - stats->ledger.water_out);
-        CHECK(make_world(mixed_scene(48, 41))->restore(*saved).code == Code::bad_argument);
+        CHECK(make_world(mixed_scene(48, 41))->load(saved).code == Code::bad_argument);
     }
 }
 
@@ -187,15 +186,14 @@ TEST_CASE("a lost device is reported by every call, and only by worlds on it") {
         CAPTURE(backend);
         auto world = make_world(mixed_scene(16, 16), {backend}), other = make_world(mixed_scene(16, 16), {backend});
         step(*world, 3);
-        auto saved = world->snapshot();
-        REQUIRE(saved);
+        const auto saved = save(*world);
         world->device().inject_device_lost();
         CHECK(world->step(1).code == Code::device_lost);
         CHECK(world->stats().status().code == Code::device_lost);
         std::vector<float> cells(256);
         CHECK(world->read("water_height", cells).code == Code::device_lost);
         // The last snapshot survives the device.
-        REQUIRE(other->restore(*saved));
+        REQUIRE(other->load(saved));
         step(*other, 1);
         CHECK(hash_of(*other) == run(mixed_scene(16, 16), 4));
     }

@@ -94,6 +94,13 @@ std::uint64_t hash_of(World& world) {
     return stats->hash;
 }
 
+std::vector<std::byte> save(World& world) {
+    std::vector<std::byte> bytes(world.snapshots().bytes());
+    const auto status = world.save(bytes);
+    REQUIRE_MESSAGE(status, status.message);
+    return bytes;
+}
+
 void step(World& world, int count) {
     const auto status = world.step(static_cast<std::uint32_t>(count));
     REQUIRE_MESSAGE(status, status.message);

@@ -41,5 +41,6 @@ std::vector<std::string> available_backends();
 std::vector<std::pair<std::string, std::vector<float>>> state_of(World& world);
 std::uint64_t hash_of(World& world);
 void step(World& world, int count);
+std::vector<std::byte> save(World& world);
 
 } // namespace wadi::test

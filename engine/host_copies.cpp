@@ -1,0 +1,83 @@
+#include "engine/host_copies.hpp"
+#include <algorithm>
+
+namespace wadi {
+
+std::string HostCopies::label(const Item& item, std::size_t slot) { return "host " + item.name + " " + std::to_string(slot); }
+
+void HostCopies::forget() {
+    for (auto& programs : programs_) {
+        for (auto& program : programs) state_.device().destroy_program(program);
+        programs = {};
+    }
+}
+
+Status HostCopies::set(const std::vector<Item>& items) {
+    std::vector<compute::BufferDesc> wanted;
+    for (const auto& item : items) {
+        for (std::size_t n = 0; n < slots; ++n) wanted.push_back({item.bytes, label(item, n), compute::HostAccess::readback});
+    }
+    if (auto status = buffers_.keep(wanted); !status) return status;
+    forget();
+    items_ = items;
+    slots_ = {};
+    for (std::size_t n = 0; n < slots; ++n) {
+        for (const auto& item : items_) slots_[n].copy.contents[item.name] = state_.device().mapped(buffers_[label(item, n)]);
+    }
+    return ok_status();
+}
+
+HostCopies::Slot* HostCopies::newest_finished() {
+    Slot* found = nullptr;
+    for (auto& slot : slots_) {
+        if (finished(slot) && (found == nullptr || slot.ticket.value > found->ticket.value)) found = &slot;
+    }
+    return found;
+}
+
+// Not one that the host may be reading or the device is writing, nor the newest finished, which the host gets next.
+HostCopies::Slot* HostCopies::free_slot() {
+    const Slot* keep = newest_finished();
+    for (auto& slot : slots_) {
+        const bool with_device = filled(slot) && !finished(slot);
+        const bool with_host = slot.handed_out != 0 && slot.handed_out + 1 >= update_;
+        if (&slot != keep && !with_device && !with_host) return &slot;
+    }
+    return nullptr;
+}
+
+Status HostCopies::record(compute::Program& program, std::size_t set, std::size_t slot) {
+    compute::ProgramBuilder builder("host copies");
+    for (const auto& item : items_) builder.copy({item.from[set], buffers_[label(item, slot)], item.offset, 0, item.bytes});
+    auto compiled = state_.device().compile(builder, state_.params());
+    if (!compiled) return compiled.status();
+    program = *compiled;
+    return ok_status();
+}
+
+Status HostCopies::copy(std::size_t set, std::uint64_t step) {
+    Slot* slot = items_.empty() ? nullptr : free_slot();
+    if (slot == nullptr) return ok_status();
+    const auto index = static_cast<std::size_t>(slot - slots_.data());
+    auto& program = programs_[set][index];
+    if (program.id == 0) {
+        if (auto status = record(program, set, index); !status) return state_.note(status);
+    }
+    auto ticket = state_.device().submit(program, {});
+    if (!ticket) return state_.note(ticket.status());
+    slot->ticket = *ticket;
+    slot->copy.step = step;
+    slot->handed_out = 0;
+    return ok_status();
+}
+
+Result<const HostCopies::Copy*> HostCopies::newest() {
+    if (!state_.lost()) return state_.lost();
+    const auto given = std::find_if(slots_.begin(), slots_.end(), [&](const Slot& slot) { return slot.handed_out == update_; });
+    Slot* slot = given != slots_.end() ? &*given : newest_finished();
+    if (slot == nullptr) return error(Code::not_ready, "no published outputs have reached the host yet; ask again later");
+    slot->handed_out = update_;
+    return const_cast<const Copy*>(&slot->copy);
+}
+
+} // namespace wadi

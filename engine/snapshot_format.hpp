@@ -1,0 +1,49 @@
+// A snapshot as bytes: what lies where, the checksum, and for which level it is.
+//
+// Little-endian, version 1:
+//      0  char[8]  "WADISNAP"
+//      8  u32      version
+//     12  u32      number of fields
+//     16  u64      bytes in all
+//     24  u64      checksum of all other bytes
+//     32  i32[2]   cells along x and y
+//     40  u32      effects mask
+//     44  u32      number of running totals
+//     48  u64      digest of the level's settings
+//     56  u64      steps
+//     64  i64[2]   quanta of sand and water that the books began with
+//     80  f64[2]   per running total: metres, whole quanta
+//      .  per field: char[32] name, u64 bytes
+//      .  the fields in that order, as they lie on the device, ghosts included
+#pragma once
+#include "engine/stepper.hpp"
+#include <cstddef>
+#include <span>
+
+namespace wadi {
+
+constexpr std::uint32_t snapshot_version = 1;
+
+struct SnapshotHeader {
+    int nx = 0, ny = 0;
+    std::uint32_t effects = 0;
+    std::uint64_t level = 0; // level_digest()
+    HostTotals totals;
+    std::vector<KeptField> fields;
+
+    /// Bytes of the snapshot and where the contents of a field begin.
+    std::uint64_t bytes() const { return begin_of(fields.size()); }
+    std::uint64_t begin_of(std::size_t field) const;
+};
+
+/// 64 bits over everything in the settings that steps depend on, the effects left out.
+std::uint64_t level_digest(const Settings& settings);
+
+/// Writes all but the fields' contents; `to` has header.bytes().
+void write_header(const SnapshotHeader& header, std::span<std::byte> to);
+/// Sets the checksum once everything is in place.
+void seal(std::span<std::byte> snapshot);
+/// Errors: bad_file (no snapshot, a newer version, truncated, changed).
+Result<SnapshotHeader> read_header(std::span<const std::byte> snapshot);
+
+} // namespace wadi

@@ -1,0 +1,78 @@
+// Saving, loading, roll-back and the hash.
+#include "engine/snapshot_file.hpp"
+#include "plugin/abi.hpp"
+
+using namespace wadi;
+using namespace wadi::plugin;
+
+namespace {
+
+std::span<std::byte> bytes_at(void* data, size_t size) { return {static_cast<std::byte*>(data), size}; }
+
+} // namespace
+
+extern "C" {
+
+wadi_result wadi_world_save(wadi_world_id id, void* data, size_t* size) {
+    return with_world(__func__, id, [&](HostedWorld& hosted) {
+        if (size == nullptr) return bad_argument("wadi_world_save: size is NULL");
+        const size_t capacity = *size;
+        *size = hosted.world->snapshots().bytes();
+        return report(data == nullptr ? ok_status() : hosted.world->save(bytes_at(data, capacity)));
+    });
+}
+
+wadi_result wadi_world_load(wadi_world_id id, const void* data, size_t size) {
+    return with_world(__func__, id, [&](HostedWorld& hosted) {
+        if (data == nullptr) return bad_argument("wadi_world_load: data is NULL");
+        return report(hosted.world->load({static_cast<const std::byte*>(data), size}));
+    });
+}
+
+wadi_result wadi_world_save_file(wadi_world_id id, const char* path) {
+    return with_world(__func__, id, [&](HostedWorld& hosted) {
+        if (path == nullptr) return bad_argument("wadi_world_save_file: path is NULL");
+        std::vector<std::byte> bytes(hosted.world->snapshots().bytes());
+        if (auto status = hosted.world->save(bytes); !status) return report(status);
+        return report(write_snapshot_file(path, bytes));
+    });
+}
+
+wadi_result wadi_world_load_file(wadi_world_id id, const char* path) {
+    return with_world(__func__, id, [&](HostedWorld& hosted) {
+        if (path == nullptr) return bad_argument("wadi_world_load_file: path is NULL");
+        auto bytes = read_snapshot_file(path);
+        return report(bytes ? hosted.world->load(*bytes) : bytes.status());
+    });
+}
+
+wadi_result wadi_world_begin_save(wadi_world_id id, uint64_t* ticket) {
+    return with_world(__func__, id, [&](HostedWorld& hosted) {
+        if (ticket == nullptr) return bad_argument("wadi_world_begin_save: ticket is NULL");
+        auto begun = hosted.world->snapshots().begin_save();
+        if (begun) *ticket = *begun;
+        return report(begun.status());
+    });
+}
+
+wadi_result wadi_world_end_save(wadi_world_id id, uint64_t ticket, void* data, size_t* size) {
+    return with_world(__func__, id, [&](HostedWorld& hosted) {
+        if (size == nullptr) return bad_argument("wadi_world_end_save: size is NULL");
+        const size_t capacity = *size;
+        auto needed = hosted.world->snapshots().saved_bytes(ticket);
+        if (!needed) return report(needed.status());
+        *size = *needed;
+        return report(data == nullptr ? ok_status() : hosted.world->snapshots().end_save(ticket, bytes_at(data, capacity)));
+    });
+}
+
+wadi_result wadi_world_get_hash(wadi_world_id id, uint64_t* hash) {
+    return with_world(__func__, id, [&](HostedWorld& hosted) {
+        if (hash == nullptr) return bad_argument("wadi_world_get_hash: hash is NULL");
+        auto now = hosted.world->hash();
+        if (now) *hash = *now;
+        return report(now.status());
+    });
+}
+
+} // extern "C"
