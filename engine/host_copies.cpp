@@ -1,30 +1,57 @@
 #include "engine/host_copies.hpp"
 #include <algorithm>
+#include <utility>
 
 namespace wadi {
 
 std::string HostCopies::label(const Item& item, std::size_t slot) { return "host " + item.name + " " + std::to_string(slot); }
 
-void HostCopies::forget() {
-    for (auto& programs : programs_) {
-        for (auto& program : programs) state_.device().destroy_program(program);
-        programs = {};
+void HostCopies::destroy(Programs& programs) {
+    for (auto& of_set : programs) {
+        for (auto& program : of_set) state_.device().destroy_program(program);
+        of_set = {};
     }
 }
 
-Status HostCopies::set(const std::vector<Item>& items) {
+std::vector<compute::BufferDesc> HostCopies::wanted_buffers(const std::vector<Item>& items) const {
     std::vector<compute::BufferDesc> wanted;
     for (const auto& item : items) {
         for (std::size_t n = 0; n < slots; ++n) wanted.push_back({item.bytes, label(item, n), compute::HostAccess::readback});
     }
-    if (auto status = buffers_.keep(wanted); !status) return status;
-    forget();
-    items_ = items;
-    slots_ = {};
-    for (std::size_t n = 0; n < slots; ++n) {
-        for (const auto& item : items_) slots_[n].copy.contents[item.name] = state_.device().mapped(buffers_[label(item, n)]);
+    return wanted;
+}
+
+// Every set into every slot: which meet depends on how far the device is, and no frame should record.
+Status HostCopies::record(const std::vector<Item>& items, Programs& programs) {
+    if (items.empty()) return ok_status();
+    for (std::size_t set = 0; set < sets; ++set) {
+        for (std::size_t slot = 0; slot < slots; ++slot) {
+            compute::ProgramBuilder builder("host copies");
+            for (const auto& item : items)
+                builder.copy({item.from[set], buffers_[label(item, slot)], item.offset, 0, item.bytes});
+            auto compiled = state_.device().compile(builder, state_.params());
+            if (!compiled) return state_.note(compiled.status());
+            programs[set][slot] = *compiled;
+        }
     }
     return ok_status();
+}
+
+Status HostCopies::set(const std::vector<Item>& items) {
+    if (auto status = buffers_.keep_also(wanted_buffers(items)); !status) return status;
+    Programs fresh{};
+    auto status = record(items, fresh);
+    if (status) {
+        std::swap(programs_, fresh);
+        items_ = items;
+        slots_ = {};
+        for (std::size_t n = 0; n < slots; ++n) {
+            for (const auto& item : items_) slots_[n].copy.contents[item.name] = state_.device().mapped(buffers_[label(item, n)]);
+        }
+    }
+    destroy(fresh);
+    buffers_.keep_only(wanted_buffers(items_));
+    return status;
 }
 
 HostCopies::Slot* HostCopies::newest_finished() {
@@ -46,29 +73,17 @@ HostCopies::Slot* HostCopies::free_slot() {
     return nullptr;
 }
 
-Status HostCopies::record(compute::Program& program, std::size_t set, std::size_t slot) {
-    compute::ProgramBuilder builder("host copies");
-    for (const auto& item : items_) builder.copy({item.from[set], buffers_[label(item, slot)], item.offset, 0, item.bytes});
-    auto compiled = state_.device().compile(builder, state_.params());
-    if (!compiled) return compiled.status();
-    program = *compiled;
-    return ok_status();
-}
-
-Status HostCopies::copy(std::size_t set, std::uint64_t step) {
-    Slot* slot = items_.empty() ? nullptr : free_slot();
-    if (slot == nullptr) return ok_status();
+Result<bool> HostCopies::copy(std::size_t set, std::uint64_t step) {
+    if (items_.empty()) return true;
+    Slot* slot = free_slot();
+    if (slot == nullptr) return false;
     const auto index = static_cast<std::size_t>(slot - slots_.data());
-    auto& program = programs_[set][index];
-    if (program.id == 0) {
-        if (auto status = record(program, set, index); !status) return state_.note(status);
-    }
-    auto ticket = state_.device().submit(program, {});
+    auto ticket = state_.device().submit(programs_[set][index], {});
     if (!ticket) return state_.note(ticket.status());
     slot->ticket = *ticket;
     slot->copy.step = step;
     slot->handed_out = 0;
-    return ok_status();
+    return true;
 }
 
 Result<const HostCopies::Copy*> HostCopies::newest() {

@@ -23,7 +23,7 @@ class HostCopies {
     };
 
     explicit HostCopies(WorldState& state) : state_(state), buffers_(state) {}
-    ~HostCopies() { forget(); }
+    ~HostCopies() { destroy(programs_); }
     HostCopies(const HostCopies&) = delete;
     HostCopies& operator=(const HostCopies&) = delete;
 
@@ -32,8 +32,8 @@ class HostCopies {
     Status set(const std::vector<Item>& items);
     /// To be called as each update begins: copies handed out before the one before are free again.
     void begin_update() { ++update_; }
-    /// Submits a copy of an output set that was submitted before. Skipped while the device is behind and no memory is free.
-    Status copy(std::size_t set, std::uint64_t step);
+    /// Submits a copy of an output set that was submitted before. False: not now, the device is behind and no memory is free.
+    Result<bool> copy(std::size_t set, std::uint64_t step);
     /// The newest finished copy, the same for all calls between two updates; its memory stays until the second next update.
     /// Errors: not_ready (none yet).
     Result<const Copy*> newest();
@@ -51,14 +51,16 @@ class HostCopies {
     bool finished(const Slot& slot) const { return filled(slot) && state_.device().finished(slot.ticket); }
     Slot* newest_finished();
     Slot* free_slot();
-    Status record(compute::Program& program, std::size_t set, std::size_t slot);
-    void forget();
+    using Programs = std::array<std::array<compute::Program, slots>, sets>;
+    std::vector<compute::BufferDesc> wanted_buffers(const std::vector<Item>& items) const;
+    Status record(const std::vector<Item>& items, Programs& programs);
+    void destroy(Programs& programs);
 
     WorldState& state_;
     NamedBuffers buffers_;
     std::vector<Item> items_;
     std::array<Slot, slots> slots_{};
-    std::array<std::array<compute::Program, slots>, sets> programs_{};
+    Programs programs_{};
     std::uint64_t update_ = 1;
 };
 

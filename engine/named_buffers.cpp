@@ -1,15 +1,12 @@
 #include "engine/named_buffers.hpp"
+#include <algorithm>
 
 namespace wadi {
 
-Status NamedBuffers::keep(const std::vector<compute::BufferDesc>& wanted) {
-    std::map<std::string, Made> kept, fresh;
+Status NamedBuffers::keep_also(const std::vector<compute::BufferDesc>& wanted) {
+    std::map<std::string, Made> fresh;
     for (const auto& desc : wanted) {
-        const auto found = made_.find(desc.label);
-        if (found != made_.end()) {
-            kept.insert(*found);
-            continue;
-        }
+        if (made_.contains(desc.label)) continue;
         auto buffer = state_.make_buffer(desc);
         if (!buffer) {
             for (const auto& [label, made] : fresh) state_.free_buffer(made.buffer, made.bytes);
@@ -17,12 +14,16 @@ Status NamedBuffers::keep(const std::vector<compute::BufferDesc>& wanted) {
         }
         fresh[desc.label] = {*buffer, desc.bytes};
     }
-    for (const auto& [label, made] : made_) {
-        if (!kept.contains(label)) state_.free_buffer(made.buffer, made.bytes);
-    }
-    kept.merge(fresh);
-    made_ = std::move(kept);
+    made_.merge(fresh);
     return ok_status();
+}
+
+void NamedBuffers::keep_only(const std::vector<compute::BufferDesc>& wanted) {
+    std::erase_if(made_, [&](const auto& entry) {
+        const bool keep = std::any_of(wanted.begin(), wanted.end(), [&](const auto& desc) { return desc.label == entry.first; });
+        if (!keep) state_.free_buffer(entry.second.buffer, entry.second.bytes);
+        return !keep;
+    });
 }
 
 compute::Buffer NamedBuffers::operator[](const std::string& label) const {

@@ -8,9 +8,10 @@ class NamedBuffers {
   public:
     explicit NamedBuffers(WorldState& state) : state_(state) {}
 
-    /// Afterwards exactly these exist; those that did keep handle and content. Waits for the device where one is freed. On an
-    /// error (out_of_memory) nothing has changed.
-    Status keep(const std::vector<compute::BufferDesc>& wanted);
+    /// Makes those that do not exist yet. On an error (out_of_memory) none of them was made.
+    Status keep_also(const std::vector<compute::BufferDesc>& wanted);
+    /// Frees all others. Waits for the device where one is freed.
+    void keep_only(const std::vector<compute::BufferDesc>& wanted);
     /// Null where there is none.
     compute::Buffer operator[](const std::string& label) const;
 

@@ -107,23 +107,17 @@ std::vector<HostCopies::Item> Outputs::wanted_copies(const Asked& asked) const {
 Status Outputs::change(const Asked& asked) {
     if (asked == asked_) return ok_status();
     if (!state_.lost()) return state_.lost();
-    // All that was and all that will be, so that a failure leaves the old as it was.
-    auto both = wanted_buffers(asked);
-    for (auto& desc : wanted_buffers(asked_)) {
-        if (std::none_of(both.begin(), both.end(), [&](const auto& other) { return other.label == desc.label; }))
-            both.push_back(std::move(desc));
+    if (auto status = buffers_.keep_also(wanted_buffers(asked)); !status) return status;
+    auto status = copies_.set(wanted_copies(asked));
+    if (status) {
+        asked_ = asked;
+        for (std::size_t set = 0; set < sets; ++set) {
+            publish_[set].reset();
+            interpolate_[set].reset();
+        }
     }
-    auto status = buffers_.keep(both);
-    if (status) status = copies_.set(wanted_copies(asked));
-    for (std::size_t set = 0; status && set < sets; ++set) {
-        publish_[set].reset();
-        interpolate_[set].reset();
-    }
-    if (status) asked_ = asked;
-    // Freeing cannot fail.
-    const auto freed = buffers_.keep(wanted_buffers(asked_));
-    if (!status || !freed) return status ? freed : status;
-    return restart();
+    buffers_.keep_only(wanted_buffers(asked_));
+    return status ? restart() : status;
 }
 
 // As if nothing had ever been published: every tile counts as changed.
@@ -198,7 +192,12 @@ Status Outputs::publish(bool between_steps, double interpolation) {
         rings_[set] = {state_.steps, *ticket};
         next_ = (set + 1) % sets;
         ++published_;
-        if (auto status = copies_.copy(set, state_.steps); !status) return status;
+        copied_ = false;
+    }
+    if (published_ > 0 && !copied_) {
+        auto copied = copies_.copy(current(), published_step());
+        if (!copied) return copied.status();
+        copied_ = *copied;
     }
     return interpolate(interpolation);
 }

@@ -105,6 +105,7 @@ class Outputs {
     std::array<Ring, sets> rings_{};
     std::size_t next_ = 0;                            // the set to be written next
     std::uint64_t published_ = 0;                     // since the mask changed
+    bool copied_ = false;                             // the current set, to host memory
     std::array<compute::Ticket, 2> interpolations_{}; // the newest
 };
 
