@@ -25,8 +25,18 @@ Status World::step(std::uint32_t count) {
 }
 
 Status World::update(std::uint64_t nanoseconds, Frame& frame) {
+    outputs_.begin_update();
     if (auto status = frames_.take_steps(nanoseconds, frame); !status) return status;
+    if (auto status = outputs_.publish(stepper_.parts_done() == 0, frame.interpolation); !status) return status;
     return frames_.begin_parts();
+}
+
+Status World::set_update_settings(const UpdateSettings& settings) {
+    const UpdateSettings before = frames_.settings();
+    if (auto status = frames_.set(settings); !status) return status;
+    auto status = outputs_.set_interpolation(settings.interpolate_outputs);
+    if (!status) static_cast<void>(frames_.set(before));
+    return status;
 }
 
 Status World::finish_step() {
@@ -70,6 +80,7 @@ Status World::edit(std::span<const Edit> edits) {
 Status World::load(std::span<const std::byte> from) {
     auto status = snapshots_.load(from);
     if (status) edits_.forget();
+    if (status) frames_.went_back();
     if (status) status = roll_back_.restart();
     return status ? at_boundary() : status;
 }

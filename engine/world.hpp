@@ -2,6 +2,7 @@
 #pragma once
 #include "engine/edits.hpp"
 #include "engine/frame_driver.hpp"
+#include "engine/outputs.hpp"
 #include "engine/queries.hpp"
 #include "engine/roll_back.hpp"
 #include "engine/snapshots.hpp"
@@ -21,9 +22,11 @@ class World {
     /// Submits water steps beside the clock of update(); returns before the device has finished them. A step that an update began
     /// in parts is finished first and counts as that update's.
     Status step(std::uint32_t count);
-    /// Submits the water steps that fall due after `nanoseconds` more of host time; returns at once.
+    /// Submits the water steps that fall due after `nanoseconds` more of host time, and what outputs() publishes; returns at
+    /// once.
     Status update(std::uint64_t nanoseconds, Frame& frame);
-    Status set_update_settings(const UpdateSettings& settings) { return frames_.set(settings); }
+    Status set_update_settings(const UpdateSettings& settings);
+    Outputs& outputs() { return outputs_; }
     std::uint64_t steps() const { return state_.steps; }
     double time() const { return static_cast<double>(state_.steps) * settings().dt; }
 
@@ -85,6 +88,7 @@ class World {
     WorldState state_; // first: the parts refer to it
     Stepper stepper_{state_};
     FrameDriver frames_{state_, stepper_};
+    Outputs outputs_{state_};
     StateReader reader_{state_};
     Snapshots snapshots_{state_, stepper_};
     Edits edits_{state_, stepper_};

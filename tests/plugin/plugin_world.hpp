@@ -68,6 +68,12 @@ struct World {
         REQUIRE(wadi_world_read_field(id, field, values.data(), values.size()) == WADI_OK);
         return values;
     }
+    /// Steps are never dropped because the device is behind: update may wait for it.
+    void keep_all_steps() const {
+        auto settings = wadi_default_update_settings();
+        settings.max_steps_in_flight = 0;
+        REQUIRE(wadi_world_set_update_settings(id, &settings) == WADI_OK);
+    }
     /// Returns once the device has done all that was submitted.
     void wait() const { read(WADI_FIELD_TERRAIN); }
 };

@@ -209,6 +209,144 @@ typedef struct wadi_stage_timing {
 /** Mean times since profiling was switched on. *count: capacity in, stages out; timings may be NULL to ask the number. */
 WADI_API wadi_result wadi_world_get_stage_timings(wadi_world_id world, wadi_stage_timing* timings, uint32_t* count);
 
+/* ---- Per frame ---- */
+
+/** How wadi_world_update turns host time into water steps. */
+typedef struct wadi_update_settings {
+    uint32_t struct_size;
+    uint32_t max_steps_per_update; /* 1 ... 1024, default 8: time beyond it is dropped */
+    uint32_t max_steps_in_flight;  /* 0 ... 64, default 8: once the device has this many unfinished water steps (or its queue of
+                                      submissions is full), time is dropped; 0 = drop nothing for that reason, the call may wait */
+    int32_t spread;                /* 1 = a water step is submitted as 1 water part and T sand parts, evenly over its dt; the bits are
+                                      the same, the load has no peak every dt; default 0 */
+    int32_t interpolate_outputs;   /* 1 = every update also writes the interpolated set of the outputs; default 0 */
+} wadi_update_settings;
+WADI_API wadi_update_settings wadi_default_update_settings(void);
+/** Takes effect with the next update. Does not wait, unless interpolate_outputs changes: that allocates or frees as
+ *  wadi_world_set_outputs does. Errors, the settings staying as they were: BAD_ARGUMENT (out of range), OUT_OF_MEMORY, DEVICE_LOST. */
+WADI_API wadi_result wadi_world_set_update_settings(wadi_world_id world, const wadi_update_settings* settings);
+
+/** What one update did. */
+typedef struct wadi_frame {
+    uint32_t struct_size;
+    uint32_t steps;                /* water steps that became whole in this update */
+    uint64_t total_steps;          /* whole water steps since creation */
+    double time;                   /* simulated: total_steps * dt [s] */
+    double interpolation;          /* in [0, 1): how far the host's clock is from the last whole step to the one to come. A renderer
+                                      shows (1 - f) * last but one + f * last, one dt late, and moves evenly */
+    uint64_t published_step;       /* of the outputs' current set; UINT64_MAX = none yet */
+    uint64_t dropped_nanoseconds;       /* host time that became no step in this update; steps is then less than it asks for */
+    uint64_t dropped_nanoseconds_total; /* and since the world was created */
+} wadi_frame;
+WADI_API wadi_frame wadi_default_frame(void);
+
+/** Advances by `host_nanoseconds` of host time since the last update (0 is allowed). Steps are fixed: after a total of t
+ *  nanoseconds, less those dropped, floor(t / dt) water steps are done (dt as the double dt * 1e9, the quotient exact), so the same
+ *  total gives the same bits in frames of any length. Does not wait for the device: what it submits runs beside the host.
+ *  wadi_world_step may be called between updates: its steps are beside this clock, which goes on where it was. Every call that
+ *  reads or changes the state first finishes a step that `spread` began; the update in which it falls due does not repeat it.
+ *  Errors: BAD_ARGUMENT (world, struct_size), DEVICE_LOST. */
+WADI_API wadi_result wadi_world_update(wadi_world_id world, uint64_t host_nanoseconds, wadi_frame* frame);
+
+/* ---- Outputs ---- */
+
+/** Fields for drawing and collision, one value per cell (its centre), published on the device after the steps of an update. */
+typedef enum wadi_output {
+    WADI_OUTPUT_TERRAIN = 0,        /* H [m], 1 float */
+    WADI_OUTPUT_SAND_SURFACE = 1,   /* solid surface H + hs [m], 1 float */
+    WADI_OUTPUT_FREE_SURFACE = 2,   /* visible surface H + max(W, hs) [m], 1 float */
+    WADI_OUTPUT_SAND_DEPTH = 3,     /* hs [m], 1 float */
+    WADI_OUTPUT_WATER_DEPTH = 4,    /* pure water above the sand, W - min(W, hs) [m], 1 float */
+    WADI_OUTPUT_SATURATION = 5,     /* W/(W + hs) where there is sand, else 0; 1 float */
+    WADI_OUTPUT_FLOW = 6,           /* flow map: velocity of pure water, what is seen to move, east and north [m/s], 2 floats */
+    WADI_OUTPUT_SAND_VELOCITY = 7,  /* east and north [m/s], 2 floats */
+    WADI_OUTPUT_FOAM = 8,           /* 0 ... 1 from the present state of the pure water (depth h, velocity u), 1 float:
+                                       max(clamp((Fr^2 - 1)/3), clamp((R - 0.15)/0.5)) * clamp(10 h/dx), clamps to 0 ... 1;
+                                       Fr = |u|/sqrt(g h) (fast water), R = -h div(u)/sqrt(g h) (rising, breaking fronts) */
+    WADI_OUTPUT_NORMAL = 9,         /* unit normal of the visible surface: east, north, up, 0; 4 floats */
+    WADI_OUTPUT_SMOOTH_SURFACE = 10, /* visible surface after a 3 x 3 Gaussian [m], 1 float */
+    WADI_OUTPUT_COUNT = 11
+} wadi_output;
+/** Bit of an output in a mask. */
+#define WADI_OUTPUT_BIT(output) (1u << (output))
+/** One more bit for wadi_world_set_outputs: heights and changes of tiles, wadi_world_get_tiles. */
+#define WADI_OUTPUT_TILES_BIT 0x80000000u
+
+/** Chooses what every update publishes; 0 = nothing, which costs nothing. Each output takes three buffers (previous, current, being
+ *  written), the tiles in addition those of SAND_SURFACE and FREE_SURFACE. Allocates and frees, and waits for the device where the
+ *  mask changes; views taken before are then void, and there is nothing to view until the next update.
+ *  Errors, nothing being changed: BAD_ARGUMENT (an unknown bit), OUT_OF_MEMORY, DEVICE_LOST. */
+WADI_API wadi_result wadi_world_set_outputs(wadi_world_id world, uint32_t mask);
+
+typedef enum wadi_output_set {
+    WADI_OUTPUT_PREVIOUS = 0,     /* the publish before the current one */
+    WADI_OUTPUT_CURRENT = 1,      /* the newest publish; wadi_frame.published_step */
+    WADI_OUTPUT_INTERPOLATED = 2  /* between the two at the host's time, one dt late; outputs of 1 float, and only with
+                                     wadi_update_settings.interpolate_outputs. Written anew by each update; an update leaves it
+                                     as it is while the device is two updates behind */
+} wadi_output_set;
+typedef enum wadi_handle_kind {
+    WADI_HANDLE_HOST_POINTER = 0,  /* CPU backend: an address */
+    WADI_HANDLE_VULKAN_BUFFER = 1, /* VkBuffer */
+    WADI_HANDLE_CUDA_POINTER = 2   /* CUdeviceptr */
+} wadi_handle_kind;
+typedef enum wadi_format {
+    WADI_FORMAT_R32_FLOAT = 1,
+    WADI_FORMAT_R32G32_FLOAT = 2,
+    WADI_FORMAT_R32G32B32A32_FLOAT = 4
+} wadi_format; /* the value is the number of floats */
+
+/** Where a published field lies on the device. Read only. */
+typedef struct wadi_output_view {
+    uint32_t struct_size;
+    wadi_handle_kind handle_kind;
+    uint64_t handle;               /* the same for a buffer until wadi_world_set_outputs changes the mask */
+    uint64_t offset;               /* of cell (0, 0), past the ghost cells [bytes]; VkBufferImageCopy.bufferOffset */
+    uint64_t row_pitch;            /* [bytes]; over the size of a cell it is VkBufferImageCopy.bufferRowLength */
+    uint64_t buffer_bytes;
+    int32_t nx, ny;
+    wadi_format format;
+    uint64_t step;                 /* water steps done in the state it shows; INTERPOLATED: in the current set */
+    int32_t finished;              /* 1 = the device has written it. 0 = it will have, ahead of anything that is submitted behind it;
+                                      a host that reads elsewhere (the CPU backend's address) must wait for 1 */
+} wadi_output_view;
+WADI_API wadi_output_view wadi_default_output_view(void);
+/** Views an output. Does not wait. PREVIOUS and CURRENT stay as they are during the next update at least: a publish writes the third
+ *  set. Errors: BAD_ARGUMENT (no such output or set, not asked for), NOT_READY (not published yet; PREVIOUS: only once), DEVICE_LOST. */
+WADI_API wadi_result wadi_world_get_view(wadi_world_id world, wadi_output output, wadi_output_set set, wadi_output_view* view);
+
+/** For hosts that share no API with the device: outputs whose publishes are also copied to host memory. They need not be in the mask
+ *  of wadi_world_set_outputs. 0 = none, which costs nothing. Allocates, waits and fails as wadi_world_set_outputs does. */
+WADI_API wadi_result wadi_world_set_host_outputs(wadi_world_id world, uint32_t mask);
+/** The newest copy that has arrived, usually of the update before: cell (i, j) begins at byte j * row_pitch + i * 4 * floats per
+ *  cell. The same for all calls between two updates; valid until the second next update or until a mask changes. Does not wait.
+ *  row_pitch [bytes] and step may be NULL.
+ *  Errors: BAD_ARGUMENT (no such output, not asked for, data NULL), NOT_READY (none has arrived yet), DEVICE_LOST. */
+WADI_API wadi_result wadi_world_get_host_output(wadi_world_id world, wadi_output output, const float** data, uint64_t* row_pitch,
+                                                uint64_t* step);
+
+/** A tile of 32 x 32 cells (less at the east and north rim): cells i ... i + nx - 1, j ... j + ny - 1. */
+typedef struct wadi_tile {
+    int32_t i, j, nx, ny;
+    float solid_min, solid_max;    /* of H + hs [m] */
+    float free_min, free_max;      /* of H + max(W, hs) [m] */
+    int64_t changed_step;          /* step of the newest publish in which a cell's surface, solid or visible, was another than in the
+                                      publish before; at first that of the first publish */
+} wadi_tile;
+/** The newest tiles that have arrived from the device, in rows from south to north. *count: capacity in, tiles out; tiles may be NULL
+ *  to ask the number. *step (may be NULL): of the publish. Needs WADI_OUTPUT_TILES_BIT. Does not wait.
+ *  Errors: BAD_ARGUMENT (not asked for, count NULL), NOT_READY (none has arrived yet), DEVICE_LOST. */
+WADI_API wadi_result wadi_world_get_tiles(wadi_world_id world, wadi_tile* tiles, uint32_t* count, uint64_t* step);
+
+typedef struct wadi_region {
+    int32_t i, j, nx, ny;          /* cells */
+} wadi_region;
+/** Rectangles that hold every cell whose solid or visible surface changed in a publish after step `since_step` (-1 = ever): tiles,
+ *  neighbours in a row of tiles as one. Pass *step of one call as since_step to the next, and -1 after wadi_world_load.
+ *  *count, *step and errors as in wadi_world_get_tiles; also BAD_ARGUMENT for since_step < -1. */
+WADI_API wadi_result wadi_world_get_dirty_regions(wadi_world_id world, int64_t since_step, wadi_region* regions, uint32_t* count,
+                                                  uint64_t* step);
+
 /* ---- Snapshots ---- */
 
 /** Saves the state to memory, to the bit: fields, ledgers and running totals, not the level itself. *size: bytes at `data` in,
@@ -335,42 +473,6 @@ WADI_API wadi_result wadi_world_get_effects(wadi_world_id world, wadi_effect_inf
 /** OK, or what broke the world for good (DEVICE_LOST) with wadi_get_last_error() saying how. Does not wait: a fault that the
  *  device has not reported yet is not known. */
 WADI_API wadi_result wadi_world_get_error(wadi_world_id world);
-
-/* ---- Per frame ---- */
-
-/** How wadi_world_update turns host time into water steps. */
-typedef struct wadi_update_settings {
-    uint32_t struct_size;
-    uint32_t max_steps_per_update; /* 1 ... 1024, default 8: time beyond it is dropped */
-    uint32_t max_steps_in_flight;  /* 0 ... 64, default 8: once the device has this many unfinished water steps (or its queue of
-                                      submissions is full), time is dropped; 0 = drop nothing for that reason, the call may wait */
-    int32_t spread;                /* 1 = a water step is submitted as 1 water part and T sand parts, evenly over its dt; the bits are
-                                      the same, the load has no peak every dt; default 0 */
-} wadi_update_settings;
-WADI_API wadi_update_settings wadi_default_update_settings(void);
-/** Takes effect with the next update. Does not wait. Errors: BAD_ARGUMENT (out of range; the settings stay as they were). */
-WADI_API wadi_result wadi_world_set_update_settings(wadi_world_id world, const wadi_update_settings* settings);
-
-/** What one update did. */
-typedef struct wadi_frame {
-    uint32_t struct_size;
-    uint32_t steps;                /* water steps that became whole in this update */
-    uint64_t total_steps;          /* whole water steps since creation */
-    double time;                   /* simulated: total_steps * dt [s] */
-    double interpolation;          /* in [0, 1): how far the host's clock is from the last whole step to the one to come. A renderer
-                                      shows (1 - f) * last but one + f * last, one dt late, and moves evenly */
-    uint64_t dropped_nanoseconds;       /* host time that became no step in this update; steps is then less than it asks for */
-    uint64_t dropped_nanoseconds_total; /* and since the world was created */
-} wadi_frame;
-WADI_API wadi_frame wadi_default_frame(void);
-
-/** Advances by `host_nanoseconds` of host time since the last update (0 is allowed). Steps are fixed: after a total of t
- *  nanoseconds, less those dropped, floor(t / dt) water steps are done (dt as the double dt * 1e9, the quotient exact), so the same
- *  total gives the same bits in frames of any length. Does not wait for the device: what it submits runs beside the host.
- *  wadi_world_step may be called between updates: its steps are beside this clock, which goes on where it was. Every call that
- *  reads or changes the state first finishes a step that `spread` began; the update in which it falls due does not repeat it.
- *  Errors: BAD_ARGUMENT (world, struct_size), DEVICE_LOST. */
-WADI_API wadi_result wadi_world_update(wadi_world_id world, uint64_t host_nanoseconds, wadi_frame* frame);
 
 #ifdef __cplusplus
 }

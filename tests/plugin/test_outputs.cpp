@@ -1,0 +1,341 @@
+// Published outputs: what they hold, the ring of sets, copies in host memory, interpolation, and that nothing asked for costs
+// nothing and changes nothing.
+#include "tests/plugin/plugin_world.hpp"
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <initializer_list>
+#include <map>
+
+using namespace plugin_test;
+
+namespace {
+
+constexpr uint32_t every_output = WADI_OUTPUT_BIT(WADI_OUTPUT_COUNT) - 1u;
+constexpr uint64_t step_time = 10000000; // dt of the worlds here [ns]
+
+int components(wadi_output output) {
+    return output == WADI_OUTPUT_NORMAL ? 4 : output == WADI_OUTPUT_FLOW || output == WADI_OUTPUT_SAND_VELOCITY ? 2 : 1;
+}
+
+// One component of a published field as nx * ny floats.
+std::vector<float> dense(const World& world, const void* first, uint64_t row_pitch, int floats, int component) {
+    std::vector<float> values;
+    for (int j = 0; j < world.ny; ++j) {
+        const auto* row = static_cast<const float*>(first) + static_cast<uint64_t>(j) * row_pitch / 4;
+        for (int i = 0; i < world.nx; ++i) values.push_back(row[i * floats + component]);
+    }
+    return values;
+}
+
+std::vector<float> host(const World& world, wadi_output output, int component = 0) {
+    const float* data = nullptr;
+    uint64_t pitch = 0;
+    REQUIRE_MESSAGE(wadi_world_get_host_output(world.id, output, &data, &pitch, nullptr) == WADI_OK,
+                    std::string(wadi_get_last_error()));
+    CHECK(pitch % (4u * static_cast<unsigned>(components(output))) == 0);
+    return dense(world, data, pitch, components(output), component);
+}
+
+wadi_output_view view(const World& world, wadi_output output, wadi_output_set set) {
+    auto view = wadi_default_output_view();
+    REQUIRE_MESSAGE(wadi_world_get_view(world.id, output, set, &view) == WADI_OK, std::string(wadi_get_last_error()));
+    CHECK(view.format == components(output));
+    CHECK(view.nx == world.nx);
+    CHECK(view.ny == world.ny);
+    CHECK(view.offset + static_cast<uint64_t>(world.ny - 1) * view.row_pitch + static_cast<uint64_t>(world.nx) * 4 <=
+          view.buffer_bytes);
+    return view;
+}
+
+// CPU backend: the field behind a view, once the device is done.
+std::vector<float> on_cpu(const World& world, wadi_output output, wadi_output_set set) {
+    world.wait();
+    const auto v = view(world, output, set);
+    CHECK(v.finished == 1);
+    REQUIRE(v.handle_kind == WADI_HANDLE_HOST_POINTER);
+    return dense(world, reinterpret_cast<const char*>(static_cast<uintptr_t>(v.handle)) + v.offset, v.row_pitch,
+                 components(output), 0);
+}
+
+float at(const World& world, const std::vector<float>& field, int i, int j) {
+    return field[static_cast<std::size_t>(j) * static_cast<std::size_t>(world.nx) + static_cast<std::size_t>(i)];
+}
+
+uint64_t device_bytes(const World& world) {
+    auto info = wadi_default_world_info();
+    REQUIRE(wadi_world_get_info(world.id, &info) == WADI_OK);
+    return info.device_bytes;
+}
+
+} // namespace
+
+TEST_CASE("published fields are those that reading gives, on every backend") {
+    const std::map<wadi_output, wadi_field> same = {{WADI_OUTPUT_TERRAIN, WADI_FIELD_TERRAIN},
+                                                    {WADI_OUTPUT_FREE_SURFACE, WADI_FIELD_FREE_SURFACE},
+                                                    {WADI_OUTPUT_SAND_DEPTH, WADI_FIELD_SAND_HEIGHT},
+                                                    {WADI_OUTPUT_WATER_DEPTH, WADI_FIELD_WATER_DEPTH},
+                                                    {WADI_OUTPUT_SATURATION, WADI_FIELD_SATURATION},
+                                                    {WADI_OUTPUT_FLOW, WADI_FIELD_WATER_VELOCITY_X},
+                                                    {WADI_OUTPUT_SAND_VELOCITY, WADI_FIELD_SAND_VELOCITY_X}};
+    for (const auto& backend : backends()) {
+        CAPTURE(backend);
+        const World world(backend);
+        REQUIRE(wadi_world_set_host_outputs(world.id, every_output) == WADI_OK);
+        const float* none = nullptr;
+        CHECK(wadi_world_get_host_output(world.id, WADI_OUTPUT_FLOW, &none, nullptr, nullptr) == WADI_NOT_READY);
+        world.keep_all_steps();
+        for (int n = 0; n < 30; ++n) world.update(step_time);
+        world.wait();
+        world.update(0); // copies that found no memory free while the device was behind
+        world.wait();
+        uint64_t step = 0;
+        REQUIRE(wadi_world_get_host_output(world.id, WADI_OUTPUT_FLOW, &none, nullptr, &step) == WADI_OK);
+        CHECK(step == 30);
+        for (const auto& [output, field] : same) {
+            CAPTURE(output);
+            CHECK(host(world, output) == world.read(field));
+        }
+        CHECK(host(world, WADI_OUTPUT_FLOW, 1) == world.read(WADI_FIELD_WATER_VELOCITY_Y));
+        CHECK(host(world, WADI_OUTPUT_SAND_VELOCITY, 1) == world.read(WADI_FIELD_SAND_VELOCITY_Y));
+        const auto terrain = world.read(WADI_FIELD_TERRAIN), sand = world.read(WADI_FIELD_SAND_HEIGHT);
+        const auto surface = world.read(WADI_FIELD_FREE_SURFACE), solid = host(world, WADI_OUTPUT_SAND_SURFACE);
+        const auto up = host(world, WADI_OUTPUT_NORMAL, 2), east = host(world, WADI_OUTPUT_NORMAL, 0);
+        const auto north = host(world, WADI_OUTPUT_NORMAL, 1);
+        const auto foam = host(world, WADI_OUTPUT_FOAM), smooth = host(world, WADI_OUTPUT_SMOOTH_SURFACE);
+        float most_foam = 0;
+        for (std::size_t n = 0; n < solid.size(); ++n) {
+            CHECK(solid[n] == terrain[n] + sand[n]);
+            CHECK(up[n] * up[n] + east[n] * east[n] + north[n] * north[n] == doctest::Approx(1).epsilon(1e-5));
+            CHECK(foam[n] >= 0.0F);
+            CHECK(foam[n] <= 1.0F);
+            most_foam = std::max(most_foam, foam[n]);
+        }
+        CHECK(most_foam > 0.0F); // a dam that breaks
+        const int i = 9, j = 20;
+        CHECK(at(world, east, i, j) / at(world, up, i, j) ==
+              doctest::Approx(at(world, surface, i - 1, j) - at(world, surface, i + 1, j)).epsilon(1e-4));
+        float sum = 0;
+        for (int b = -1; b <= 1; ++b) {
+            for (int a = -1; a <= 1; ++a)
+                sum += static_cast<float>((2 - std::abs(a)) * (2 - std::abs(b))) * at(world, surface, i + a, j + b);
+        }
+        CHECK(at(world, smooth, i, j) == doctest::Approx(sum / 16));
+    }
+}
+
+TEST_CASE("a world of water alone publishes sand as zero") {
+    const std::string text = R"({"format_version": 1, "name": "pond", "grid": {"nx": 8, "ny": 6, "dx": 0.5}, "dt": 0.01})";
+    const std::vector<float> water(48, 1.0F);
+    auto arrays = wadi_default_world_arrays();
+    arrays.settings_json = text.c_str();
+    arrays.nx = 8;
+    arrays.ny = 6;
+    arrays.water = water.data();
+    auto options = wadi_default_device_options();
+    options.backend = "cpu";
+    wadi_world_id id{};
+    REQUIRE(wadi_create_world_from_arrays(&arrays, &options, &id) == WADI_OK);
+    REQUIRE(wadi_world_set_host_outputs(id, every_output) == WADI_OK);
+    auto frame = wadi_default_frame();
+    REQUIRE(wadi_world_update(id, 3 * step_time, &frame) == WADI_OK);
+    std::vector<float> read(48);
+    REQUIRE(wadi_world_read_field(id, WADI_FIELD_TERRAIN, read.data(), read.size()) == WADI_OK);
+    const float* data = nullptr;
+    for (const auto output : {WADI_OUTPUT_SAND_DEPTH, WADI_OUTPUT_SAND_VELOCITY, WADI_OUTPUT_SATURATION, WADI_OUTPUT_FOAM}) {
+        REQUIRE(wadi_world_get_host_output(id, output, &data, nullptr, nullptr) == WADI_OK);
+        CHECK(data[0] == 0.0F);
+        CHECK(data[7] == 0.0F);
+    }
+    REQUIRE(wadi_world_get_host_output(id, WADI_OUTPUT_WATER_DEPTH, &data, nullptr, nullptr) == WADI_OK);
+    CHECK(data[3] == 1.0F);
+    CHECK(wadi_destroy_world(id) == WADI_OK);
+}
+
+TEST_CASE("the ring: handles stay, current becomes previous, one publish per update") {
+    const World world("cpu");
+    REQUIRE(wadi_world_set_outputs(world.id, WADI_OUTPUT_BIT(WADI_OUTPUT_FREE_SURFACE)) == WADI_OK);
+    auto v = wadi_default_output_view();
+    CHECK(wadi_world_get_view(world.id, WADI_OUTPUT_FREE_SURFACE, WADI_OUTPUT_CURRENT, &v) == WADI_NOT_READY);
+    CHECK(world.update(0).published_step == 0); // the state at the start
+    CHECK(wadi_world_get_view(world.id, WADI_OUTPUT_FREE_SURFACE, WADI_OUTPUT_PREVIOUS, &v) == WADI_NOT_READY);
+    const auto first = on_cpu(world, WADI_OUTPUT_FREE_SURFACE, WADI_OUTPUT_CURRENT);
+    CHECK(first == world.read(WADI_FIELD_FREE_SURFACE));
+    std::vector<uint64_t> handles;
+    auto before = first;
+    for (uint64_t n = 0; n < 7; ++n) {
+        handles.push_back(view(world, WADI_OUTPUT_FREE_SURFACE, WADI_OUTPUT_CURRENT).handle);
+        CHECK(world.update(2 * step_time).published_step == 2 * (n + 1));
+        CHECK(on_cpu(world, WADI_OUTPUT_FREE_SURFACE, WADI_OUTPUT_PREVIOUS) == before);
+        before = on_cpu(world, WADI_OUTPUT_FREE_SURFACE, WADI_OUTPUT_CURRENT);
+        CHECK(before == world.read(WADI_FIELD_FREE_SURFACE));
+        CHECK(view(world, WADI_OUTPUT_FREE_SURFACE, WADI_OUTPUT_PREVIOUS).step == 2 * n);
+        CHECK(view(world, WADI_OUTPUT_FREE_SURFACE, WADI_OUTPUT_CURRENT).step == 2 * (n + 1));
+    }
+    CHECK(handles[0] != handles[1]);
+    CHECK(handles[1] != handles[2]);
+    for (std::size_t n = 3; n < handles.size(); ++n) CHECK(handles[n] == handles[n - 3]);
+    // An update without a step publishes nothing; steps beside the clock are published by the next update.
+    CHECK(world.update(1).published_step == 14);
+    REQUIRE(wadi_world_step(world.id, 3) == WADI_OK);
+    CHECK(world.update(1).published_step == 17);
+    CHECK(on_cpu(world, WADI_OUTPUT_FREE_SURFACE, WADI_OUTPUT_CURRENT) == world.read(WADI_FIELD_FREE_SURFACE));
+    // Another mask starts anew.
+    REQUIRE(wadi_world_set_outputs(world.id, WADI_OUTPUT_BIT(WADI_OUTPUT_FREE_SURFACE) | WADI_OUTPUT_BIT(WADI_OUTPUT_FOAM)) ==
+            WADI_OK);
+    CHECK(wadi_world_get_view(world.id, WADI_OUTPUT_FREE_SURFACE, WADI_OUTPUT_CURRENT, &v) == WADI_NOT_READY);
+    CHECK(world.update(0).published_step == 17);
+    CHECK(on_cpu(world, WADI_OUTPUT_FREE_SURFACE, WADI_OUTPUT_CURRENT) == world.read(WADI_FIELD_FREE_SURFACE));
+}
+
+TEST_CASE("the interpolated set lies between the publishes, at the host's time") {
+    for (const bool spread : {false, true}) {
+        const World world("cpu");
+        auto settings = wadi_default_update_settings();
+        settings.interpolate_outputs = 1;
+        settings.spread = spread ? 1 : 0;
+        REQUIRE(wadi_world_set_update_settings(world.id, &settings) == WADI_OK);
+        REQUIRE(wadi_world_set_outputs(world.id, WADI_OUTPUT_BIT(WADI_OUTPUT_FREE_SURFACE) | WADI_OUTPUT_BIT(WADI_OUTPUT_FLOW)) ==
+                WADI_OK);
+        auto v = wadi_default_output_view();
+        CHECK(wadi_world_get_view(world.id, WADI_OUTPUT_FREE_SURFACE, WADI_OUTPUT_INTERPOLATED, &v) == WADI_NOT_READY);
+        world.update(0);
+        const auto check = [&](double factor) {
+            // Not through a read, which would finish a step begun in parts.
+            while (view(world, WADI_OUTPUT_FREE_SURFACE, WADI_OUTPUT_INTERPOLATED).finished == 0) {
+            }
+            const auto values = [&](wadi_output_set set) {
+                const auto found = view(world, WADI_OUTPUT_FREE_SURFACE, set);
+                return dense(world, reinterpret_cast<const char*>(static_cast<uintptr_t>(found.handle)) + found.offset,
+                             found.row_pitch, 1, 0);
+            };
+            const auto from = values(WADI_OUTPUT_PREVIOUS), to = values(WADI_OUTPUT_CURRENT);
+            const auto between = values(WADI_OUTPUT_INTERPOLATED);
+            for (std::size_t n = 0; n < from.size(); ++n)
+                CHECK(between[n] == doctest::Approx(from[n] + static_cast<float>(factor) * (to[n] - from[n])).epsilon(1e-6));
+        };
+        world.update(step_time);
+        check(0);
+        world.update(step_time / 4);
+        check(0.25);
+        world.update(step_time / 2);
+        check(0.75);
+        // Three steps at once: a quarter before the last of three is 2.75 steps, less the one that is shown late.
+        world.update(3 * step_time);
+        check(1 - 0.25 / 3);
+        CHECK(wadi_world_get_view(world.id, WADI_OUTPUT_FLOW, WADI_OUTPUT_INTERPOLATED, &v) == WADI_ERROR_BAD_ARGUMENT);
+    }
+}
+
+TEST_CASE("host copies arrive without waiting, and stay for two updates") {
+    const World world("cpu", 256, 256);
+    REQUIRE(wadi_world_set_host_outputs(world.id, WADI_OUTPUT_BIT(WADI_OUTPUT_WATER_DEPTH)) == WADI_OK);
+    world.update(0);
+    world.wait();
+    uint64_t newest = 0;
+    for (int n = 0; n < 12; ++n) {
+        const float* data = nullptr;
+        const float* again = nullptr;
+        uint64_t pitch = 0, step = 0;
+        REQUIRE(wadi_world_get_host_output(world.id, WADI_OUTPUT_WATER_DEPTH, &data, &pitch, &step) == WADI_OK);
+        CHECK(step >= newest);
+        newest = step;
+        const auto then = dense(world, data, pitch, 1, 0);
+        if (n % 3 == 0) world.wait(); // a newer one arrives: the same is given until the next update
+        REQUIRE(wadi_world_get_host_output(world.id, WADI_OUTPUT_WATER_DEPTH, &again, nullptr, nullptr) == WADI_OK);
+        CHECK(again == data);
+        world.update(step_time);
+        if (n % 2 == 0) world.wait();
+        CHECK(dense(world, data, pitch, 1, 0) == then);
+    }
+    world.update(0);
+    const float* data = nullptr;
+    uint64_t step = 0;
+    world.wait();
+    world.update(0);
+    REQUIRE(wadi_world_get_host_output(world.id, WADI_OUTPUT_WATER_DEPTH, &data, nullptr, &step) == WADI_OK);
+    CHECK(step > 1);
+}
+
+TEST_CASE("what is not asked for costs nothing, and nothing published changes the state") {
+    for (const auto& backend : backends()) {
+        CAPTURE(backend);
+        const World plain(backend), world(backend);
+        const auto bytes = device_bytes(world);
+        auto settings = wadi_default_update_settings();
+        settings.max_steps_in_flight = 0;
+        settings.interpolate_outputs = 1;
+        REQUIRE(wadi_world_set_update_settings(world.id, &settings) == WADI_OK);
+        plain.keep_all_steps();
+        CHECK(device_bytes(world) == bytes);
+        REQUIRE(wadi_world_set_outputs(world.id, WADI_OUTPUT_BIT(WADI_OUTPUT_FOAM)) == WADI_OK);
+        const auto foam = device_bytes(world) - bytes;
+        CHECK(foam > 4 * 40 * 36 * 4);
+        CHECK(foam < 4 * 80 * 50 * 4);
+        REQUIRE(wadi_world_set_outputs(world.id, every_output | WADI_OUTPUT_TILES_BIT) == WADI_OK);
+        REQUIRE(wadi_world_set_host_outputs(world.id, every_output) == WADI_OK);
+        for (int n = 0; n < 20; ++n) {
+            world.update(step_time + 7);
+            plain.update(step_time + 7);
+        }
+        CHECK(world.stats().hash == plain.stats().hash);
+        REQUIRE(wadi_world_set_outputs(world.id, 0) == WADI_OK);
+        REQUIRE(wadi_world_set_host_outputs(world.id, 0) == WADI_OK);
+        world.read(WADI_FIELD_FREE_SURFACE);
+        CHECK(device_bytes(world) == device_bytes(plain));
+    }
+}
+
+TEST_CASE("outputs refuse what they must") {
+    const World world("cpu");
+    auto v = wadi_default_output_view();
+    const float* data = nullptr;
+    CHECK(wadi_world_set_outputs(world.id, 1u << 11) == WADI_ERROR_BAD_ARGUMENT);
+    CHECK(error_mentions("mask"));
+    CHECK(wadi_world_set_host_outputs(world.id, WADI_OUTPUT_TILES_BIT) == WADI_ERROR_BAD_ARGUMENT);
+    CHECK(wadi_world_set_outputs({0, 0}, 1) == WADI_ERROR_BAD_ARGUMENT);
+    CHECK(wadi_world_get_view(world.id, WADI_OUTPUT_FOAM, WADI_OUTPUT_CURRENT, &v) == WADI_ERROR_BAD_ARGUMENT);
+    CHECK(error_mentions("not asked for"));
+    CHECK(wadi_world_get_view(world.id, WADI_OUTPUT_COUNT, WADI_OUTPUT_CURRENT, &v) == WADI_ERROR_BAD_ARGUMENT);
+    CHECK(error_mentions("0 ... 10"));
+    REQUIRE(wadi_world_set_outputs(world.id, WADI_OUTPUT_BIT(WADI_OUTPUT_FOAM)) == WADI_OK);
+    world.update(0);
+    CHECK(wadi_world_get_view(world.id, WADI_OUTPUT_FOAM, static_cast<wadi_output_set>(3), &v) == WADI_ERROR_BAD_ARGUMENT);
+    CHECK(wadi_world_get_view(world.id, WADI_OUTPUT_FOAM, WADI_OUTPUT_INTERPOLATED, &v) == WADI_ERROR_BAD_ARGUMENT);
+    CHECK(wadi_world_get_view(world.id, WADI_OUTPUT_FOAM, WADI_OUTPUT_CURRENT, nullptr) == WADI_ERROR_BAD_ARGUMENT);
+    v.struct_size = 3;
+    CHECK(wadi_world_get_view(world.id, WADI_OUTPUT_FOAM, WADI_OUTPUT_CURRENT, &v) == WADI_ERROR_BAD_ARGUMENT);
+    CHECK(error_mentions("struct_size"));
+    CHECK(wadi_world_get_host_output(world.id, WADI_OUTPUT_FOAM, &data, nullptr, nullptr) == WADI_ERROR_BAD_ARGUMENT);
+    CHECK(wadi_world_get_host_output(world.id, WADI_OUTPUT_FOAM, nullptr, nullptr, nullptr) == WADI_ERROR_BAD_ARGUMENT);
+    CHECK(wadi_world_get_host_output(world.id, WADI_OUTPUT_COUNT, &data, nullptr, nullptr) == WADI_ERROR_BAD_ARGUMENT);
+    auto settings = wadi_default_update_settings();
+    settings.interpolate_outputs = 7;
+    CHECK(wadi_world_set_update_settings(world.id, &settings) == WADI_ERROR_BAD_ARGUMENT);
+    CHECK(error_mentions("interpolate_outputs"));
+}
+
+TEST_CASE("what host copies cost") {
+    for (const auto& backend : backends()) {
+        double milliseconds[2];
+        for (int on = 0; on < 2; ++on) {
+            const World world(backend, 256, 256);
+            const uint32_t mask = WADI_OUTPUT_BIT(WADI_OUTPUT_FREE_SURFACE) | WADI_OUTPUT_BIT(WADI_OUTPUT_NORMAL);
+            REQUIRE(wadi_world_set_outputs(world.id, mask) == WADI_OK);
+            REQUIRE(wadi_world_set_host_outputs(world.id, on == 1 ? mask : 0) == WADI_OK);
+            for (int n = 0; n < 4; ++n) world.update(step_time);
+            world.wait();
+            milliseconds[on] = 1e9;
+            for (int n = 0; n < 6; ++n) {
+                const auto start = std::chrono::steady_clock::now();
+                world.update(step_time);
+                world.wait();
+                const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
+                milliseconds[on] = std::min(milliseconds[on], took.count());
+            }
+        }
+        std::printf("%s 256^2: a step and two outputs %.2f ms, with their copies for the host (1.3 MB) %.2f ms\n",
+                    backend.c_str(), milliseconds[0], milliseconds[1]);
+    }
+}
