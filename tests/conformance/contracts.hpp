@@ -15,6 +15,7 @@ struct Contract {
 std::span<const Contract> buffer_contracts();
 std::span<const Contract> program_contracts();
 std::span<const Contract> device_contracts();
+std::span<const Contract> host_contracts();
 
 /// A buffer that holds `words`; null when the device refuses.
 compute::Buffer buffer_of(compute::Device& device, const std::vector<std::uint32_t>& words);
