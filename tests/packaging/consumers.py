@@ -1,0 +1,99 @@
+#!/usr/bin/env python3
+"""Installs a built tree and uses it as hosts do: find_package, pkg-config, add_subdirectory, the zip.
+
+Usage: consumers.py SOURCE_DIR BUILD_DIR"""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import zipfile
+
+source, build = (pathlib.Path(path).resolve() for path in sys.argv[1:3])
+host = source / "samples/minimal_host/main.c"
+consumer = source / "tests/packaging"
+
+
+def run(*command, **options):
+    done = subprocess.run([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, **options)
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(str(part) for part in command)}\n{done.stdout}\nexit status {done.returncode}")
+    return done.stdout
+
+
+def expect(held, demand):
+    if not held:
+        sys.exit(f"not so: {demand}")
+
+
+def check_host(program, **options):
+    text = run(program, **options)
+    expect("hash" in text, f"{program} prints the state's hash; it printed {text}")
+
+
+def check_installed(prefix):
+    for path in prefix.rglob("*"):
+        if path.suffix in (".cmake", ".pc"):
+            text = path.read_text(encoding="utf-8")
+            expect(str(build) not in text and str(source) not in text, f"{path.name} has no path of the build machine")
+    library = next(prefix.rglob("libwadi.so"))
+    dynamic = run("readelf", "-d", library)
+    expect("RPATH" not in dynamic and "RUNPATH" not in dynamic, "the installed library looks nowhere of its own")
+    needed = {line.split("[")[1].rstrip("]\n") for line in dynamic.splitlines() if "(NEEDED)" in line}
+    allowed = ("libstdc++.", "libm.", "libgcc_s.", "libc.", "ld-linux", "libpthread.", "libdl.", "librt.")
+    expect(all(name.startswith(allowed) for name in needed), f"only system libraries are needed, not {needed}")
+    return library.parent
+
+
+def cmake_consumer(folder, *options):
+    run("cmake", "-S", consumer, "-B", folder, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", f"-DMINIMAL_HOST={host}", *options)
+
+
+def check_package(prefix, folder):
+    cmake_consumer(folder, "-DWADI_AS=package", f"-DCMAKE_PREFIX_PATH={prefix}")
+    run("cmake", "--build", folder)
+    check_host(folder / "consumer")
+    run(folder / "header_cpp17")
+
+
+def check_pkg_config(prefix, folder, libraries):
+    if shutil.which("pkg-config") is None:
+        print("pkg-config is not installed: not tried")
+        return
+    environment = dict(os.environ, PKG_CONFIG_PATH=str(libraries / "pkgconfig"), LD_LIBRARY_PATH=str(libraries))
+    flags = run("pkg-config", "--cflags", "--libs", "wadi", env=environment).split()
+    expect(any(str(prefix) in flag for flag in flags), f"pkg-config finds the moved prefix: {flags}")
+    run("cc", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", host, "-o", folder / "pkg", *flags)
+    check_host(folder / "pkg", env=environment)
+
+
+def check_zip(folder):
+    run("cpack", "-G", "ZIP", "-B", folder, cwd=build)
+    archive = zipfile.ZipFile(next(folder.glob("wadi-*.zip")))
+    names = [name for name in archive.namelist() if not name.endswith("/")]
+    tops = {name.split("/")[0] for name in names}
+    expect(len(tops) == 1, f"the zip has one folder, not {tops}")
+    inner = {name.split("/", 1)[1] for name in names}
+    expect({name.split("/")[0] for name in inner} == {"plugin"}, "the zip holds plugin/ alone")
+    expect({name.split("/")[1] for name in inner} == {"include", "lib", "levels", "README.md", "NOTICE.md"}, f"plugin/ holds {inner}")
+    headers = {f"plugin/include/wadi/{path.name}" for path in (source / "plugin/include/wadi").iterdir()}
+    expect(headers <= inner, f"every header is in the zip: {headers - inner} is not")
+    archive.extractall(folder / "engine")
+    plugin = folder / "engine" / tops.pop() / "plugin"
+    library = next((plugin / "lib").iterdir())
+    run("cc", "-std=c99", host, "-o", folder / "zipped", "-I", plugin / "include", library)
+    check_host(folder / "zipped", env=dict(os.environ, LD_LIBRARY_PATH=str(library.parent)))
+
+
+with tempfile.TemporaryDirectory() as name:
+    folder = pathlib.Path(name)
+    run("cmake", "--install", build, "--prefix", folder / "installed", "--component", "plugin")
+    moved = folder / "moved"
+    (folder / "installed").rename(moved)
+    libraries = check_installed(moved)
+    check_package(moved, folder / "package")
+    check_pkg_config(moved, folder, libraries)
+    cmake_consumer(folder / "source", "-DWADI_AS=source", f"-DWADI_SOURCE={source}", "-DWADI_VULKAN=OFF", "-DWADI_CUDA=OFF")
+    check_zip(folder)
+print("find_package, pkg-config, add_subdirectory and the zip work")
