@@ -33,11 +33,11 @@ struct Wanted {
     std::string reason;
 };
 
-Wanted wanted(const Effect& effect, std::uint32_t mask, const Settings& s, const InitialFields& f) {
+Wanted wanted(const Effect& effect, std::uint32_t mask, const Settings& s, Content content) {
     const auto& m = s.material;
     switch (effect.bit) {
     case EFFECT_WATER: {
-        if (any_above_zero(f.water)) return {true, "the level holds water"};
+        if (content.water) return {true, "the world holds water"};
         for (const auto& source : s.sources) {
             if (source.material == SourceMaterial::water && ever_above_zero(source.rate)) return {true, "a source adds water"};
         }
@@ -45,14 +45,14 @@ Wanted wanted(const Effect& effect, std::uint32_t mask, const Settings& s, const
         for (const auto& side : s.sides) {
             if (side.kind == SideKind::discharge || side.kind == SideKind::level) return {true, "water enters through a side"};
         }
-        return {false, "no water in the level, its sources or its sides"};
+        return {false, "no water in the world, its sources or its sides"};
     }
     case EFFECT_SAND: {
-        if (any_above_zero(f.sand)) return {true, "the level holds sand"};
+        if (content.sand) return {true, "the world holds sand"};
         for (const auto& source : s.sources) {
             if (source.material == SourceMaterial::sand && ever_above_zero(source.rate)) return {true, "a source adds sand"};
         }
-        return {false, "no sand in the level or its sources"};
+        return {false, "no sand in the world or its sources"};
     }
     case EFFECT_MIXTURE:
         return {(mask & effect.needs) == effect.needs, "water and sand can meet"};
@@ -79,7 +79,11 @@ Wanted wanted(const Effect& effect, std::uint32_t mask, const Settings& s, const
     }
 }
 
-std::string names_of(std::uint32_t bits) {
+} // namespace
+
+std::span<const Effect> effect_table() { return table; }
+
+std::string effect_names(std::uint32_t bits) {
     std::string names;
     for (const auto& effect : table) {
         if ((bits & effect.bit) != 0) names += (names.empty() ? "" : ", ") + std::string(effect.name);
@@ -87,19 +91,15 @@ std::string names_of(std::uint32_t bits) {
     return names;
 }
 
-} // namespace
-
-std::span<const Effect> effect_table() { return table; }
-
 bool is_legal(std::uint32_t mask) {
     return std::all_of(table.begin(), table.end(),
                        [&](const Effect& e) { return (mask & e.bit) == 0 || (mask & e.needs) == e.needs; });
 }
 
-Result<EffectChoice> effects_required(const Settings& settings, const InitialFields& fields) {
+Result<EffectChoice> effects_required(const Settings& settings, Content content) {
     for (const auto& forced : settings.effects) {
         if (std::none_of(table.begin(), table.end(), [&](const Effect& e) { return forced.first == e.name; })) {
-            return error(Code::bad_argument, "effects." + forced.first + ": no such effect; known: " + names_of(~0u));
+            return error(Code::bad_argument, "effects." + forced.first + ": no such effect; known: " + effect_names(~0u));
         }
     }
     EffectChoice choice;
@@ -109,21 +109,31 @@ Result<EffectChoice> effects_required(const Settings& settings, const InitialFie
             if (name == effect.name) force = wish;
         }
         const std::uint32_t lacking = effect.needs & ~choice.mask;
-        auto want = wanted(effect, choice.mask, settings, fields);
+        auto want = wanted(effect, choice.mask, settings, content);
         if (force == Force::on) {
             if (lacking != 0)
                 return error(Code::bad_argument,
-                             std::string("effects.") + effect.name + ": on, but it needs " + names_of(lacking));
+                             std::string("effects.") + effect.name + ": on, but it needs " + effect_names(lacking));
             want = {true, "forced on by the level"};
         } else if (force == Force::off) {
             want = {false, "forced off by the level"};
         } else if (lacking != 0) {
-            want = {false, "needs " + names_of(lacking)};
+            want = {false, "needs " + effect_names(lacking)};
         }
         if (want.on) choice.mask |= effect.bit;
         choice.reasons.push_back(want.reason);
     }
     return choice;
+}
+
+Content content_of(const InitialFields& fields) { return {any_above_zero(fields.sand), any_above_zero(fields.water)}; }
+
+Status check_allowed(const Settings& settings, Content content) {
+    for (const auto& [name, force] : settings.effects) {
+        if (force == Force::off && ((content.sand && name == "sand") || (content.water && name == "water")))
+            return error(Code::bad_argument, "effects." + name + " is forced off by the level");
+    }
+    return ok_status();
 }
 
 } // namespace wadi

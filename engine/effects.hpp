@@ -18,15 +18,27 @@ struct Effect {
 
 /// All effects, dependencies first.
 std::span<const Effect> effect_table();
+/// "sand, water": the effects of a mask.
+std::string effect_names(std::uint32_t mask);
+
+/// What a world holds, or an edit is about to bring.
+struct Content {
+    bool sand = false, water = false;
+    friend bool operator==(Content, Content) = default;
+};
+Content content_of(const InitialFields& fields);
 
 struct EffectChoice {
     std::uint32_t mask = 0;
     std::vector<std::string> reasons; // one per effect of the table: why it is on or off
 };
 
-/// The mask that settings and fields call for, with what the level forces. Errors: an unknown name, or an effect forced on
+/// The mask that settings and content call for, with what the level forces. Errors: an unknown name, or an effect forced on
 /// whose needs are off.
-Result<EffectChoice> effects_required(const Settings& settings, const InitialFields& fields);
+Result<EffectChoice> effects_required(const Settings& settings, Content content);
+
+/// ok, or bad_argument where the level forces off what this content needs.
+Status check_allowed(const Settings& settings, Content content);
 
 /// True when every effect in the mask has what it needs.
 bool is_legal(std::uint32_t mask);

@@ -166,6 +166,7 @@ StepPlan make_step_plan(std::uint32_t effects, int substeps) {
     plan_sand_forces(Builder(effects, plan.substep_passes, true));
 
     plan.fields.push_back({"terrain", FieldRole::state, false, -1});
+    plan.fields.push_back({"source_ledger", FieldRole::ledger, false, -1}); // edits count there in any world
     for (const auto* passes : {&plan.water_passes, &plan.substep_passes}) {
         for (const auto& pass : *passes) {
             for (const auto& name : pass.fields) {

@@ -53,6 +53,24 @@ Status Stepper::record() {
     return set_profiling(true);
 }
 
+Status Stepper::hold(Content content) {
+    auto choice = effects_required(state_.settings(), content);
+    if (!choice) return choice.status();
+    if (choice->mask != state_.effects().mask) {
+        const EffectChoice before = state_.effects();
+        auto status = state_.adopt(*choice);
+        if (!status) return state_.note(status);
+        status = record();
+        if (!status) {
+            if (auto back = state_.adopt(before); !back) return state_.note(back);
+            if (auto back = record(); !back) return back;
+            return status;
+        }
+    }
+    state_.content = content;
+    return ok_status();
+}
+
 Status Stepper::record_parts(std::size_t turn) {
     Parity parity = state_.parity_of(static_cast<int>(turn));
     for (int part = 0; part < parts(); ++part) {
@@ -80,6 +98,8 @@ Status Stepper::finish(int parts) {
     return parts_done_ < this->parts() ? ok_status() : complete_step();
 }
 
+Status Stepper::begin_step() { return before_step_ ? before_step_() : ok_status(); }
+
 Status Stepper::complete_step() {
     parts_done_ = 0;
     state_.set_turn(1 - state_.turn());
@@ -99,13 +119,17 @@ void Stepper::set_totals(const HostTotals& totals) {
 
 Status Stepper::step_part() {
     if (!state_.lost()) return state_.lost();
-    if (parts_done_ == 0) input_ = inputs_.next(static_cast<int>(state_.steps));
+    if (parts_done_ == 0) {
+        if (auto status = begin_step(); !status) return status;
+        input_ = inputs_.next(static_cast<int>(state_.steps));
+    }
     return finish(parts_done_ + 1);
 }
 
 Status Stepper::step() {
     if (!state_.lost()) return state_.lost();
     if (parts_done_ > 0) return finish(parts());
+    if (auto status = begin_step(); !status) return status;
     const auto turn = static_cast<std::size_t>(state_.turn());
     auto ticket = state_.device().submit(profiling_ ? timed_programs_[turn] : programs_[turn],
                                          inputs_.next(static_cast<int>(state_.steps)));

@@ -35,6 +35,12 @@ class Stepper {
     /// Parts of the present step already submitted; 0 between two steps.
     int parts_done() const { return parts_done_; }
 
+    /// Chooses the effects for what the world holds from now on; between two steps only. Where that changes the mask, buffers are
+    /// allocated and freed and everything is recorded anew, the state kept to the bit. Errors: out_of_memory, nothing changed.
+    Status hold(Content content);
+
+    /// Called ahead of the first pass of every step: edits.
+    void set_before_step(std::function<Status()> call) { before_step_ = std::move(call); }
     /// Called whenever a step has become whole: work that was asked for in the middle of a step, or that is due every so many.
     void set_after_step(std::function<Status()> call) { after_step_ = std::move(call); }
 
@@ -53,6 +59,7 @@ class Stepper {
     Result<compute::Program> record_step(Parity& parity, bool timestamps);
     Status record_parts(std::size_t turn);
     Status finish(int parts);
+    Status begin_step();
     Status complete_step();
     Status collect_timings(bool all);
     void drop_programs();
@@ -63,7 +70,7 @@ class Stepper {
     std::array<std::vector<compute::Program>, 2> part_programs_;
     int parts_done_ = 0;
     StepInput input_{}; // of the step whose parts are being submitted
-    std::function<Status()> after_step_;
+    std::function<Status()> before_step_, after_step_;
     bool profiling_ = false;
     std::vector<compute::Ticket> pending_timings_;
     std::map<std::string, double> stage_milliseconds_;

@@ -6,9 +6,10 @@ Result<std::unique_ptr<World>> World::create(const Settings& settings, const Ini
                                              std::unique_ptr<compute::Device> device, compute::GroupSize group) {
     if (auto status = validate(settings); !status) return status;
     if (auto status = validate(fields, settings); !status) return status;
-    auto effects = effects_required(settings, fields);
+    auto effects = effects_required(settings, content_of(fields));
     if (!effects) return effects.status();
     std::unique_ptr<World> world(new World(settings, std::move(device), group));
+    world->state_.content = content_of(fields);
     if (auto status = world->state_.open(*effects); !status) return status;
     if (auto status = world->state_.upload(fields); !status) return status;
     if (auto status = world->stepper_.record(); !status) return status;
@@ -49,10 +50,18 @@ Status World::save(std::span<std::byte> to) {
     return status ? snapshots_.save(to) : status;
 }
 
+Status World::edit(std::span<const Edit> edits) {
+    auto status = edits_.check("edit", edits, edits_.stamps());
+    if (status) edits_.schedule(edits);
+    return status;
+}
+
 Status World::load(std::span<const std::byte> from) {
-    auto status = snapshots_.load(from);
-    if (status) status = roll_back_.restart();
-    return status ? at_boundary() : status;
+    auto status = finish_step();
+    if (status) status = snapshots_.load(from);
+    if (!status) return status;
+    edits_.forget();
+    return roll_back_.restart();
 }
 
 Status World::set_rollback(std::uint32_t frames, std::uint32_t interval) {
@@ -63,6 +72,7 @@ Status World::set_rollback(std::uint32_t frames, std::uint32_t interval) {
 Result<std::uint64_t> World::roll_back_to(std::uint64_t step) {
     auto reached = roll_back_.go_back(step);
     if (!reached) return reached;
+    edits_.forget();
     auto status = at_boundary();
     return status ? reached : status;
 }

@@ -67,7 +67,7 @@ Status WorldState::open(const EffectChoice& effects) {
                                               device_->capabilities().name + "' binds at most " + std::to_string(limit >> 20) +
                                               " MiB");
     }
-    return allocate();
+    return allocate(plan_, buffers_, scratch_);
 }
 
 Result<compute::Buffer> WorldState::make_buffer(const compute::BufferDesc& desc) {
@@ -86,9 +86,9 @@ void WorldState::free_buffer(compute::Buffer buffer, std::uint64_t bytes) {
     std::erase_if(memory_, [&](const MemoryItem& item) { return item.buffer == buffer; });
 }
 
-std::vector<KeptField> WorldState::kept_fields() const {
+std::vector<KeptField> WorldState::kept_fields(const StepPlan& plan) const {
     std::vector<KeptField> kept;
-    for (const auto& field : plan_.fields) {
+    for (const auto& field : plan.fields) {
         if (field.role == FieldRole::state || field.role == FieldRole::ledger) kept.push_back({field.name, field_bytes(field)});
     }
     return kept;
@@ -102,20 +102,65 @@ std::uint64_t WorldState::field_bytes(const PlanField& field) const {
            static_cast<std::uint64_t>(layout_.pitch()) * 4;
 }
 
-Status WorldState::allocate() {
-    for (const auto& field : plan_.fields) {
+Status WorldState::allocate(const StepPlan& plan, FieldBuffers& buffers, std::vector<compute::Buffer>& scratch) {
+    for (const auto& field : plan.fields) {
         if (field.role == FieldRole::scratch) continue;
         for (std::size_t n = 0; n < (field.ping_pong ? 2u : 1u); ++n) {
+            auto& buffer = buffers[field.name][n];
+            if (buffer.id != 0) continue;
             auto made = make_buffer({field_bytes(field), field.name + (n == 1 ? "_next" : "")});
             if (!made) return made.status();
-            buffers_[field.name][n] = *made;
+            buffer = *made;
         }
     }
-    for (int n = 0; n < plan_.scratch_blocks; ++n) {
-        auto made = make_buffer({layout_.size() * 4, "scratch " + std::to_string(n)});
+    while (scratch.size() < static_cast<std::size_t>(plan.scratch_blocks)) {
+        auto made = make_buffer({layout_.size() * 4, "scratch " + std::to_string(scratch.size())});
         if (!made) return made.status();
-        scratch_.push_back(*made);
+        scratch.push_back(*made);
     }
+    return ok_status();
+}
+
+void WorldState::free_others(const FieldBuffers& buffers, const std::vector<compute::Buffer>& scratch,
+                             const std::vector<compute::Buffer>& kept) {
+    std::vector<compute::Buffer> all = scratch;
+    for (const auto& [name, pair] : buffers) all.insert(all.end(), pair.begin(), pair.end());
+    for (const auto buffer : all) {
+        if (std::find(kept.begin(), kept.end(), buffer) != kept.end()) continue;
+        const auto item = std::find_if(memory_.begin(), memory_.end(), [&](const auto& m) { return m.buffer == buffer; });
+        if (item != memory_.end()) free_buffer(buffer, item->bytes);
+    }
+}
+
+Status WorldState::adopt(const EffectChoice& effects) {
+    StepPlan plan = make_step_plan(effects.mask, settings_.method.substeps);
+    const auto listed = [](const FieldBuffers& buffers, std::vector<compute::Buffer> all) {
+        for (const auto& [name, pair] : buffers) all.insert(all.end(), pair.begin(), pair.end());
+        return all;
+    };
+    // The next step is turn 0, whose current buffers are the first of each pair.
+    auto buffers = buffers_;
+    for (const auto& name : parity()) std::swap(buffers[name][0], buffers[name][1]);
+    auto scratch = scratch_;
+    if (auto status = allocate(plan, buffers, scratch); !status) {
+        free_others(buffers, scratch, listed(buffers_, scratch_));
+        return status;
+    }
+    FieldBuffers wanted;
+    for (const auto& field : plan.fields) {
+        if (field.role == FieldRole::scratch) continue;
+        wanted[field.name] = buffers[field.name];
+        if (!field.ping_pong) wanted[field.name][1] = {};
+    }
+    std::vector<compute::Buffer> wanted_scratch(scratch.begin(), scratch.begin() + plan.scratch_blocks);
+    free_others(buffers, scratch, listed(wanted, wanted_scratch));
+    buffers_ = std::move(wanted);
+    scratch_ = std::move(wanted_scratch);
+    effects_ = effects;
+    plan_ = std::move(plan);
+    start_parity_ = {};
+    turn_ = 0;
+    ++recording_;
     return ok_status();
 }
 

@@ -40,6 +40,10 @@ class WorldState {
     /// Plans for a mask and makes every buffer it needs. Errors: not_supported (a field larger than the device binds),
     /// out_of_memory.
     Status open(const EffectChoice& effects);
+    /// Changes to the plan of another mask at a boundary between two steps. Fields of both plans keep their values to the bit,
+    /// new ones are zero, others are freed; the next step is turn 0 and every program must be recorded anew. Waits for the
+    /// device. Errors: out_of_memory, with the old plan still in force.
+    Status adopt(const EffectChoice& effects);
     /// Writes the level's fields into the current buffers.
     Status upload(const InitialFields& fields);
 
@@ -66,11 +70,14 @@ class WorldState {
     std::uint64_t steps = 0;
     /// Quanta of sand and water at creation.
     std::int64_t sand_initial = 0, water_initial = 0;
+    /// What the effects were chosen for.
+    Content content;
 
     /// The buffer of a field under a parity; with the suffix "_next" its partner. Null where the plan has no such field.
     compute::Buffer buffer(const std::string& name, const Parity& parity) const;
     std::uint64_t field_bytes(const PlanField& field) const;
-    std::vector<KeptField> kept_fields() const;
+    std::vector<KeptField> kept_fields(const StepPlan& plan) const;
+    std::vector<KeptField> kept_fields() const { return kept_fields(plan_); }
     /// A buffer that counts into device_bytes().
     Result<compute::Buffer> make_buffer(const compute::BufferDesc& desc);
     void free_buffer(compute::Buffer buffer, std::uint64_t bytes);
@@ -88,7 +95,12 @@ class WorldState {
     Status note(Status status);
 
   private:
-    Status allocate();
+    using FieldBuffers = std::map<std::string, std::array<compute::Buffer, 2>>;
+    /// Makes what `plan` needs beyond `buffers` and `scratch`, and adds it to them.
+    Status allocate(const StepPlan& plan, FieldBuffers& buffers, std::vector<compute::Buffer>& scratch);
+    /// Frees the buffers of the first two that are not among the kept.
+    void free_others(const FieldBuffers& buffers, const std::vector<compute::Buffer>& scratch,
+                     const std::vector<compute::Buffer>& kept);
 
     const Settings settings_;
     const FieldLayout layout_;
@@ -97,7 +109,7 @@ class WorldState {
     StepPlan plan_;
     std::unique_ptr<compute::Device> device_;
     compute::GroupSize group_;
-    std::map<std::string, std::array<compute::Buffer, 2>> buffers_; // state, ledger, shapes
+    FieldBuffers buffers_; // state, ledger, shapes
     std::vector<compute::Buffer> scratch_;
     std::array<Parity, 2> start_parity_{};
     int turn_ = 0;

@@ -1,6 +1,7 @@
 // Devices, and worlds made from levels or arrays.
 #include "engine/level/level.hpp"
 #include "plugin/abi.hpp"
+#include "plugin/vulkan_host.hpp"
 #include <cstdio>
 
 using namespace wadi;
@@ -18,6 +19,15 @@ Result<std::unique_ptr<compute::Device>> open(const wadi_device_options* options
         o.log = [log = options->log, user = options->log_user](int level, const std::string& message) {
             log(user, level, message.c_str());
         };
+    }
+    if (options->vulkan_host != nullptr) {
+#ifdef WADI_HAS_VULKAN
+        auto host = to_host_device(options->vulkan_host);
+        if (!host) return host.status();
+        o.host = std::move(*host);
+#else
+        return error(Code::not_supported, "vulkan_host was given, but this build has no Vulkan");
+#endif
     }
     return compute::open_device(options->backend != nullptr ? options->backend : "auto", options->device, o);
 }

@@ -7,6 +7,15 @@
 #define GHOST 2          // ghost cells on each side of every field
 #define STRIP 32         // rows of one ledger strip
 #define MAX_SOURCES 32   // sources and sinks of one world
+#define MAX_EDITS 16     // edits of one submission
+#define EDIT_VECTORS 3   // vec4 per edit
+#define STAMP_PAGE 1024  // floats; the image of a stamp begins at a multiple of it
+#define EDIT_BRUSH 0
+#define EDIT_STAMP 1
+#define EDIT_PUSH 2
+#define LAYER_TERRAIN 0
+#define LAYER_SAND 1
+#define LAYER_WATER 2
 #define POINT_ROW 64     // points in one row of a POINTS stage
 #define SAMPLE_FLOATS 12 // results per point of sample_points
 #define SOURCE_DISC 0
@@ -27,7 +36,7 @@
 #define LEDGER_WATER_OUT 1
 #define LEDGER_SAND_IN 2
 #define LEDGER_SAND_OUT 3
-#define LEDGER_REFUSED 4 // source volume refused because a column would pass the declared largest height
+#define LEDGER_REFUSED 4 // depth of sources, rain and edits refused because a column would pass the declared largest height
 #define LEDGER_ENTRIES 5
 
 // What is fixed for a world until it is re-recorded. At most 512 bytes. SI units.
@@ -106,14 +115,19 @@ struct WorldParams {
     float smooth2;
 };
 
-// What changes with every water step. At most 1 KiB.
+// What changes with every water step. At most 2 KiB.
 struct StepInput {
     int step;                   // index of the water step
     float rain;                 // depth of rain in this step [m], a whole number of quanta
     float evaporation;          // largest depth that evaporates in this step [m]
-    int point_count;            // points of a POINTS stage
+    int edit_count;             // edits in this submission of apply_edits
     vec4 source[MAX_SOURCES];   // depth added (negative: removed) [m], face velocity x, y [m/s], 1 if velocity is set
     vec4 side[4];               // west, east, south, north: discharge per width [m2/s] or level [m],
                                 // least ghost depth [m], first and last index of the open span
+    // Per edit, lengths in cells. Brush and push: (x, y of the start, x, y to the end), (radius, 1/width of the falloff,
+    // 1/length^2, kind), brush (amount [m], layer, 0, 0), push (strength, velocity x, y [m/s], 0). Stamp: (x, y of the low
+    // corner, width, height), (columns, rows, page, kind), (metres per unit of the image, layer, columns and rows per cell).
+    vec4 edit[EDIT_VECTORS * MAX_EDITS];
+    int point_count;            // points of this submission of a POINTS stage
 };
 #endif

@@ -97,6 +97,13 @@ std::span<std::byte> CpuDevice::mapped(compute::Buffer buffer) {
     return memory != nullptr && memory->host ? std::span(memory->data, memory->bytes) : std::span<std::byte>{};
 }
 
+Result<compute::NativeBuffer> CpuDevice::native(compute::Buffer buffer) {
+    const auto* memory = find(buffer);
+    if (memory == nullptr) return error(Code::bad_argument, "native: no buffer has the handle " + std::to_string(buffer.id));
+    return compute::NativeBuffer{compute::NativeBuffer::Kind::host_pointer, reinterpret_cast<std::uintptr_t>(memory->data),
+                                 memory->bytes};
+}
+
 void CpuDevice::destroy_buffer(compute::Buffer buffer) {
     if (buffer.id == 0) return;
     drain();

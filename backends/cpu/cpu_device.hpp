@@ -32,6 +32,7 @@ class CpuDevice final : public compute::Device {
     bool finished(compute::Ticket ticket) override;
     Status wait(compute::Ticket ticket) override;
     Result<std::vector<compute::Timing>> timings(compute::Ticket ticket) override;
+    Result<compute::NativeBuffer> native(compute::Buffer buffer) override;
     void inject_device_lost() override { lost_ = true; }
 
   private:

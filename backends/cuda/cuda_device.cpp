@@ -106,6 +106,13 @@ class CudaDevice final : public compute::Device {
         });
     }
 
+    Result<compute::NativeBuffer> native(compute::Buffer buffer) override {
+        const Memory* memory = buffers_.find(buffer);
+        if (memory == nullptr) return error(Code::bad_argument, "native: no buffer has the handle " + std::to_string(buffer.id));
+        return compute::NativeBuffer{compute::NativeBuffer::Kind::cuda_pointer, reinterpret_cast<std::uintptr_t>(memory->data),
+                                     memory->bytes};
+    }
+
     void inject_device_lost() override { context_->lose("injected"); }
 
   private:

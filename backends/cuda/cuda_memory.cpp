@@ -70,7 +70,8 @@ Result<compute::Buffer> Buffers::create(const compute::BufferDesc& desc) {
     *owner = std::move(*memory);
     if (owner->host) {
         std::memset(owner->data, 0, owner->bytes);
-    } else if (Status s = c_.check(cudaMemsetAsync(owner->data, 0, owner->bytes, c_.stream), "cudaMemsetAsync", owner->label); !s) {
+    } else if (Status s = c_.check(cudaMemsetAsync(owner->data, 0, owner->bytes, c_.stream), "cudaMemsetAsync", owner->label);
+               !s) {
         release(c_, *owner);
         return s;
     }

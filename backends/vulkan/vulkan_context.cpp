@@ -98,20 +98,41 @@ VkResult create_device(Context& c) {
     return api.CreateDevice(c.physical, &info, nullptr, &c.device);
 }
 
+// Runs on the host's device and queue. Its timeline semaphores may be those of Vulkan 1.2 or of the extension.
+Result<std::unique_ptr<Context>> adopt_device(std::unique_ptr<Context> context, const compute::HostDevice& host) {
+    Context& c = *context;
+    c.device = static_cast<VkDevice>(host.device);
+    c.queue = static_cast<VkQueue>(host.queue);
+    c.timeline = host.timeline_semaphore;
+    for (const std::uint32_t family : host.sharing_families) {
+        if (family != host.queue_family) c.sharing_families.push_back(family);
+    }
+    if (!c.sharing_families.empty()) c.sharing_families.push_back(host.queue_family);
+    c.instance->load(c.vk, c.device);
+    if (c.vk.vkGetSemaphoreCounterValueKHR == nullptr) c.vk.vkGetSemaphoreCounterValueKHR = c.vk.vkGetSemaphoreCounterValue;
+    if (c.vk.vkWaitSemaphoresKHR == nullptr) c.vk.vkWaitSemaphoresKHR = c.vk.vkWaitSemaphores;
+    if (c.timeline && (c.vk.vkGetSemaphoreCounterValueKHR == nullptr || c.vk.vkWaitSemaphoresKHR == nullptr))
+        return error(Code::not_supported, "the host's Vulkan device has no timeline semaphores, though the host says so");
+    return context;
+}
+
 } // namespace
 
 Result<std::unique_ptr<Context>> Context::open(int index, const compute::DeviceOptions& options) {
     auto context = std::make_unique<Context>();
     Context& c = *context;
     c.options = options;
-    auto instance = Instance::create(options);
+    const auto& host = options.host;
+    auto instance = host ? Instance::adopt(*host, options) : Instance::create(options);
     if (!instance) return instance.status();
     c.instance = std::move(*instance);
-    auto chosen = choose(*c.instance, index);
+    auto chosen = host ? c.instance->describe(static_cast<VkPhysicalDevice>(host->physical_device), host->queue_family)
+                       : choose(*c.instance, index);
     if (!chosen) return chosen.status();
     c.physical = chosen->handle;
     c.queue_family = chosen->queue_family;
     read_properties(c, *chosen);
+    if (host) return adopt_device(std::move(context), *host);
     c.timeline = has_timeline(c.instance->api(), c.physical);
     if (Status s = c.check(create_device(c), "vkCreateDevice", c.capabilities.name); !s) return s;
     c.instance->load(c.vk, c.device);
@@ -120,7 +141,7 @@ Result<std::unique_ptr<Context>> Context::open(int index, const compute::DeviceO
 }
 
 Context::~Context() {
-    if (device != VK_NULL_HANDLE) vk.vkDestroyDevice(device, nullptr);
+    if (device != VK_NULL_HANDLE && !options.host) vk.vkDestroyDevice(device, nullptr);
 }
 
 Status Context::check(VkResult result, std::string_view what, std::string_view label) {

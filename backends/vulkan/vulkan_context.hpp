@@ -36,6 +36,7 @@ struct Context {
     VkDevice device = VK_NULL_HANDLE;
     VkQueue queue = VK_NULL_HANDLE;
     std::uint32_t queue_family = 0;
+    std::vector<std::uint32_t> sharing_families; // of buffers; empty = only queue_family
     VolkDeviceTable vk{};
     VkPhysicalDeviceMemoryProperties memory{};
     Limits limits;

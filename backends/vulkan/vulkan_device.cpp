@@ -46,16 +46,26 @@ class VulkanDevice final : public compute::Device {
 
     void destroy_buffer(compute::Buffer buffer) override {
         if (buffer.id == 0) return;
+        if (recorded_in_flight()) {
+            doomed_buffers_.push_back(buffer);
+            return;
+        }
         context_->wait_idle();
         buffers_.destroy(buffer);
     }
 
     Status write(compute::Buffer buffer, std::uint64_t offset, std::span<const std::byte> bytes) override {
-        return unless_lost<Status>([&] { return buffers_.write(buffer, offset, bytes); });
+        return unless_lost<Status>([&] {
+            Status order = submissions_.check_order();
+            return order ? buffers_.write(buffer, offset, bytes) : order;
+        });
     }
 
     Status read(compute::Buffer buffer, std::uint64_t offset, std::span<std::byte> bytes) override {
-        return unless_lost<Status>([&] { return buffers_.read(buffer, offset, bytes); });
+        return unless_lost<Status>([&] {
+            Status order = submissions_.check_order();
+            return order ? buffers_.read(buffer, offset, bytes) : order;
+        });
     }
 
     Result<compute::Pipeline> create_pipeline(int stage, std::uint32_t effects, compute::GroupSize group) override {
@@ -73,7 +83,13 @@ class VulkanDevice final : public compute::Device {
     }
 
     void destroy_program(compute::Program program) override {
-        if (find(program) != nullptr) programs_[program.id - 1].reset(); // waits for the queue
+        if (find(program) == nullptr) return;
+        auto& owner = programs_[program.id - 1];
+        if (recorded_in_flight()) {
+            doomed_programs_.push_back(std::move(owner));
+        } else {
+            owner.reset(); // waits for the queue
+        }
     }
 
     Result<compute::Ticket> submit(compute::Program program, const StepInput& input) override {
@@ -81,9 +97,14 @@ class VulkanDevice final : public compute::Device {
             CompiledProgram* compiled = find(program);
             if (compiled == nullptr)
                 return error(Code::bad_argument, "submit: no program has the handle " + std::to_string(program.id));
+            if (!submissions_.recording()) {
+                if (Status s = submissions_.check_order(); !s) return s;
+                destroy_doomed();
+            }
             auto slot = submissions_.acquire();
             if (!slot) return slot.status();
-            auto commands = compiled->commands_for(*slot, submissions_.own_commands(*slot));
+            auto commands = submissions_.recording() ? compiled->secondary_for(*slot)
+                                                     : compiled->commands_for(*slot, submissions_.own_commands(*slot));
             if (!commands) return commands.status();
             return submissions_.submit(*slot, input, *commands, program);
         });
@@ -113,12 +134,46 @@ class VulkanDevice final : public compute::Device {
         });
     }
 
+    Result<compute::NativeBuffer> native(compute::Buffer buffer) override {
+        const Memory* memory = buffers_.find(buffer);
+        if (memory == nullptr) return error(Code::bad_argument, "native: no buffer has the handle " + std::to_string(buffer.id));
+        return compute::NativeBuffer{compute::NativeBuffer::Kind::vulkan_buffer, reinterpret_cast<std::uintptr_t>(memory->buffer),
+                                     memory->bytes};
+    }
+
+    Status wait_before(std::span<const compute::SyncPoint> points) override {
+        return unless_lost<Status>([&] { return submissions_.wait_before(points); });
+    }
+
+    Status signal_after(const compute::SyncPoint& point) override {
+        return unless_lost<Status>([&] { return submissions_.signal_after(point); });
+    }
+
+    Status begin_recording(void* commands, const compute::SyncPoint& promise) override {
+        return unless_lost<Status>([&] { return submissions_.begin_recording(static_cast<VkCommandBuffer>(commands), promise); });
+    }
+
+    Status end_recording() override {
+        return unless_lost<Status>([&] { return submissions_.end_recording(); });
+    }
+
     void inject_device_lost() override { context_->lost = true; }
 
   private:
     template <class R, class Call> R unless_lost(Call call) {
         if (context_->lost) return guarded([&] { return R(context_->lost_status()); });
         return guarded([&] { return R(call()); });
+    }
+
+    // The host's command buffers may refer to anything that was alive when they were recorded.
+    bool recorded_in_flight() { return !context_->lost && submissions_.check_order().code == Code::not_ready; }
+
+    void destroy_doomed() {
+        if (doomed_buffers_.empty() && doomed_programs_.empty()) return;
+        context_->wait_idle();
+        for (const compute::Buffer buffer : doomed_buffers_) buffers_.destroy(buffer);
+        doomed_buffers_.clear();
+        doomed_programs_.clear();
     }
 
     CompiledProgram* find(compute::Program program) const {
@@ -133,6 +188,9 @@ class VulkanDevice final : public compute::Device {
     Pipelines pipelines_{*context_};
     Submissions submissions_{*context_};
     std::vector<std::unique_ptr<CompiledProgram>> programs_; // handle id - 1 is the place; ids are never used again
+    // Destroyed once recorded work that may use them has run.
+    std::vector<std::unique_ptr<CompiledProgram>> doomed_programs_;
+    std::vector<compute::Buffer> doomed_buffers_;
 };
 
 } // namespace

@@ -105,6 +105,13 @@ std::uint64_t largest_device_heap(const InstanceApi& api, VkPhysicalDevice devic
     return bytes;
 }
 
+void fill_info(const InstanceApi& api, const VkPhysicalDeviceProperties& properties, PhysicalDevice& device) {
+    device.info.backend = "vulkan";
+    device.info.name = properties.deviceName;
+    device.info.kind = device_kind(properties.deviceType);
+    device.info.memory_bytes = largest_device_heap(api, device.handle);
+}
+
 } // namespace
 
 Result<std::unique_ptr<Instance>> Instance::create(const compute::DeviceOptions& options) {
@@ -116,14 +123,14 @@ Result<std::unique_ptr<Instance>> Instance::create(const compute::DeviceOptions&
 
 Status Instance::open(const compute::DeviceOptions& options) {
     std::string why;
-    const PFN_vkGetInstanceProcAddr entry = loader_entry(why);
-    if (entry == nullptr) return error(Code::not_supported, why);
+    entry_ = loader_entry(why);
+    if (entry_ == nullptr) return error(Code::not_supported, why);
     PFN_vkEnumerateInstanceVersion enumerate_version = nullptr;
     PFN_vkEnumerateInstanceLayerProperties enumerate_layers = nullptr;
     PFN_vkCreateInstance create_instance = nullptr;
-    find(enumerate_version, entry, VK_NULL_HANDLE, "vkEnumerateInstanceVersion");
-    find(enumerate_layers, entry, VK_NULL_HANDLE, "vkEnumerateInstanceLayerProperties");
-    find(create_instance, entry, VK_NULL_HANDLE, "vkCreateInstance");
+    find(enumerate_version, entry_, VK_NULL_HANDLE, "vkEnumerateInstanceVersion");
+    find(enumerate_layers, entry_, VK_NULL_HANDLE, "vkEnumerateInstanceLayerProperties");
+    find(create_instance, entry_, VK_NULL_HANDLE, "vkCreateInstance");
     std::uint32_t version = VK_API_VERSION_1_0;
     if (enumerate_version != nullptr) enumerate_version(&version);
     if (version < required_version || enumerate_layers == nullptr || create_instance == nullptr) {
@@ -160,17 +167,10 @@ Status Instance::open(const compute::DeviceOptions& options) {
     }
     if (const VkResult r = create_instance(&info, nullptr, &handle_); r != VK_SUCCESS) return creation_error(r);
 
-    find(api_.DestroyInstance, entry, handle_, "vkDestroyInstance");
-    find(api_.EnumeratePhysicalDevices, entry, handle_, "vkEnumeratePhysicalDevices");
-    find(api_.GetPhysicalDeviceProperties2, entry, handle_, "vkGetPhysicalDeviceProperties2");
-    find(api_.GetPhysicalDeviceFeatures2, entry, handle_, "vkGetPhysicalDeviceFeatures2");
-    find(api_.GetPhysicalDeviceMemoryProperties, entry, handle_, "vkGetPhysicalDeviceMemoryProperties");
-    find(api_.GetPhysicalDeviceQueueFamilyProperties, entry, handle_, "vkGetPhysicalDeviceQueueFamilyProperties");
-    find(api_.EnumerateDeviceExtensionProperties, entry, handle_, "vkEnumerateDeviceExtensionProperties");
-    find(api_.CreateDevice, entry, handle_, "vkCreateDevice");
+    find_calls();
     if (options.validate) {
-        find(api_.CreateDebugUtilsMessengerEXT, entry, handle_, "vkCreateDebugUtilsMessengerEXT");
-        find(api_.DestroyDebugUtilsMessengerEXT, entry, handle_, "vkDestroyDebugUtilsMessengerEXT");
+        find(api_.CreateDebugUtilsMessengerEXT, entry_, handle_, "vkCreateDebugUtilsMessengerEXT");
+        find(api_.DestroyDebugUtilsMessengerEXT, entry_, handle_, "vkDestroyDebugUtilsMessengerEXT");
         messenger.pNext = nullptr;
         if (const VkResult r = api_.CreateDebugUtilsMessengerEXT(handle_, &messenger, nullptr, &messenger_); r != VK_SUCCESS) {
             return error(Code::internal, "vkCreateDebugUtilsMessengerEXT: " + std::string(result_name(r)));
@@ -179,10 +179,59 @@ Status Instance::open(const compute::DeviceOptions& options) {
     return ok_status();
 }
 
+void Instance::find_calls() {
+    find(api_.DestroyInstance, entry_, handle_, "vkDestroyInstance");
+    find(api_.EnumeratePhysicalDevices, entry_, handle_, "vkEnumeratePhysicalDevices");
+    find(api_.GetPhysicalDeviceProperties2, entry_, handle_, "vkGetPhysicalDeviceProperties2");
+    find(api_.GetPhysicalDeviceFeatures2, entry_, handle_, "vkGetPhysicalDeviceFeatures2");
+    find(api_.GetPhysicalDeviceMemoryProperties, entry_, handle_, "vkGetPhysicalDeviceMemoryProperties");
+    find(api_.GetPhysicalDeviceQueueFamilyProperties, entry_, handle_, "vkGetPhysicalDeviceQueueFamilyProperties");
+    find(api_.EnumerateDeviceExtensionProperties, entry_, handle_, "vkEnumerateDeviceExtensionProperties");
+    find(api_.CreateDevice, entry_, handle_, "vkCreateDevice");
+}
+
+Result<std::unique_ptr<Instance>> Instance::adopt(const compute::HostDevice& host, const compute::DeviceOptions& options) {
+    if (host.instance == nullptr || host.physical_device == nullptr || host.device == nullptr || host.queue == nullptr ||
+        host.get_instance_proc_addr == nullptr) {
+        return error(Code::bad_argument, "the host's Vulkan device lacks a handle: instance, physical device, device, queue and "
+                                         "vkGetInstanceProcAddr must all be given");
+    }
+    std::unique_ptr<Instance> instance(new Instance);
+    instance->messages_.log = options.log;
+    instance->ours_ = false;
+    instance->entry_ = reinterpret_cast<PFN_vkGetInstanceProcAddr>(host.get_instance_proc_addr);
+    instance->handle_ = static_cast<VkInstance>(host.instance);
+    instance->find_calls();
+    if (instance->api_.GetPhysicalDeviceProperties2 == nullptr)
+        return error(Code::not_supported, "the host's Vulkan instance is older than Vulkan 1.1");
+    return instance;
+}
+
 Instance::~Instance() {
-    if (handle_ == VK_NULL_HANDLE) return;
+    if (handle_ == VK_NULL_HANDLE || !ours_) return;
     if (messenger_ != VK_NULL_HANDLE) api_.DestroyDebugUtilsMessengerEXT(handle_, messenger_, nullptr);
     api_.DestroyInstance(handle_, nullptr);
+}
+
+Result<PhysicalDevice> Instance::describe(VkPhysicalDevice handle, std::uint32_t queue_family) const {
+    PhysicalDevice device;
+    device.handle = handle;
+    device.queue_family = queue_family;
+    auto properties = vk_struct<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2);
+    api_.GetPhysicalDeviceProperties2(handle, &properties);
+    fill_info(api_, properties.properties, device);
+    if (properties.properties.apiVersion < required_version)
+        return error(Code::not_supported, device.info.name + " is older than Vulkan 1.1");
+    std::uint32_t count = 0;
+    api_.GetPhysicalDeviceQueueFamilyProperties(handle, &count, nullptr);
+    std::vector<VkQueueFamilyProperties> families(count);
+    api_.GetPhysicalDeviceQueueFamilyProperties(handle, &count, families.data());
+    if (queue_family >= count || (families[queue_family].queueFlags & VK_QUEUE_COMPUTE_BIT) == 0) {
+        return error(Code::not_supported,
+                     "queue family " + std::to_string(queue_family) + " of " + device.info.name + " has no compute");
+    }
+    device.timestamp_bits = families[queue_family].timestampValidBits;
+    return device;
 }
 
 std::vector<PhysicalDevice> Instance::devices(std::string& why_none) const {
@@ -203,10 +252,7 @@ std::vector<PhysicalDevice> Instance::devices(std::string& why_none) const {
         auto properties = vk_struct<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2);
         api_.GetPhysicalDeviceProperties2(handle, &properties);
         if (properties.properties.apiVersion < required_version || !choose_queue_family(api_, device)) continue;
-        device.info.backend = "vulkan";
-        device.info.name = properties.properties.deviceName;
-        device.info.kind = device_kind(properties.properties.deviceType);
-        device.info.memory_bytes = largest_device_heap(api_, handle);
+        fill_info(api_, properties.properties, device);
         found.push_back(std::move(device));
     }
     std::stable_sort(found.begin(), found.end(),
@@ -217,9 +263,8 @@ std::vector<PhysicalDevice> Instance::devices(std::string& why_none) const {
 }
 
 void Instance::load(VolkDeviceTable& table, VkDevice device) const {
-    std::string why;
     const std::lock_guard lock(volk_mutex);
-    volkInitializeCustom(loader_entry(why));
+    volkInitializeCustom(entry_);
     volkLoadInstanceOnly(handle_);
     volkLoadDeviceTable(&table, device);
 }

@@ -41,6 +41,8 @@ class Instance {
   public:
     /// Errors: not_supported (no loader or driver, or validation asked for and its layer absent), out_of_memory, internal.
     static Result<std::unique_ptr<Instance>> create(const compute::DeviceOptions& options);
+    /// The host's own instance: never destroyed here. Errors: bad_argument (a null handle).
+    static Result<std::unique_ptr<Instance>> adopt(const compute::HostDevice& host, const compute::DeviceOptions& options);
     ~Instance();
     Instance(const Instance&) = delete;
     Instance& operator=(const Instance&) = delete;
@@ -49,14 +51,19 @@ class Instance {
     Messages& messages() { return messages_; }
     /// Best first: discrete, integrated, virtual, software GPUs. Empty with a reason in `why_none`.
     std::vector<PhysicalDevice> devices(std::string& why_none) const;
+    /// One physical device with a given queue family. Errors: not_supported (older than Vulkan 1.1, no compute there).
+    Result<PhysicalDevice> describe(VkPhysicalDevice handle, std::uint32_t queue_family) const;
     /// Fills the table of device-level calls.
     void load(VolkDeviceTable& table, VkDevice device) const;
 
   private:
     Instance() = default;
     Status open(const compute::DeviceOptions& options);
+    void find_calls();
 
+    PFN_vkGetInstanceProcAddr entry_ = nullptr;
     VkInstance handle_ = VK_NULL_HANDLE;
+    bool ours_ = true;
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
     InstanceApi api_;
     Messages messages_;

@@ -59,6 +59,11 @@ Result<Memory> allocate(Context& c, std::uint64_t bytes, VkBufferUsageFlags usag
     auto info = vk_struct<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
     info.size = (bytes + 3) / 4 * 4;
     info.usage = usage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+    if (!c.sharing_families.empty()) {
+        info.sharingMode = VK_SHARING_MODE_CONCURRENT;
+        info.queueFamilyIndexCount = static_cast<std::uint32_t>(c.sharing_families.size());
+        info.pQueueFamilyIndices = c.sharing_families.data();
+    }
     if (Status s = c.check(c.vk.vkCreateBuffer(c.device, &info, nullptr, &m.buffer), "vkCreateBuffer", m.label); !s) return s;
     if (Status s = bind_memory(c, m, place); !s) {
         release(c, m);

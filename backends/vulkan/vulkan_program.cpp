@@ -17,7 +17,7 @@ CompiledProgram::compile(const ProgramParts& parts, const compute::ProgramBuilde
     if (!planned) return planned;
     if (Status s = program->create_queries(builder); !s) return s;
     if (!parts.context.options.no_replay) {
-        if (Status s = program->record_replays(); !s) return s;
+        if (Status s = program->record_replays(program->replays_, VK_COMMAND_BUFFER_LEVEL_PRIMARY); !s) return s;
     }
     return program;
 }
@@ -49,27 +49,33 @@ Status CompiledProgram::create_queries(const compute::ProgramBuilder& builder) {
     return c_.check(c_.vk.vkCreateQueryPool(c_.device, &info, nullptr, &queries_), "vkCreateQueryPool", label_);
 }
 
-Status CompiledProgram::record_replays() {
-    auto pool = vk_struct<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
-    pool.queueFamilyIndex = c_.queue_family;
-    if (Status s = c_.check(c_.vk.vkCreateCommandPool(c_.device, &pool, nullptr, &pool_), "vkCreateCommandPool", label_); !s)
-        return s;
-    replays_.resize(queries_ != VK_NULL_HANDLE ? Submissions::ring : 1);
+Status CompiledProgram::record_replays(std::vector<VkCommandBuffer>& replays, VkCommandBufferLevel level) {
+    if (pool_ == VK_NULL_HANDLE) {
+        auto pool = vk_struct<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
+        pool.queueFamilyIndex = c_.queue_family;
+        if (Status s = c_.check(c_.vk.vkCreateCommandPool(c_.device, &pool, nullptr, &pool_), "vkCreateCommandPool", label_); !s)
+            return s;
+    }
+    std::vector<VkCommandBuffer> made(queries_ != VK_NULL_HANDLE ? Submissions::ring : 1);
     auto info = vk_struct<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
     info.commandPool = pool_;
-    info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-    info.commandBufferCount = static_cast<std::uint32_t>(replays_.size());
-    const VkResult r = c_.vk.vkAllocateCommandBuffers(c_.device, &info, replays_.data());
+    info.level = level;
+    info.commandBufferCount = static_cast<std::uint32_t>(made.size());
+    const VkResult r = c_.vk.vkAllocateCommandBuffers(c_.device, &info, made.data());
     if (Status s = c_.check(r, "vkAllocateCommandBuffers", label_); !s) return s;
-    for (std::uint32_t slot = 0; slot < replays_.size(); ++slot) {
-        if (Status s = record(replays_[slot], slot, VK_COMMAND_BUFFER_USAGE_SIMULTANEOUS_USE_BIT); !s) return s;
+    for (std::uint32_t slot = 0; slot < made.size(); ++slot) {
+        if (Status s = record(made[slot], slot, VK_COMMAND_BUFFER_USAGE_SIMULTANEOUS_USE_BIT); !s) return s;
     }
+    replays = std::move(made);
     return ok_status();
 }
 
 Status CompiledProgram::record(VkCommandBuffer commands, std::uint32_t slot, VkCommandBufferUsageFlags usage) {
+    // Read for secondary command buffers only.
+    const auto inheritance = vk_struct<VkCommandBufferInheritanceInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_INHERITANCE_INFO);
     auto info = vk_struct<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
     info.flags = usage;
+    info.pInheritanceInfo = &inheritance;
     if (Status s = c_.check(c_.vk.vkBeginCommandBuffer(commands, &info), "vkBeginCommandBuffer", label_); !s) return s;
     if (queries_ != VK_NULL_HANDLE) {
         const auto count = static_cast<std::uint32_t>(timestamps_.size());
@@ -108,6 +114,13 @@ Result<VkCommandBuffer> CompiledProgram::commands_for(std::uint32_t slot, VkComm
     if (!replays_.empty()) return replays_[replays_.size() == 1 ? 0 : slot];
     if (Status s = record(own, slot, VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT); !s) return s;
     return own;
+}
+
+Result<VkCommandBuffer> CompiledProgram::secondary_for(std::uint32_t slot) {
+    if (secondaries_.empty()) {
+        if (Status s = record_replays(secondaries_, VK_COMMAND_BUFFER_LEVEL_SECONDARY); !s) return s;
+    }
+    return secondaries_[secondaries_.size() == 1 ? 0 : slot];
 }
 
 Result<std::vector<compute::Timing>> CompiledProgram::timings(std::uint32_t slot) {

@@ -51,6 +51,8 @@ class CompiledProgram {
 
     /// The commands to submit in a ring slot: the recorded ones, or `own` recorded anew.
     Result<VkCommandBuffer> commands_for(std::uint32_t slot, VkCommandBuffer own);
+    /// The same as a secondary command buffer, for the host's to execute; recorded when first asked for.
+    Result<VkCommandBuffer> secondary_for(std::uint32_t slot);
     /// Of a finished submission that ran in `slot`.
     Result<std::vector<compute::Timing>> timings(std::uint32_t slot);
 
@@ -58,7 +60,7 @@ class CompiledProgram {
     explicit CompiledProgram(Context& context) : c_(context) {}
     Status write_params(Transfers& transfers, const WorldParams& params);
     Status create_queries(const compute::ProgramBuilder& builder);
-    Status record_replays();
+    Status record_replays(std::vector<VkCommandBuffer>& replays, VkCommandBufferLevel level);
     Status record(VkCommandBuffer commands, std::uint32_t slot, VkCommandBufferUsageFlags usage);
     void record_command(VkCommandBuffer commands, const Command& command, std::uint32_t slot);
 
@@ -69,6 +71,7 @@ class CompiledProgram {
     std::vector<Command> commands_;
     VkCommandPool pool_ = VK_NULL_HANDLE;
     std::vector<VkCommandBuffer> replays_;       // one, or one per ring slot where each has queries of its own
+    std::vector<VkCommandBuffer> secondaries_;   // likewise
     VkQueryPool queries_ = VK_NULL_HANDLE;       // timestamps_.size() per ring slot
     std::vector<std::string> timestamps_;        // labels
     VkPipeline bound_pipeline_ = VK_NULL_HANDLE; // while recording

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -28,12 +29,40 @@ struct Capabilities {
     bool timestamps = false;
 };
 
+/// A host's own Vulkan device to run on instead of one that we open. Handles as Vulkan's, opaque here; all must outlive the
+/// device that is opened on them.
+struct HostDevice {
+    void* instance = nullptr;
+    void* physical_device = nullptr;
+    void* device = nullptr;
+    void* queue = nullptr;                       // of queue_family; used inside calls only, and nobody else may use it during one
+    void* get_instance_proc_addr = nullptr;      // PFN_vkGetInstanceProcAddr
+    std::uint32_t queue_family = 0;              // must have compute
+    std::vector<std::uint32_t> sharing_families; // other queue families whose commands touch our buffers
+    bool timeline_semaphore = false;             // the feature is enabled on the device
+};
+
+/// A point on a host's timeline semaphore (VkSemaphore as a number).
+struct SyncPoint {
+    std::uint64_t semaphore = 0;
+    std::uint64_t value = 0;
+};
+
+/// A buffer as its API knows it.
+struct NativeBuffer {
+    enum class Kind : std::uint8_t { host_pointer, vulkan_buffer, cuda_pointer };
+    Kind kind = Kind::host_pointer;
+    std::uint64_t handle = 0; // address, or VkBuffer
+    std::uint64_t bytes = 0;
+};
+
 struct DeviceOptions {
-    int threads = 0;             // CPU backend: worker threads, 0 = all cores
-    std::string instruction_set; // CPU backend: "" = best, "avx2", "base"
-    bool validate = false;       // Vulkan: validation and synchronization validation layers
-    bool full_barriers = false;  // a barrier before every operation
-    bool no_replay = false;      // record anew for each submit (GPU backends; the CPU has nothing recorded)
+    int threads = 0;                // CPU backend: worker threads, 0 = all cores
+    std::string instruction_set;    // CPU backend: "" = best, "avx2", "base"
+    bool validate = false;          // Vulkan: validation and synchronization validation layers
+    bool full_barriers = false;     // a barrier before every operation
+    std::optional<HostDevice> host; // Vulkan: run on the host's device
+    bool no_replay = false;         // record anew for each submit (GPU backends; the CPU has nothing recorded)
     /// Messages from drivers and validation layers; level 0 = error, 1 = warning, 2 = information.
     std::function<void(int level, const std::string& message)> log;
 };
@@ -86,8 +115,8 @@ class Device {
 
     /// A linear buffer, filled with zeros. Errors: bad_argument (0 bytes, or above largest_buffer_bytes), out_of_memory.
     virtual Result<Buffer> create_buffer(const BufferDesc& desc) = 0;
-    /// Where the host reads or writes a buffer made for upload or readback; empty for other buffers. Valid until the buffer or the
-    /// device is destroyed. What the host wrote before submit() is what that submission copies from; what a submission copied
+    /// Where the host reads or writes a buffer made for upload or readback; empty for other buffers. Valid until the buffer or
+    /// the device is destroyed. What the host wrote before submit() is what that submission copies from; what a submission copied
     /// here may be read once its ticket has finished. Such buffers take part in copies only: compile() refuses them in
     /// dispatches and fills.
     virtual std::span<std::byte> mapped(Buffer buffer) = 0;
@@ -116,8 +145,24 @@ class Device {
     /// the ticket is older than the ring.
     virtual Result<std::vector<Timing>> timings(Ticket ticket) = 0;
 
+    /// What a host passes to its own API. Errors: bad_argument (no such buffer).
+    virtual Result<NativeBuffer> native(Buffer buffer) = 0;
+    /// The next submission waits for the host's semaphores; signal() sets one once everything submitted so far is done. Neither
+    /// waits. Errors: not_supported (no timeline semaphores, or another API's device), bad_argument (null semaphore).
+    virtual Status wait_before(std::span<const SyncPoint> points) { return no_host_sync(points.size()); }
+    virtual Status signal_after(const SyncPoint&) { return no_host_sync(1); }
+    /// From here to end_recording() every submit() goes into the host's command buffer (VkCommandBuffer, recording, of the
+    /// device's queue family, outside a render pass) instead of the queue. The host promises to submit it, in the order of
+    /// recording, with a signal of `promise`; tickets finish when that is reached. Until then calls that would reach the queue
+    /// ahead of it (read, write, submit outside a recording) are refused with not_ready. Errors: not_supported, bad_argument.
+    virtual Status begin_recording(void*, const SyncPoint&) { return no_host_sync(1); }
+    virtual Status end_recording() { return no_host_sync(1); }
+
     /// Makes every later call return device_lost, as a real fault would: for tests of the host's reaction.
     virtual void inject_device_lost() = 0;
+
+  private:
+    Status no_host_sync(std::size_t points) const;
 };
 
 /// One device that a backend can open.

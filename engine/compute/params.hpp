@@ -12,8 +12,9 @@ struct alignas(16) vec4 {
 
 static_assert(sizeof(WorldParams) <= 512, "WorldParams must stay within 512 bytes");
 static_assert(sizeof(WorldParams) % 4 == 0 && alignof(WorldParams) == 4);
-static_assert(sizeof(StepInput) <= 1024, "StepInput must stay within 1 KiB");
+static_assert(sizeof(StepInput) <= 2048, "StepInput must stay within 2 KiB");
 static_assert(offsetof(StepInput, source) == 16 && offsetof(StepInput, side) == 16 + 16 * MAX_SOURCES);
+static_assert(offsetof(StepInput, edit) == offsetof(StepInput, side) + 16 * 4);
 
 /// The layout every field shares: GHOST ghost cells around, one more column and row for the last faces.
 /// u[i,j] is the west face and v[i,j] the south face of cell (i,j).

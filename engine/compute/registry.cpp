@@ -23,6 +23,12 @@ bool real_gpu(DeviceKind kind) {
 
 } // namespace
 
+Status Device::no_host_sync(std::size_t points) const {
+    if (points == 0) return ok_status();
+    return error(Code::not_supported,
+                 "the backend " + capabilities().backend + " has no semaphores or command buffers of a host");
+}
+
 void apply_environment(DeviceOptions& options) {
     options.validate |= environment_switch("WADI_VALIDATE");
     options.full_barriers |= environment_switch("WADI_FULL_BARRIERS");
@@ -35,6 +41,13 @@ Result<std::unique_ptr<Device>> open_device(const std::string& wanted, int index
     const char* forced = std::getenv("WADI_BACKEND");
     if (name == "auto" && forced != nullptr && *forced != '\0') name = forced;
     std::string why;
+    if (options.host) {
+        for (const auto& backend : backends()) {
+            if (backend.name == std::string("vulkan") && (name == "auto" || name == "vulkan")) return backend.open(0, options);
+        }
+        return error(Code::not_supported, "a host's Vulkan device was given, but the backend is " + name +
+                                              (name == "auto" || name == "vulkan" ? " and this build has no Vulkan" : ""));
+    }
     if (name == "auto") {
         for (const auto& backend : backends()) {
             for (const auto& info : backend.enumerate(why)) {

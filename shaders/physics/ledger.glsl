@@ -9,7 +9,12 @@ FN void count_quanta(REF(uint) low, REF(uint) high, uint amount) {
     low = sum;
 }
 
-// A depth of at most largest_height as a whole number of ledger quanta; rounds only when heights are plain floats.
+FN void add_count(REF(uint) low, REF(uint) high, uint amount, uint amount_high) {
+    count_quanta(low, high, amount);
+    high += amount_high;
+}
+
+// A depth of at most a few times largest_height as a whole number of ledger quanta; rounds only when heights are plain floats.
 FN uint quanta_of(float depth, float inv_ledger_quantum, float quantum) {
     float n = depth * inv_ledger_quantum;
     return uint(quantum > 0.0f ? n : n + 0.5f);

@@ -20,7 +20,7 @@ RULES = {
 LIBRARIES = {
     "nlohmann/": ["engine/level", "samples", "tests"],
     "stb/": ["engine/image", "samples", "tests"],
-    "vulkan/": ["backends/vulkan"],
+    "vulkan/": ["backends/vulkan", "plugin/include", "samples", "tests"],
     "volk.h": ["backends/vulkan"],
     "cuda": ["backends/cuda"],
     "CLI/": ["samples", "tests"],

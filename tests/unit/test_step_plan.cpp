@@ -143,21 +143,21 @@ TEST_CASE("an effect that is off has no pass and no buffer") {
 TEST_CASE("effects follow from the scene, with a reason, and a level may force them") {
     using test::flat_scene;
     auto scene = flat_scene(8, 8, 1, 0.01);
-    CHECK(effects_required(scene.settings, scene.fields)->mask == 0);
+    CHECK(effects_required(scene.settings, content_of(scene.fields))->mask == 0);
     scene.fill(scene.fields.water, [](double, double) { return 1; });
-    CHECK(effects_required(scene.settings, scene.fields)->mask == EFFECT_WATER);
+    CHECK(effects_required(scene.settings, content_of(scene.fields))->mask == EFFECT_WATER);
     scene.fill(scene.fields.sand, [](double, double) { return 1; });
-    const auto full = effects_required(scene.settings, scene.fields);
+    const auto full = effects_required(scene.settings, content_of(scene.fields));
     CHECK(full->mask == (EFFECT_WATER | EFFECT_SAND | EFFECT_MIXTURE | EFFECT_DIFFUSION | EFFECT_DRAG | EFFECT_ELASTOPLASTIC |
                          EFFECT_COHESION));
-    CHECK(full->reasons[0] == "the level holds water");
+    CHECK(full->reasons[0] == "the world holds water");
     scene.settings.effects = {{"mixture", Force::off}};
-    CHECK(effects_required(scene.settings, scene.fields)->mask ==
+    CHECK(effects_required(scene.settings, content_of(scene.fields))->mask ==
           (EFFECT_WATER | EFFECT_SAND | EFFECT_DRAG | EFFECT_ELASTOPLASTIC | EFFECT_COHESION));
     scene.settings.effects = {{"mixture", Force::off}, {"diffusion", Force::on}};
-    const auto bad = effects_required(scene.settings, scene.fields);
+    const auto bad = effects_required(scene.settings, content_of(scene.fields));
     CHECK(bad.status().code == Code::bad_argument);
     CHECK(bad.status().message.find("effects.diffusion: on, but it needs mixture") != std::string::npos);
     scene.settings.effects = {{"foam", Force::on}};
-    CHECK(effects_required(scene.settings, scene.fields).status().message.find("effects.foam") != std::string::npos);
+    CHECK(effects_required(scene.settings, content_of(scene.fields)).status().message.find("effects.foam") != std::string::npos);
 }

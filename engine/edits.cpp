@@ -1,0 +1,102 @@
+#include "engine/edits.hpp"
+#include <algorithm>
+
+namespace wadi {
+
+Edits::Edits(WorldState& state, Stepper& stepper)
+    : state_(state), stepper_(stepper), program_(state, "edits", [this](compute::ProgramBuilder& builder, const Parity& parity) {
+          return state_.append_stage(builder, "apply_edits", parity, {{"stamp_images", images_}});
+      }) {}
+
+Status Edits::check(const char* function, std::span<const Edit> edits, std::span<const Stamp> stamps) const {
+    for (std::size_t n = 0; n < edits.size(); ++n) {
+        const std::string path = std::string(function) + ": edits[" + std::to_string(n) + "].";
+        if (auto status = check_edit(path, edits[n], state_.settings(), stamps, next_step()); !status) return status;
+    }
+    return ok_status();
+}
+
+void Edits::schedule(std::span<const Edit> edits) {
+    for (Edit edit : edits) {
+        if (edit.step == 0) edit.step = next_step();
+        const auto later =
+            std::upper_bound(waiting_.begin(), waiting_.end(), edit.step, [](auto step, const Edit& e) { return step < e.step; });
+        waiting_.insert(later, edit);
+    }
+}
+
+Result<std::uint32_t> Edits::create_stamp(int nx, int ny, std::span<const float> values) {
+    if (auto status = check_stamp("create_stamp", nx, ny, values); !status) return status;
+    Stamp stamp{nx, ny, {values.begin(), values.end()}, 0, 0, pages_used_};
+    const auto [least, largest] = std::minmax_element(stamp.values.begin(), stamp.values.end());
+    stamp.least = *least;
+    stamp.largest = *largest;
+    const std::uint64_t end = pages_used_ + (values.size() + STAMP_PAGE - 1) / STAMP_PAGE;
+    if (auto status = make_room(end); !status) return status;
+    if (auto status = upload(stamp); !status) return status;
+    stamps_.push_back(std::move(stamp));
+    pages_used_ = end;
+    return static_cast<std::uint32_t>(stamps_.size());
+}
+
+Status Edits::upload(const Stamp& stamp) {
+    return state_.note(state_.device().write(images_, stamp.page * STAMP_PAGE * 4, std::as_bytes(std::span(stamp.values))));
+}
+
+// Grows by doubling; the images move to the new buffer.
+Status Edits::make_room(std::uint64_t pages) {
+    if (pages <= pages_) return ok_status();
+    const std::uint64_t wanted = std::max(pages, 2 * pages_);
+    auto made = state_.make_buffer({wanted * STAMP_PAGE * 4, "stamps"});
+    if (!made) return state_.note(made.status());
+    program_.forget();
+    state_.free_buffer(images_, pages_ * STAMP_PAGE * 4);
+    images_ = *made;
+    pages_ = wanted;
+    for (const auto& stamp : stamps_) {
+        if (auto status = upload(stamp); !status) return status;
+    }
+    return ok_status();
+}
+
+Status Edits::before_step() {
+    const auto due = static_cast<std::size_t>(
+        std::find_if(waiting_.begin(), waiting_.end(), [&](const Edit& edit) { return edit.step > state_.steps; }) -
+        waiting_.begin());
+    if (due == 0) return ok_status();
+    if (auto status = promote(due); !status) return status;
+    if (auto status = make_room(1); !status) return status;
+    return submit(due);
+}
+
+Status Edits::promote(std::size_t due) {
+    Content content = state_.content;
+    vec4 packed[EDIT_VECTORS];
+    for (std::size_t n = 0; n < due; ++n) {
+        if (!pack_edit(waiting_[n], stamps_, state_.settings().grid, packed)) continue;
+        const Content brought = content_brought(waiting_[n], stamps_);
+        content.sand |= brought.sand;
+        content.water |= brought.water;
+    }
+    return content == state_.content ? ok_status() : stepper_.hold(content);
+}
+
+Status Edits::submit(std::size_t due) {
+    while (due > 0) {
+        StepInput input{};
+        input.step = static_cast<int>(state_.steps);
+        std::size_t taken = 0;
+        for (; taken < due && input.edit_count < MAX_EDITS; ++taken) {
+            vec4* to = input.edit + EDIT_VECTORS * input.edit_count;
+            if (pack_edit(waiting_[taken], stamps_, state_.settings().grid, to)) ++input.edit_count;
+        }
+        if (input.edit_count > 0) {
+            if (auto ticket = program_.submit(input); !ticket) return ticket.status();
+        }
+        waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(taken));
+        due -= taken;
+    }
+    return ok_status();
+}
+
+} // namespace wadi

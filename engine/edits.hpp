@@ -1,0 +1,84 @@
+// Edits of a running world: brushes, stamps and bodies that push. They wait for their step and run on the device ahead of it.
+#pragma once
+#include "engine/state_program.hpp"
+#include "engine/stepper.hpp"
+#include <span>
+
+namespace wadi {
+
+enum class EditKind : std::uint8_t { brush = EDIT_BRUSH, stamp = EDIT_STAMP, push = EDIT_PUSH };
+enum class EditLayer : std::uint8_t { terrain = LAYER_TERRAIN, sand = LAYER_SAND, water = LAYER_WATER };
+
+/// See wadi_edit in the plugin's header for meaning, units and ranges.
+struct Edit {
+    EditKind kind = EditKind::brush;
+    EditLayer layer = EditLayer::terrain; // of brush and stamp
+    bool capsule = false;                 // brush and push: from (x0, y0) to (x1, y1) instead of a disc round (x0, y0)
+    std::uint64_t step = 0;               // 0 = the next one
+    double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+    double radius = 0, softness = 0;
+    double amount = 0; // [m]; of a stamp: metres per unit of the image
+    double strength = 0, velocity_x = 0, velocity_y = 0;
+    std::uint32_t stamp = 0;
+};
+
+constexpr int STAMP_MOST = 4096; // pixels per side
+
+/// An image to be stamped: row-major nx * ny, row 0 in the south.
+struct Stamp {
+    int nx = 0, ny = 0;
+    std::vector<float> values;
+    float least = 0, largest = 0;
+    std::uint64_t page = 0; // where it lies on the device, in units of STAMP_PAGE floats
+};
+
+class Edits {
+  public:
+    Edits(WorldState& state, Stepper& stepper);
+    Edits(const Edits&) = delete;
+    Edits& operator=(const Edits&) = delete;
+
+    /// The step that "the next one" means now.
+    std::uint64_t next_step() const { return state_.steps + (stepper_.parts_done() > 0 ? 1 : 0); }
+    /// ok, or bad_argument that names `function`, the edit and its field.
+    Status check(const char* function, std::span<const Edit> edits, std::span<const Stamp> stamps) const;
+    /// Queues checked edits behind those of the same step.
+    void schedule(std::span<const Edit> edits);
+    /// Drops what waits.
+    void forget() { waiting_.clear(); }
+
+    /// Registers an image; its number counts up from 1. Allocates and may wait. Errors: bad_argument, out_of_memory.
+    Result<std::uint32_t> create_stamp(int nx, int ny, std::span<const float> values);
+    const std::vector<Stamp>& stamps() const { return stamps_; }
+
+    /// Submits what is due ahead of the next step, MAX_EDITS at a time; promotes the world where a material is new.
+    Status before_step();
+
+  private:
+    Status promote(std::size_t due);
+    Status submit(std::size_t due);
+    Status make_room(std::uint64_t pages);
+    Status upload(const Stamp& stamp);
+
+    WorldState& state_;
+    Stepper& stepper_;
+    std::vector<Edit> waiting_; // by step; equal steps in the order of the calls
+    std::vector<Stamp> stamps_;
+    compute::Buffer images_;
+    std::uint64_t pages_ = 0, pages_used_ = 0;
+    StateProgram program_;
+};
+
+/// ok, or bad_argument; the message begins with `path`.
+Status check_edit(const std::string& path, const Edit& edit, const Settings& settings, std::span<const Stamp> stamps,
+                  std::uint64_t next_step);
+/// What a checked edit may bring into the world.
+Content content_brought(const Edit& edit, std::span<const Stamp> stamps);
+
+/// ok, or why an image is no stamp.
+Status check_stamp(const char* function, int nx, int ny, std::span<const float> values);
+
+/// Writes an edit as apply_edits reads it: EDIT_VECTORS vec4. False where it misses the grid. `stamps` by their number less 1.
+bool pack_edit(const Edit& edit, std::span<const Stamp> stamps, const Grid& grid, vec4* to);
+
+} // namespace wadi

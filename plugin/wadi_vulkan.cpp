@@ -1,0 +1,74 @@
+// Worlds on a host's own Vulkan device.
+#include "plugin/include/wadi/wadi_vulkan.h"
+#include "plugin/abi.hpp"
+#include "plugin/vulkan_host.hpp"
+
+using namespace wadi;
+using namespace wadi::plugin;
+
+Result<compute::HostDevice> wadi::plugin::to_host_device(const wadi_vulkan_host* host) {
+    if (!right_size(host)) {
+        return error(Code::bad_argument, "vulkan_host: struct_size is not " + std::to_string(sizeof(wadi_vulkan_host)) +
+                                             "; use wadi_default_vulkan_host()");
+    }
+    if (host->sharing_family_count > 0 && host->sharing_families == nullptr)
+        return error(Code::bad_argument, "vulkan_host: sharing_families is NULL, but sharing_family_count is " +
+                                             std::to_string(host->sharing_family_count));
+    compute::HostDevice device;
+    device.instance = host->instance;
+    device.physical_device = host->physical_device;
+    device.device = host->device;
+    device.queue = host->queue;
+    device.get_instance_proc_addr = reinterpret_cast<void*>(host->get_instance_proc_addr);
+    device.queue_family = host->queue_family;
+    device.sharing_families.assign(host->sharing_families, host->sharing_families + host->sharing_family_count);
+    device.timeline_semaphore = host->timeline_semaphore == VK_TRUE;
+    return device;
+}
+
+namespace {
+
+compute::SyncPoint to_point(const wadi_vulkan_sync& point) {
+    return {reinterpret_cast<std::uintptr_t>(point.semaphore), point.value};
+}
+
+// Calls the device of a world that runs on a Vulkan host.
+template <class Call> wadi_result on_host(const char* function, wadi_world_id id, const void* argument, Call call) {
+    return with_world(function, id, [&](HostedWorld& hosted) {
+        if (argument == nullptr) return bad_argument(std::string(function) + ": a pointer is NULL");
+        if (hosted.world->device().capabilities().backend != "vulkan")
+            return report(error(Code::not_supported, std::string(function) + ": the world does not run on a Vulkan device"));
+        Status status = call(hosted.world->device());
+        if (!status) status.message = std::string(function) + ": " + status.message;
+        return report(status);
+    });
+}
+
+} // namespace
+
+extern "C" {
+
+wadi_vulkan_host wadi_default_vulkan_host(void) { return sized<wadi_vulkan_host>(); }
+
+wadi_result wadi_vulkan_wait(wadi_world_id id, const wadi_vulkan_sync* points, uint32_t count) {
+    return on_host(__func__, id, points, [&](compute::Device& device) {
+        std::vector<compute::SyncPoint> all;
+        for (uint32_t n = 0; n < count; ++n) all.push_back(to_point(points[n]));
+        return device.wait_before(all);
+    });
+}
+
+wadi_result wadi_vulkan_signal(wadi_world_id id, const wadi_vulkan_sync* point) {
+    return on_host(__func__, id, point, [&](compute::Device& device) { return device.signal_after(to_point(*point)); });
+}
+
+wadi_result wadi_vulkan_begin_recording(wadi_world_id id, VkCommandBuffer commands, const wadi_vulkan_sync* promise) {
+    return on_host(__func__, id, promise,
+                   [&](compute::Device& device) { return device.begin_recording(commands, to_point(*promise)); });
+}
+
+wadi_result wadi_vulkan_end_recording(wadi_world_id id) {
+    return on_host(__func__, id, &id, [&](compute::Device& device) { return device.end_recording(); });
+}
+
+} // extern "C"
