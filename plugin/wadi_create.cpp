@@ -41,24 +41,12 @@ LevelOverrides to_overrides(const wadi_level_overrides* o) {
     return overrides;
 }
 
-// Tells the host's log what was made and what its level may not do as expected.
-void log_creation(const wadi_device_options* options, const World& world, const Level& level) {
-    if (options == nullptr || options->log == nullptr) return;
-    for (const auto& warning : level.warnings) options->log(options->log_user, 1, (level.name + ": " + warning).c_str());
-    const auto& grid = world.settings().grid;
-    const auto& device = world.device().capabilities();
-    const std::string made = level.name + ": " + std::to_string(grid.nx) + " x " + std::to_string(grid.ny) + " cells on " +
-                             device.backend + ", " + device.name + ", " + std::to_string(world.device_bytes() >> 10) + " KiB";
-    options->log(options->log_user, 2, made.c_str());
-}
-
 wadi_result host(Result<Level> level, const wadi_device_options* options, wadi_world_id* id) {
     if (!level) return report(level.status());
     auto device = open(options);
     if (!device) return report(device.status());
     auto world = World::create(level->settings, level->fields, std::move(*device));
     if (!world) return report(world.status());
-    log_creation(options, **world, *level);
     *id = plugin::worlds().add({std::move(*world), level->name, level->duration, level->warnings});
     return report(ok_status());
 }

@@ -74,31 +74,3 @@ TEST_CASE("a healthy world has no error") {
     CHECK(std::string(wadi_get_last_error()).empty());
     CHECK(wadi_world_get_error(wadi_world_id{0, 0}) == WADI_ERROR_BAD_ARGUMENT);
 }
-
-TEST_CASE("the log hears of a new world and of its level's warnings") {
-    for (const auto& backend : abi_backends()) {
-        CAPTURE(backend);
-        std::vector<std::pair<int, std::string>> messages;
-        auto options = wadi_default_device_options();
-        options.backend = backend.c_str();
-        options.log_user = &messages;
-        options.log = [](void* user, int level, const char* message) {
-            static_cast<std::vector<std::pair<int, std::string>>*>(user)->emplace_back(level, message);
-        };
-        auto overrides = wadi_default_level_overrides();
-        overrides.nx = overrides.ny = 16; // too coarse for the level: it warns
-        wadi_world_id id{};
-        REQUIRE(wadi_create_world_from_level(WADI_SOURCE_DIR "/samples/levels/canyon/level.json", &overrides, &options, &id) ==
-                WADI_OK);
-        uint32_t warnings = 0;
-        for (const auto& [level, text] : messages) warnings += level == 1 ? 1 : 0;
-        auto info = wadi_default_world_info();
-        REQUIRE(wadi_world_get_info(id, &info) == WADI_OK);
-        CHECK(info.warning_count > 0);
-        CHECK(warnings >= info.warning_count);
-        REQUIRE_FALSE(messages.empty());
-        CHECK(messages.back().first == 2);
-        CHECK(messages.back().second.find("16 x 16 cells on " + backend) != std::string::npos);
-        wadi_destroy_world(id);
-    }
-}

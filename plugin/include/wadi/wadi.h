@@ -54,8 +54,7 @@ typedef struct wadi_world_id {
     uint32_t generation;
 } wadi_world_id;
 
-/** Gets what is worth telling: a world made and its level's warnings, drivers' and validation layers' messages. level: 0 error,
- *  1 warning, 2 information. Called during a call of the library, or from a driver's thread; it must not call the library. */
+/** Gets messages of drivers and validation layers. level: 0 error, 1 warning, 2 information. Called during a call of the library, or from a driver's thread; it must not call the library. */
 typedef void (*wadi_log_callback)(void* user, int level, const char* message);
 
 /** Where and how a world runs. */
