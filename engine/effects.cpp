@@ -79,17 +79,17 @@ Wanted wanted(const Effect& effect, std::uint32_t mask, const Settings& s, Conte
     }
 }
 
-std::string names_of(std::uint32_t bits) {
+} // namespace
+
+std::span<const Effect> effect_table() { return table; }
+
+std::string effect_names(std::uint32_t bits) {
     std::string names;
     for (const auto& effect : table) {
         if ((bits & effect.bit) != 0) names += (names.empty() ? "" : ", ") + std::string(effect.name);
     }
     return names;
 }
-
-} // namespace
-
-std::span<const Effect> effect_table() { return table; }
 
 bool is_legal(std::uint32_t mask) {
     return std::all_of(table.begin(), table.end(),
@@ -99,7 +99,7 @@ bool is_legal(std::uint32_t mask) {
 Result<EffectChoice> effects_required(const Settings& settings, Content content) {
     for (const auto& forced : settings.effects) {
         if (std::none_of(table.begin(), table.end(), [&](const Effect& e) { return forced.first == e.name; })) {
-            return error(Code::bad_argument, "effects." + forced.first + ": no such effect; known: " + names_of(~0u));
+            return error(Code::bad_argument, "effects." + forced.first + ": no such effect; known: " + effect_names(~0u));
         }
     }
     EffectChoice choice;
@@ -113,12 +113,12 @@ Result<EffectChoice> effects_required(const Settings& settings, Content content)
         if (force == Force::on) {
             if (lacking != 0)
                 return error(Code::bad_argument,
-                             std::string("effects.") + effect.name + ": on, but it needs " + names_of(lacking));
+                             std::string("effects.") + effect.name + ": on, but it needs " + effect_names(lacking));
             want = {true, "forced on by the level"};
         } else if (force == Force::off) {
             want = {false, "forced off by the level"};
         } else if (lacking != 0) {
-            want = {false, "needs " + names_of(lacking)};
+            want = {false, "needs " + effect_names(lacking)};
         }
         if (want.on) choice.mask |= effect.bit;
         choice.reasons.push_back(want.reason);

@@ -18,6 +18,8 @@ struct Effect {
 
 /// All effects, dependencies first.
 std::span<const Effect> effect_table();
+/// "sand, water": the effects of a mask.
+std::string effect_names(std::uint32_t mask);
 
 /// What a world holds, or an edit is about to bring.
 struct Content {

@@ -77,7 +77,7 @@ Status RollBack::fit() {
 std::vector<std::uint64_t> RollBack::steps() const {
     std::vector<std::uint64_t> steps;
     for (const auto& frame : frames_) {
-        if (frame.kept) steps.push_back(frame.totals.steps);
+        if (frame.kept && (frame.effects & ~state_.plan().effects) == 0) steps.push_back(frame.totals.steps);
     }
     std::sort(steps.begin(), steps.end());
     return steps;

@@ -6,13 +6,10 @@ namespace wadi {
 
 namespace {
 
-std::string effect_names(std::uint32_t mask) {
-    std::string names;
-    for (const auto& effect : effect_table()) {
-        if ((mask & effect.bit) != 0) names += (names.empty() ? "" : ", ") + std::string(effect.name);
-    }
-    return names;
-}
+// What a world with these effects may hold.
+Content content_under(std::uint32_t effects) { return {(effects & EFFECT_SAND) != 0, (effects & EFFECT_WATER) != 0}; }
+
+Content operator|(Content a, Content b) { return {a.sand || b.sand, a.water || b.water}; }
 
 } // namespace
 
@@ -49,9 +46,13 @@ Status Snapshots::check(const SnapshotHeader& header) const {
     if (header.level != level_digest(state_.settings()))
         return error(Code::bad_argument, "load: the snapshot is of a level with other settings (dt, material, method, sides or "
                                          "sources)");
-    if (const auto lacking = header.effects & ~state_.plan().effects; lacking != 0)
-        return error(Code::bad_argument, "load: the snapshot has effects that this world lacks: " + effect_names(lacking));
-    const auto kept = state_.kept_fields();
+    auto effects = effects_required(state_.settings(), content_under(header.effects) | state_.content);
+    if (!effects) return effects.status();
+    if (const auto lacking = header.effects & ~(effects->mask | state_.plan().effects); lacking != 0) {
+        return error(Code::bad_argument,
+                     "load: the snapshot has effects that this world's level does not allow: " + effect_names(lacking));
+    }
+    const auto kept = state_.kept_fields(make_step_plan(header.effects, state_.plan().substeps));
     for (const auto& field : header.fields) {
         const auto found = std::find_if(kept.begin(), kept.end(), [&](const KeptField& k) { return k.name == field.name; });
         if (found == kept.end() || found->bytes != field.bytes) {
@@ -93,6 +94,9 @@ Status Snapshots::load(std::span<const std::byte> from) {
     if (!header) return header.status();
     if (auto status = check(*header); !status) return status;
     if (!state_.lost()) return state_.lost();
+    if ((header->effects & ~state_.plan().effects) != 0) {
+        if (auto status = stepper_.hold(content_under(header->effects) | state_.content); !status) return status;
+    }
     stepper_.set_totals(header->totals);
     return write_fields(*header, from);
 }

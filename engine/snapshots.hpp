@@ -15,9 +15,10 @@ class Snapshots {
     std::uint64_t bytes() const { return header().bytes(); }
     /// Writes bytes() bytes; between two steps only. Waits for the device.
     Status save(std::span<std::byte> to);
-    /// Goes to the state of a snapshot of the same level. What the snapshot's effects lacked is zero, as it was there. Waits.
-    /// Errors: bad_file (not a whole, unchanged snapshot of a known version), bad_argument (of another level, or with effects
-    /// that this world lacks); the world is then unchanged.
+    /// Goes to the state of a snapshot of the same level; between two steps only. The world is promoted to the snapshot's
+    /// effects; what those lacked is zero, as it was there. Waits. Errors: bad_file (not a whole, unchanged snapshot of a known
+    /// version), bad_argument (of another level, or with effects that this world's level forces off), out_of_memory; the world is
+    /// then unchanged.
     Status load(std::span<const std::byte> from);
 
     /// Has the device copy the state as it is after the steps asked for so far; never waits but allocates at its first call.

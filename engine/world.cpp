@@ -78,11 +78,12 @@ Status World::edit(std::span<const Edit> edits) {
 }
 
 Status World::load(std::span<const std::byte> from) {
-    auto status = snapshots_.load(from);
-    if (status) edits_.forget();
-    if (status) frames_.went_back();
-    if (status) status = roll_back_.restart();
-    return status ? at_boundary() : status;
+    auto status = finish_step();
+    if (status) status = snapshots_.load(from);
+    if (!status) return status;
+    edits_.forget();
+    frames_.went_back();
+    return roll_back_.restart();
 }
 
 Status World::set_rollback(std::uint32_t frames, std::uint32_t interval) {
@@ -93,6 +94,7 @@ Status World::set_rollback(std::uint32_t frames, std::uint32_t interval) {
 Result<std::uint64_t> World::roll_back_to(std::uint64_t step) {
     auto reached = roll_back_.go_back(step);
     if (!reached) return reached;
+    edits_.forget();
     auto status = at_boundary();
     return status ? reached : status;
 }

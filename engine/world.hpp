@@ -40,20 +40,21 @@ class World {
 
     /// Everything that the next step depends on, to the bit (snapshot_format.hpp). `to` has snapshots().bytes() bytes.
     Status save(std::span<std::byte> to);
-    /// Goes back (or on) to a snapshot of a world of the same level; errors: Snapshots::load. Parts of a step are given up, and
-    /// frames kept for roll-back belong to another past: they are forgotten.
+    /// Goes back (or on) to a snapshot of a world of the same level; errors: Snapshots::load. Edits that wait and frames kept for
+    /// roll-back belong to another past: they are forgotten.
     Status load(std::span<const std::byte> from);
     Snapshots& snapshots() { return snapshots_; }
 
-    /// Checks edits and queues them for their steps (edits.hpp). Errors: bad_argument, nothing queued.
-    Status edit(std::span<const Edit> edits);
-    Edits& edits() { return edits_; }
     const RollBack& roll_back() const { return roll_back_; }
-    /// Goes to the newest kept step <= `step`; errors: RollBack::go_back.
+    /// Goes to the newest kept step <= `step`; errors: RollBack::go_back. Edits that wait are forgotten.
     Result<std::uint64_t> roll_back_to(std::uint64_t step);
     /// RollBack::set for the state between two steps.
     Status set_rollback(std::uint32_t frames, std::uint32_t interval);
     Queries& queries() { return queries_; }
+
+    /// Checks edits and queues them for their steps (edits.hpp). Errors: bad_argument, nothing queued.
+    Status edit(std::span<const Edit> edits);
+    Edits& edits() { return edits_; }
 
     Status set_profiling(bool on) { return stepper_.set_profiling(on); }
     /// Mean over the steps since profiling was switched on.

@@ -86,9 +86,9 @@ void WorldState::free_buffer(compute::Buffer buffer, std::uint64_t bytes) {
     std::erase_if(memory_, [&](const MemoryItem& item) { return item.buffer == buffer; });
 }
 
-std::vector<KeptField> WorldState::kept_fields() const {
+std::vector<KeptField> WorldState::kept_fields(const StepPlan& plan) const {
     std::vector<KeptField> kept;
-    for (const auto& field : plan_.fields) {
+    for (const auto& field : plan.fields) {
         if (field.role == FieldRole::state || field.role == FieldRole::ledger) kept.push_back({field.name, field_bytes(field)});
     }
     return kept;

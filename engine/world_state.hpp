@@ -76,7 +76,8 @@ class WorldState {
     /// The buffer of a field under a parity; with the suffix "_next" its partner. Null where the plan has no such field.
     compute::Buffer buffer(const std::string& name, const Parity& parity) const;
     std::uint64_t field_bytes(const PlanField& field) const;
-    std::vector<KeptField> kept_fields() const;
+    std::vector<KeptField> kept_fields(const StepPlan& plan) const;
+    std::vector<KeptField> kept_fields() const { return kept_fields(plan_); }
     /// A buffer that counts into device_bytes().
     Result<compute::Buffer> make_buffer(const compute::BufferDesc& desc);
     void free_buffer(compute::Buffer buffer, std::uint64_t bytes);

@@ -54,7 +54,8 @@ typedef struct wadi_world_id {
     uint32_t generation;
 } wadi_world_id;
 
-typedef void (*wadi_log_callback)(void* user, int level, const char* message); /* level: 0 error, 1 warning, 2 information */
+/** Gets messages of drivers and validation layers. level: 0 error, 1 warning, 2 information. Called during a call of the library, or from a driver's thread; it must not call the library. */
+typedef void (*wadi_log_callback)(void* user, int level, const char* message);
 
 /** Where and how a world runs. */
 typedef struct wadi_device_options {
@@ -349,15 +350,16 @@ WADI_API wadi_result wadi_world_get_dirty_regions(wadi_world_id world, int64_t s
 
 /* ---- Snapshots ---- */
 
-/** Saves the state to memory, to the bit: fields, ledgers and running totals, not the level itself. *size: bytes at `data` in,
+/** Saves the state to memory, to the bit: fields, ledgers and running totals, not the level itself nor edits that wait. *size: bytes at `data` in,
  *  bytes of the snapshot out; data may be NULL to ask the number, which waits for nothing. Waits for the steps asked for.
  *  Errors: BAD_ARGUMENT (size NULL or too small), DEVICE_LOST. */
 WADI_API wadi_result wadi_world_save(wadi_world_id world, void* data, size_t* size);
 /** Goes to a saved state: the world continues as the saved one would have, in every bit, on any backend that passes the
  *  exact-float test. The snapshot must be of a world of the same level settings (grid, dt, material, method, sides, sources, rain);
- *  initial fields may differ, and effects that only this world has start from zero. Waits for the device.
+ *  initial fields may differ; effects that only this world has start from zero, and the world is promoted to those that only the
+ *  snapshot has. Edits that wait and steps kept for roll-back are forgotten. Waits for the device.
  *  Errors, all leaving the world unchanged: BAD_FILE (no snapshot, a newer version, truncated, changed), BAD_ARGUMENT (of another
- *  level, or with effects that this world lacks), DEVICE_LOST. */
+ *  level, or with effects that this world's level forces off), OUT_OF_MEMORY, DEVICE_LOST. */
 WADI_API wadi_result wadi_world_load(wadi_world_id world, const void* data, size_t size);
 /** wadi_world_save to a file, written as path + ".part" and renamed when it is whole. Errors: NOT_FOUND (the folder cannot be
  *  written to), BAD_FILE (writing failed). */
@@ -381,7 +383,7 @@ WADI_API wadi_result wadi_world_end_save(wadi_world_id world, uint64_t ticket, v
 WADI_API wadi_result wadi_world_set_rollback(wadi_world_id world, uint32_t frames, uint32_t interval_steps);
 /** Steps that can be gone back to, oldest first. *count: capacity in, steps out; steps may be NULL to ask the number. */
 WADI_API wadi_result wadi_world_get_rollback_steps(wadi_world_id world, uint64_t* steps, uint32_t* count);
-/** Goes back to the newest kept step <= `step`, written to *reached (may be NULL); later kept steps are forgotten. The world goes on
+/** Goes back to the newest kept step <= `step`, written to *reached (may be NULL); later kept steps and edits that wait are forgotten. The world goes on
  *  from there as it did the first time, in every bit, given the same input. Does not wait. Errors: BAD_ARGUMENT (no step that old
  *  is kept; world unchanged), DEVICE_LOST. */
 WADI_API wadi_result wadi_world_roll_back(wadi_world_id world, uint64_t step, uint64_t* reached);
