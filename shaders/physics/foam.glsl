@@ -1,7 +1,7 @@
 // Foam from the state alone, no history.
 #ifndef PHYSICS_FOAM
 #define PHYSICS_FOAM
-#include "scalar.glsl"
+#include "../physics/scalar.glsl"
 
 // Fast water: from Froude number 1 (Fr^2 = 1) to 2 (Fr^2 = 4). `wave2`: g h, the squared speed of long waves [m2/s2].
 FN float jet_foam(float speed2, float wave2) { return wclamp((divide_or_zero(speed2, wave2) - 1.0f) * 0.33333334f, 0.0f, 1.0f); }

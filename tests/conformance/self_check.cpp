@@ -62,7 +62,8 @@ const std::vector<Control>& controls() {
              auto& out = output_of(stage, buffers);
              set_word(out, largest_cell(out), std::bit_cast<std::uint32_t>(std::numeric_limits<float>::quiet_NaN()));
          }},
-        {"one_cell_by_64_ulp", Outcome::fail, "integrate_water_height integrate_sand_height publish_free_surface compute_saturation",
+        {"one_cell_by_64_ulp", Outcome::fail,
+         "integrate_water_height integrate_sand_height publish_free_surface compute_saturation",
          [](const auto& stage, auto& buffers) {
              auto& out = output_of(stage, buffers);
              const std::size_t cell = largest_cell(out);
