@@ -99,6 +99,13 @@ TEST_CASE("published fields are those that reading gives, on every backend") {
         }
         CHECK(host(world, WADI_OUTPUT_FLOW, 1) == world.read(WADI_FIELD_WATER_VELOCITY_Y));
         CHECK(host(world, WADI_OUTPUT_SAND_VELOCITY, 1) == world.read(WADI_FIELD_SAND_VELOCITY_Y));
+        const auto kind = backend == "cpu"      ? WADI_HANDLE_HOST_POINTER
+                          : backend == "vulkan" ? WADI_HANDLE_VULKAN_BUFFER
+                                                : WADI_HANDLE_CUDA_POINTER;
+        CHECK(view(world, WADI_OUTPUT_NORMAL, WADI_OUTPUT_CURRENT).handle_kind == kind);
+        CHECK(view(world, WADI_OUTPUT_NORMAL, WADI_OUTPUT_CURRENT).handle != 0);
+        CHECK(view(world, WADI_OUTPUT_NORMAL, WADI_OUTPUT_CURRENT).handle !=
+              view(world, WADI_OUTPUT_NORMAL, WADI_OUTPUT_PREVIOUS).handle);
         const auto terrain = world.read(WADI_FIELD_TERRAIN), sand = world.read(WADI_FIELD_SAND_HEIGHT);
         const auto surface = world.read(WADI_FIELD_FREE_SURFACE), solid = host(world, WADI_OUTPUT_SAND_SURFACE);
         const auto up = host(world, WADI_OUTPUT_NORMAL, 2), east = host(world, WADI_OUTPUT_NORMAL, 0);

@@ -60,9 +60,12 @@ TEST_CASE("an update submits its steps, one publish, one copy, one interpolation
         check(3, 0);
         REQUIRE(world->set_update_settings({.interpolate_outputs = true}));
         check(4, 1);
+        REQUIRE(world->outputs().set_mask(all_outputs | tiles_bit));
+        check(4, 1);
         REQUIRE(world->outputs().set_mask(0));
         REQUIRE(world->outputs().set_host_mask(0));
         check(1, 0);
+        CHECK(world->device().counters().validation_messages == 0); // counted with WADI_VALIDATE=1
     }
 }
 
