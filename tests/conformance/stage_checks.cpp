@@ -1,4 +1,5 @@
 #include "tests/conformance/stage_checks.hpp"
+#include "tests/conformance/edits_check.hpp"
 #include "tests/conformance/stage_inputs.hpp"
 #include <algorithm>
 #include <bit>
@@ -152,6 +153,7 @@ struct Definition {
 constexpr Definition definitions[] = {
     {"account_sides", check_side_ledger}, {"apply_rain", check_source_ledger},   {"apply_sources", check_source_ledger},
     {"publish_heights", check_published}, {"publish_velocity", check_published}, {"mark_limits", check_marks},
+    {"apply_edits", check_edits},
 };
 
 } // namespace
