@@ -89,6 +89,10 @@ Status check_stamp(const char* function, int nx, int ny, std::span<const float> 
     Ranges ranges(std::string(function) + ": ");
     ranges.require("nx", nx, 1, STAMP_MOST);
     ranges.require("ny", ny, 1, STAMP_MOST);
+    const auto pixels = static_cast<std::int64_t>(nx) * ny;
+    ranges.require(static_cast<std::int64_t>(values.size()) == pixels, "values: " + std::to_string(values.size()) + " for " +
+                                                                           std::to_string(nx) + " x " + std::to_string(ny) +
+                                                                           " pixels");
     if (!ranges.status()) return ranges.status();
     const auto bad = std::find_if(values.begin(), values.end(), [](float v) { return !(std::abs(v) <= 1e12F); });
     if (bad != values.end())

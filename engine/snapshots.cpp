@@ -49,8 +49,25 @@ Status Snapshots::check(const SnapshotHeader& header) const {
     if (header.level != level_digest(state_.settings()))
         return error(Code::bad_argument, "load: the snapshot is of a level with other settings (dt, material, method, sides or "
                                          "sources)");
-    if (const auto lacking = header.effects & ~state_.plan().effects; lacking != 0)
-        return error(Code::bad_argument, "load: the snapshot has effects that this world lacks: " + effect_names(lacking));
+    return ok_status();
+}
+
+// A snapshot taken behind an edit that brought a material promotes the world as the edit did.
+Status Snapshots::promote_for(std::uint32_t effects) {
+    const auto lacking = [&](std::uint32_t mask) { return effects & ~mask; };
+    if (lacking(state_.plan().effects) == 0) return ok_status();
+    for (const Content more : {Content{true, false}, Content{false, true}, Content{true, true}}) {
+        const Content content{state_.content.sand || more.sand, state_.content.water || more.water};
+        auto choice = effects_required(state_.settings(), content);
+        if (!choice || lacking(choice->mask) != 0) continue;
+        if (auto status = stepper_.parts_done() > 0 ? stepper_.step() : ok_status(); !status) return status;
+        return stepper_.hold(content);
+    }
+    return error(Code::bad_argument,
+                 "load: the snapshot has effects that this world lacks: " + effect_names(lacking(state_.plan().effects)));
+}
+
+Status Snapshots::check_fields(const SnapshotHeader& header) const {
     const auto kept = state_.kept_fields();
     for (const auto& field : header.fields) {
         const auto found = std::find_if(kept.begin(), kept.end(), [&](const KeptField& k) { return k.name == field.name; });
@@ -93,6 +110,8 @@ Status Snapshots::load(std::span<const std::byte> from) {
     if (!header) return header.status();
     if (auto status = check(*header); !status) return status;
     if (!state_.lost()) return state_.lost();
+    if (auto status = promote_for(header->effects); !status) return status;
+    if (auto status = check_fields(*header); !status) return status;
     stepper_.set_totals(header->totals);
     return write_fields(*header, from);
 }

@@ -15,9 +15,10 @@ class Snapshots {
     std::uint64_t bytes() const { return header().bytes(); }
     /// Writes bytes() bytes; between two steps only. Waits for the device.
     Status save(std::span<std::byte> to);
-    /// Goes to the state of a snapshot of the same level. What the snapshot's effects lacked is zero, as it was there. Waits.
+    /// Goes to the state of a snapshot of the same level. What the snapshot's effects lacked is zero, as it was there; materials
+    /// that it holds and the world lacks promote the world. Waits.
     /// Errors: bad_file (not a whole, unchanged snapshot of a known version), bad_argument (of another level, or with effects
-    /// that this world lacks); the world is then unchanged.
+    /// that this world's level forces off); the world is then unchanged.
     Status load(std::span<const std::byte> from);
 
     /// Has the device copy the state as it is after the steps asked for so far; never waits but allocates at its first call.
@@ -40,6 +41,8 @@ class Snapshots {
 
     SnapshotHeader header() const;
     Status check(const SnapshotHeader& header) const;
+    Status promote_for(std::uint32_t effects);
+    Status check_fields(const SnapshotHeader& header) const;
     Status write_fields(const SnapshotHeader& header, std::span<const std::byte> from);
     Status make_buffers();
     Status submit_copies();

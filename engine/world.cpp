@@ -26,8 +26,13 @@ Status World::step(std::uint32_t count) {
 Status World::finish_step() { return stepper_.parts_done() == 0 ? state_.lost() : stepper_.step(); }
 
 Status World::read(const std::string& name, std::span<float> values) {
+    return read(name, {0, 0, settings().grid.nx, settings().grid.ny}, values);
+}
+
+Status World::read(const std::string& name, const Region& region, std::span<float> values) {
+    if (auto status = check_region("read", region, settings().grid, values.size()); !status) return status;
     auto status = finish_step();
-    return status ? reader_.read(name, values) : status;
+    return status ? reader_.read(name, region, values) : status;
 }
 
 Result<WorldStats> World::stats() {
@@ -40,22 +45,29 @@ Result<std::uint64_t> World::hash() {
     return status ? reader_.hash() : Result<std::uint64_t>(status);
 }
 
-Status World::at_boundary() { return snapshots_.at_boundary(); }
+Status World::at_boundary() {
+    auto status = snapshots_.at_boundary();
+    return status ? commands_.at_boundary() : status;
+}
 
 Status World::save(std::span<std::byte> to) {
     auto status = finish_step();
     return status ? snapshots_.save(to) : status;
 }
 
-Status World::edit(std::span<const Edit> edits) {
-    auto status = edits_.check("edit", edits, edits_.stamps());
-    if (status) edits_.schedule(edits);
-    return status;
+Status World::write_region(EditLayer layer, const Region& region, std::span<const float> values) {
+    auto status = finish_step();
+    return status ? commands_.write_region(layer, region, values) : status;
+}
+
+Status World::trim() {
+    auto status = finish_step();
+    return status ? commands_.trim() : status;
 }
 
 Status World::load(std::span<const std::byte> from) {
     auto status = snapshots_.load(from);
-    if (status) edits_.forget();
+    if (status) commands_.went_to(state_.steps);
     return status ? at_boundary() : status;
 }
 

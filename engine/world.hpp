@@ -1,6 +1,6 @@
 // A world: its state on a device, and the parts that step it and answer for it. Each part has a file of its own.
 #pragma once
-#include "engine/edits.hpp"
+#include "engine/command_log.hpp"
 #include "engine/snapshots.hpp"
 #include "engine/state_reader.hpp"
 #include "engine/stepper.hpp"
@@ -22,6 +22,7 @@ class World {
 
     /// Fields, statistics and hash of the state between two steps: what is left of a step begun in parts is done first.
     Status read(const std::string& name, std::span<float> values);
+    Status read(const std::string& name, const Region& region, std::span<float> values);
     Result<WorldStats> stats();
     Result<std::vector<float>> read_raw(const std::string& field);
 
@@ -35,9 +36,13 @@ class World {
     Status load(std::span<const std::byte> from);
     Snapshots& snapshots() { return snapshots_; }
 
-    /// Checks edits and queues them for their steps (edits.hpp). Errors: bad_argument, nothing queued.
-    Status edit(std::span<const Edit> edits);
+    /// Edits queued for their steps; heights written and effects dropped between two steps; the log of all that
+    /// (command_log.hpp).
+    Status edit(std::span<const Edit> edits) { return commands_.edit(edits); }
+    Status write_region(EditLayer layer, const Region& region, std::span<const float> values);
+    Status trim();
     Edits& edits() { return edits_; }
+    CommandLog& commands() { return commands_; }
 
     Status set_profiling(bool on) { return stepper_.set_profiling(on); }
     /// Mean over the steps since profiling was switched on.
@@ -71,6 +76,7 @@ class World {
     StateReader reader_{state_};
     Snapshots snapshots_{state_, stepper_};
     Edits edits_{state_, stepper_};
+    CommandLog commands_{state_, stepper_, edits_};
 };
 
 } // namespace wadi
