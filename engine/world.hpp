@@ -41,6 +41,8 @@ class World {
     Status edit(std::span<const Edit> edits) { return commands_.edit(edits); }
     Status write_region(EditLayer layer, const Region& region, std::span<const float> values);
     Status trim();
+    /// Compiles now what edits of new materials would need later.
+    Status prepare() { return stepper_.prepare(); }
     Edits& edits() { return edits_; }
     CommandLog& commands() { return commands_; }
 

@@ -107,6 +107,10 @@ wadi_result wadi_world_write_region(wadi_world_id id, wadi_field field, const wa
     });
 }
 
+wadi_result wadi_world_prepare_effects(wadi_world_id id) {
+    return with_world(__func__, id, [&](HostedWorld& hosted) { return report(hosted.world->prepare()); });
+}
+
 wadi_result wadi_world_trim(wadi_world_id id) {
     return with_world(__func__, id, [&](HostedWorld& hosted) { return report(hosted.world->trim()); });
 }

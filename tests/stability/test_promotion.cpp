@@ -117,6 +117,22 @@ TEST_CASE("a promotion keeps what runs in parts and what is profiled going") {
     CHECK(times->size() > 10);
 }
 
+TEST_CASE("preparing for every material changes neither plan nor memory nor bits, whatever the level forces off") {
+    for (const char* off : {"", "sand", "water"}) {
+        auto scene = dry_valley(false);
+        if (*off != '\0') scene.settings.effects = {{off, Force::off}};
+        auto prepared = make_world(scene), plain = make_world(scene);
+        REQUIRE(prepared->prepare());
+        CHECK(prepared->device_bytes() == plain->device_bytes());
+        CHECK(prepared->plan().effects == plain->plan().effects);
+        for (auto* world : {prepared.get(), plain.get()}) {
+            add(*world, disc(*off == 'w' ? EditLayer::sand : EditLayer::water, 3, 2, 1, 0.5));
+            step(*world, 3);
+        }
+        CHECK(hash_of(*prepared) == hash_of(*plain));
+    }
+}
+
 TEST_CASE("trim brings passes and memory back, and a trimmed world goes on as one that never held the material") {
     auto scene = dry_valley(true);
     auto world = make_world(scene);

@@ -312,6 +312,9 @@ WADI_API wadi_result wadi_world_edit(wadi_world_id world, const wadi_edit* edits
  *  *stamp counts up from 1; stamps live as long as the world. Allocates; may wait. Errors: BAD_ARGUMENT, OUT_OF_MEMORY. */
 WADI_API wadi_result wadi_world_create_stamp(wadi_world_id world, int32_t nx, int32_t ny, const float* values, uint32_t* stamp);
 
+/** Compiles the pipelines of every effect that the level allows, so that a later promotion only allocates and records. Costs time once
+ *  (GPU drivers: up to seconds) and next to no memory; call it while loading. Does not wait for steps. */
+WADI_API wadi_result wadi_world_prepare_effects(wadi_world_id world);
 /** Frees the passes and buffers of materials that the world no longer holds; what it gave and took stays in the ledger. Waits for
  *  the steps asked for and reads the heights. */
 WADI_API wadi_result wadi_world_trim(wadi_world_id world);
