@@ -13,7 +13,7 @@ void CommandLog::note(const Command& command) {
 }
 
 Status CommandLog::edit(std::span<const Edit> edits) {
-    if (auto status = edits_.check("edit", edits, edits_.stamps()); !status) return status;
+    if (auto status = edits_.check("wadi_world_edit", edits, edits_.stamps()); !status) return status;
     for (Edit edit : edits) {
         if (edit.step == 0) edit.step = edits_.next_step();
         note(edit);

@@ -10,8 +10,7 @@ Edits::Edits(WorldState& state, Stepper& stepper)
 
 Status Edits::check(const char* function, std::span<const Edit> edits, std::span<const Stamp> stamps) const {
     for (std::size_t n = 0; n < edits.size(); ++n) {
-        const std::string path = std::string(function) + ": edits[" + std::to_string(n) + "].";
-        if (auto status = check_edit(path, edits[n], state_.settings(), stamps, next_step()); !status) return status;
+        if (auto status = check_edit(function, n, edits[n], state_.settings(), stamps, next_step()); !status) return status;
     }
     return ok_status();
 }

@@ -71,9 +71,9 @@ class Edits {
     StateProgram program_;
 };
 
-/// ok, or bad_argument; the message begins with `path`.
-Status check_edit(const std::string& path, const Edit& edit, const Settings& settings, std::span<const Stamp> stamps,
-                  std::uint64_t next_step);
+/// ok, or bad_argument; the message begins with "function: edits[index].".
+Status check_edit(const char* function, std::size_t index, const Edit& edit, const Settings& settings,
+                  std::span<const Stamp> stamps, std::uint64_t next_step);
 /// What a checked edit may bring into the world.
 Content content_brought(const Edit& edit, std::span<const Stamp> stamps);
 

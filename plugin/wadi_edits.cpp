@@ -6,14 +6,16 @@ using namespace wadi::plugin;
 
 namespace {
 
-// Numbers out of range become what the engine refuses by name.
-Result<Edit> to_edit(const wadi_edit& e, const std::string& path) {
-    if (e.struct_size != sizeof e)
-        return error(Code::bad_argument, path + "struct_size is not " + std::to_string(sizeof e) + "; use wadi_default_edit()");
+// What the engine's types cannot hold is refused here.
+Result<Edit> to_edit(const wadi_edit& e, uint32_t index) {
+    const auto refuse = [&](const std::string& text) {
+        return error(Code::bad_argument, "wadi_world_edit: edits[" + std::to_string(index) + "]." + text);
+    };
+    if (e.struct_size != sizeof e) return refuse("struct_size is not " + std::to_string(sizeof e) + "; use wadi_default_edit()");
     if (e.kind < WADI_EDIT_BRUSH || e.kind > WADI_EDIT_PUSH)
-        return error(Code::bad_argument, path + "kind: " + std::to_string(e.kind) + " is no wadi_edit_kind (0 ... 2)");
+        return refuse("kind: " + std::to_string(e.kind) + " is no wadi_edit_kind (0 ... 2)");
     if (e.layer < WADI_LAYER_TERRAIN || e.layer > WADI_LAYER_WATER)
-        return error(Code::bad_argument, path + "layer: " + std::to_string(e.layer) + " is no wadi_layer (0 ... 2)");
+        return refuse("layer: " + std::to_string(e.layer) + " is no wadi_layer (0 ... 2)");
     Edit edit;
     edit.kind = static_cast<EditKind>(e.kind);
     edit.layer = static_cast<EditLayer>(e.layer);
@@ -55,7 +57,7 @@ wadi_result wadi_world_edit(wadi_world_id id, const wadi_edit* edits, uint32_t c
         std::vector<Edit>& list = hosted.edits;
         list.clear();
         for (uint32_t n = 0; n < count; ++n) {
-            auto edit = to_edit(edits[n], "wadi_world_edit: edits[" + std::to_string(n) + "].");
+            auto edit = to_edit(edits[n], n);
             if (!edit) return report(edit.status());
             list.push_back(*edit);
         }
