@@ -10,27 +10,28 @@ Edits::Edits(WorldState& state, Stepper& stepper)
 
 Status Edits::check(const char* function, std::span<const Edit> edits, std::span<const Stamp> stamps) const {
     for (std::size_t n = 0; n < edits.size(); ++n) {
-        const std::string path = std::string(function) + ": edits[" + std::to_string(n) + "].";
-        if (auto status = check_edit(path, edits[n], state_.settings(), stamps, next_step()); !status) return status;
+        if (auto status = check_edit(function, n, edits[n], state_.settings(), stamps, next_step()); !status) return status;
     }
     return ok_status();
 }
 
-void Edits::schedule(std::span<const Edit> edits) {
-    for (Edit edit : edits) {
-        if (edit.step == 0) edit.step = next_step();
-        const auto later =
-            std::upper_bound(waiting_.begin(), waiting_.end(), edit.step, [](auto step, const Edit& e) { return step < e.step; });
-        waiting_.insert(later, edit);
-    }
+void Edits::schedule(const Edit& edit) {
+    const auto later =
+        std::upper_bound(waiting_.begin(), waiting_.end(), edit.step, [](auto step, const Edit& e) { return step < e.step; });
+    waiting_.insert(later, edit);
+}
+
+void Stamp::set_range() {
+    if (values.empty()) return;
+    const auto found = std::minmax_element(values.begin(), values.end());
+    least = *found.first;
+    largest = *found.second;
 }
 
 Result<std::uint32_t> Edits::create_stamp(int nx, int ny, std::span<const float> values) {
     if (auto status = check_stamp("create_stamp", nx, ny, values); !status) return status;
     Stamp stamp{nx, ny, {values.begin(), values.end()}, 0, 0, pages_used_};
-    const auto [least, largest] = std::minmax_element(stamp.values.begin(), stamp.values.end());
-    stamp.least = *least;
-    stamp.largest = *largest;
+    stamp.set_range();
     const std::uint64_t end = pages_used_ + (values.size() + STAMP_PAGE - 1) / STAMP_PAGE;
     if (auto status = make_room(end); !status) return status;
     if (auto status = upload(stamp); !status) return status;

@@ -30,6 +30,8 @@ struct Stamp {
     std::vector<float> values;
     float least = 0, largest = 0;
     std::uint64_t page = 0; // where it lies on the device, in units of STAMP_PAGE floats
+    /// Least and largest of the values.
+    void set_range();
 };
 
 class Edits {
@@ -42,8 +44,8 @@ class Edits {
     std::uint64_t next_step() const { return state_.steps + (stepper_.parts_done() > 0 ? 1 : 0); }
     /// ok, or bad_argument that names `function`, the edit and its field.
     Status check(const char* function, std::span<const Edit> edits, std::span<const Stamp> stamps) const;
-    /// Queues checked edits behind those of the same step.
-    void schedule(std::span<const Edit> edits);
+    /// Queues a checked edit, with its step set, behind those of the same step.
+    void schedule(const Edit& edit);
     /// Drops what waits.
     void forget() { waiting_.clear(); }
 
@@ -69,9 +71,9 @@ class Edits {
     StateProgram program_;
 };
 
-/// ok, or bad_argument; the message begins with `path`.
-Status check_edit(const std::string& path, const Edit& edit, const Settings& settings, std::span<const Stamp> stamps,
-                  std::uint64_t next_step);
+/// ok, or bad_argument; the message begins with "function: edits[index].".
+Status check_edit(const char* function, std::size_t index, const Edit& edit, const Settings& settings,
+                  std::span<const Stamp> stamps, std::uint64_t next_step);
 /// What a checked edit may bring into the world.
 Content content_brought(const Edit& edit, std::span<const Stamp> stamps);
 

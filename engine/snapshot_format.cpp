@@ -1,68 +1,12 @@
 #include "engine/snapshot_format.hpp"
-#include <array>
-#include <bit>
 #include <cstring>
 
 namespace wadi {
 
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "snapshots are written as the processor holds numbers");
-
-constexpr char magic[8] = {'W', 'A', 'D', 'I', 'S', 'N', 'A', 'P'};
-constexpr std::size_t version_at = 8, bytes_at = 16, checksum_at = 24, fixed_bytes = 80, name_bytes = 32;
-constexpr std::size_t field_bytes = name_bytes + 8, total_bytes = 16;
-
-// Four lanes of multiply and rotate, 32 bytes a turn. Each step can be undone, so that a change of a single word always shows.
-class Checksum {
-  public:
-    void add(std::span<const std::byte> bytes) {
-        std::size_t at = 0;
-        for (; at + 32 <= bytes.size(); at += 32) {
-            for (std::size_t n = 0; n < 4; ++n) lane_[n] = turn(lane_[n], word(bytes.subspan(at + 8 * n, 8)));
-        }
-        for (std::size_t n = 0; at < bytes.size(); n = (n + 1) % 4) {
-            const std::size_t left = std::min<std::size_t>(8, bytes.size() - at);
-            lane_[n] = turn(lane_[n], word(bytes.subspan(at, left)));
-            at += left;
-        }
-        lane_[0] = turn(lane_[0], bytes.size());
-    }
-    std::uint64_t value() const {
-        std::uint64_t sum = 0;
-        for (std::size_t n = 0; n < 4; ++n) sum = turn(sum, lane_[n]);
-        return sum;
-    }
-
-  private:
-    static std::uint64_t word(std::span<const std::byte> bytes) {
-        std::uint64_t w = 0;
-        std::memcpy(&w, bytes.data(), bytes.size());
-        return w;
-    }
-    static std::uint64_t turn(std::uint64_t lane, std::uint64_t w) {
-        return std::rotl((lane ^ w) * 0x9e3779b97f4a7c15ull, 29) + 0xd1b54a32d192ed03ull;
-    }
-    std::array<std::uint64_t, 4> lane_{1, 2, 3, 4};
-};
-
-std::uint64_t checksum_of(std::span<const std::byte> snapshot) {
-    Checksum sum;
-    sum.add(snapshot.first(checksum_at));
-    sum.add(snapshot.subspan(checksum_at + 8));
-    return sum.value();
-}
-
-template <class T> T get(std::span<const std::byte> from, std::size_t at) {
-    T value;
-    std::memcpy(&value, from.data() + at, sizeof value);
-    return value;
-}
-
-template <class T> void put(std::span<std::byte> to, std::size_t& at, T value) {
-    std::memcpy(to.data() + at, &value, sizeof value);
-    at += sizeof value;
-}
+constexpr char magic[] = "WADISNAP";
+constexpr std::size_t fields_at = 12, fixed_bytes = 80, name_bytes = 32, field_bytes = name_bytes + 8, total_bytes = 16;
 
 } // namespace
 
@@ -142,12 +86,10 @@ std::uint64_t level_digest(const Settings& s) {
 }
 
 void write_header(const SnapshotHeader& header, std::span<std::byte> to) {
-    std::memcpy(to.data(), magic, sizeof magic);
-    std::size_t at = version_at;
-    put(to, at, snapshot_version);
+    begin_sealed(to.first(header.bytes()), magic, snapshot_version);
+    std::size_t at = fields_at;
     put(to, at, static_cast<std::uint32_t>(header.fields.size()));
-    put(to, at, header.bytes());
-    put(to, at, std::uint64_t{0});
+    at = sealed_header_bytes;
     put(to, at, header.nx);
     put(to, at, header.ny);
     put(to, at, header.effects);
@@ -169,37 +111,17 @@ void write_header(const SnapshotHeader& header, std::span<std::byte> to) {
     }
 }
 
-void seal(std::span<std::byte> snapshot) {
-    std::size_t at = checksum_at;
-    put(snapshot, at, checksum_of(snapshot));
-}
-
 Result<SnapshotHeader> read_header(std::span<const std::byte> snapshot) {
     const auto broken = [](const std::string& what) { return error(Code::bad_file, "snapshot: " + what); };
-    if (snapshot.size() < fixed_bytes) {
-        return broken(std::to_string(snapshot.size()) + " bytes are fewer than the " + std::to_string(fixed_bytes) +
-                      " of a header");
-    }
-    if (std::memcmp(snapshot.data(), magic, sizeof magic) != 0) return broken("it does not begin with WADISNAP");
-    const auto version = get<std::uint32_t>(snapshot, version_at);
-    if (version != snapshot_version) {
-        return broken("version " + std::to_string(version) + (version > snapshot_version ? " is newer than" : " is not") +
-                      " the version " + std::to_string(snapshot_version) + " that this library reads");
-    }
-    const auto bytes = get<std::uint64_t>(snapshot, bytes_at);
-    if (bytes != snapshot.size()) {
-        return broken("it says that it has " + std::to_string(bytes) + " bytes, but there are " +
-                      std::to_string(snapshot.size()));
-    }
-    if (get<std::uint64_t>(snapshot, checksum_at) != checksum_of(snapshot))
-        return broken("its checksum is wrong: bytes were changed");
+    if (auto status = check_sealed("snapshot", snapshot, magic, snapshot_version, fixed_bytes); !status) return status;
+    const std::uint64_t bytes = snapshot.size();
     SnapshotHeader header;
     header.nx = get<std::int32_t>(snapshot, 32);
     header.ny = get<std::int32_t>(snapshot, 36);
     header.effects = get<std::uint32_t>(snapshot, 40);
     header.level = get<std::uint64_t>(snapshot, 48);
     header.totals = {get<std::uint64_t>(snapshot, 56), get<std::int64_t>(snapshot, 64), get<std::int64_t>(snapshot, 72), {}};
-    const std::uint64_t totals = get<std::uint32_t>(snapshot, 44), fields = get<std::uint32_t>(snapshot, 12);
+    const std::uint64_t totals = get<std::uint32_t>(snapshot, 44), fields = get<std::uint32_t>(snapshot, fields_at);
     if (fixed_bytes + totals * total_bytes + fields * field_bytes > bytes) return broken("its lists pass its end");
     std::size_t at = fixed_bytes;
     for (std::uint64_t n = 0; n < totals; ++n, at += total_bytes)

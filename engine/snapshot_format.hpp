@@ -16,6 +16,7 @@
 //      .  per field: char[32] name, u64 bytes
 //      .  the fields in that order, as they lie on the device, ghosts included
 #pragma once
+#include "engine/sealed_bytes.hpp"
 #include "engine/stepper.hpp"
 #include <cstddef>
 #include <span>
@@ -39,10 +40,8 @@ struct SnapshotHeader {
 /// 64 bits over everything in the settings that steps depend on, the effects left out.
 std::uint64_t level_digest(const Settings& settings);
 
-/// Writes all but the fields' contents; `to` has header.bytes().
+/// Writes all but the fields' contents and the checksum, which seal() sets in the end; `to` has header.bytes().
 void write_header(const SnapshotHeader& header, std::span<std::byte> to);
-/// Sets the checksum once everything is in place.
-void seal(std::span<std::byte> snapshot);
 /// Errors: bad_file (no snapshot, a newer version, truncated, changed).
 Result<SnapshotHeader> read_header(std::span<const std::byte> snapshot);
 

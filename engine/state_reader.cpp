@@ -37,13 +37,15 @@ Result<std::vector<float>> StateReader::read_raw(const std::string& field) {
     return read_buffer(from);
 }
 
-Status StateReader::read_cells(compute::Buffer from, std::span<float> values) {
-    auto raw = read_buffer(from);
-    if (!raw) return raw.status();
-    for (int j = 0; j < state_.layout().ny; ++j) {
-        std::memcpy(values.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(state_.layout().nx),
-                    raw->data() + state_.layout().index(0, j), static_cast<std::size_t>(state_.layout().nx) * sizeof(float));
-    }
+Status StateReader::read_cells(compute::Buffer from, const Region& region, std::span<float> values) {
+    const auto& layout = state_.layout();
+    const std::size_t first = layout.index(region.i0, region.j0), pitch = static_cast<std::size_t>(layout.pitch()),
+                      width = static_cast<std::size_t>(region.nx);
+    std::vector<float> rows(pitch * static_cast<std::size_t>(region.ny - 1) + width);
+    if (auto status = state_.note(state_.device().read(from, first * 4, std::as_writable_bytes(std::span(rows)))); !status)
+        return status;
+    for (std::size_t j = 0; j < static_cast<std::size_t>(region.ny); ++j)
+        std::memcpy(values.data() + j * width, rows.data() + j * pitch, width * sizeof(float));
     return ok_status();
 }
 
@@ -71,13 +73,13 @@ Status StateReader::publish(const std::string& stage, const std::map<std::string
     return ticket ? state_.note(state_.device().wait(*ticket)) : ticket.status();
 }
 
-Status StateReader::read(const std::string& name, std::span<float> values) {
+Status StateReader::read(const std::string& name, const Region& region, std::span<float> values) {
     if (!state_.lost()) return state_.lost();
     for (const char* published : {"water_depth", "free_surface", "surface_saturation"}) {
         if (name != published) continue;
         const std::string stage = name == "surface_saturation" ? "publish_saturation" : "publish_" + name;
         auto status = publish(stage, {}, {published});
-        return status ? read_cells(output_[0], values) : status;
+        return status ? read_cells(output_[0], region, values) : status;
     }
     if (state_.plan().find(name) == nullptr) {
         std::fill(values.begin(), values.end(), 0.0F);
@@ -89,53 +91,9 @@ Status StateReader::read(const std::string& name, std::span<float> values) {
                                   {"centre_velocity_x", "centre_velocity_y"});
             !status)
             return status;
-        return read_cells(output_[name.back() == 'x' ? 0 : 1], values);
+        return read_cells(output_[name.back() == 'x' ? 0 : 1], region, values);
     }
-    return read_cells(state_.buffer(name, state_.parity()), values);
-}
-
-Result<Ledger> StateReader::read_ledger() {
-    Ledger ledger;
-    // Sums the low and high words of one entry over its row of counters.
-    const auto sum = [](const std::vector<std::uint32_t>& words, std::size_t row, std::size_t entry) {
-        std::uint64_t total = 0;
-        for (std::size_t n = 0; n < row; ++n)
-            total += words[2 * entry * row + n] + (std::uint64_t{words[(2 * entry + 1) * row + n]} << 32);
-        return static_cast<std::int64_t>(total);
-    };
-    const auto words = [&](const char* name, std::size_t count) -> Result<std::vector<std::uint32_t>> {
-        std::vector<std::uint32_t> values(count);
-        if (auto status = state_.note(
-                state_.device().read(state_.buffer(name, state_.parity()), 0, std::as_writable_bytes(std::span(values))));
-            !status)
-            return status;
-        return values;
-    };
-    if (state_.plan().find("source_ledger") != nullptr) {
-        const std::size_t row =
-            static_cast<std::size_t>(state_.layout().strips()) * static_cast<std::size_t>(state_.layout().pitch());
-        auto w = words("source_ledger", row * 2 * LEDGER_ENTRIES);
-        if (!w) return w.status();
-        ledger.water_in += sum(*w, row, LEDGER_WATER_IN);
-        ledger.water_out += sum(*w, row, LEDGER_WATER_OUT);
-        ledger.sand_in += sum(*w, row, LEDGER_SAND_IN);
-        ledger.sand_out += sum(*w, row, LEDGER_SAND_OUT);
-        ledger.refused += sum(*w, row, LEDGER_REFUSED);
-    }
-    const auto rim = static_cast<std::size_t>(state_.layout().rim());
-    if (state_.plan().find("water_side_ledger") != nullptr) {
-        auto w = words("water_side_ledger", 4 * rim);
-        if (!w) return w.status();
-        ledger.water_in += sum(*w, rim, 0);
-        ledger.water_out += sum(*w, rim, 1);
-    }
-    if (state_.plan().find("sand_side_ledger") != nullptr) {
-        auto w = words("sand_side_ledger", 4 * rim);
-        if (!w) return w.status();
-        ledger.sand_in += sum(*w, rim, 0);
-        ledger.sand_out += sum(*w, rim, 1);
-    }
-    return ledger;
+    return read_cells(state_.buffer(name, state_.parity()), region, values);
 }
 
 Result<std::uint64_t> StateReader::hash_fields(const Look& look) {
@@ -169,7 +127,7 @@ Result<WorldStats> StateReader::stats() {
     s.quantum = quantum;
     s.sand_initial = state_.sand_initial;
     s.water_initial = state_.water_initial;
-    auto ledger = read_ledger();
+    auto ledger = read_ledger(state_);
     if (!ledger) return ledger.status();
     s.ledger = *ledger;
     auto hash = hash_fields([&](const std::string& name, std::span<const float> row) {

@@ -1,14 +1,11 @@
 // Reading a world's state on the host: fields, ledger, statistics, hash. Every call waits for the device.
 #pragma once
+#include "engine/ledger.hpp"
+#include "engine/regions.hpp"
 #include "engine/state_program.hpp"
 #include <span>
 
 namespace wadi {
-
-/// Signed count of ledger quanta moved since creation.
-struct Ledger {
-    std::int64_t water_in = 0, water_out = 0, sand_in = 0, sand_out = 0, refused = 0;
-};
 
 /// The state now; see wadi_world_stats in the plugin's header for meaning and units.
 struct WorldStats {
@@ -23,9 +20,9 @@ class StateReader {
   public:
     explicit StateReader(WorldState& state) : state_(state) {}
 
-    /// nx * ny floats of a field by its plan name ("water_height", ...), at cell centres for velocities, or of a published
-    /// field ("water_depth", "free_surface", "surface_saturation"). A field the mask lacks is zero.
-    Status read(const std::string& name, std::span<float> values);
+    /// The floats in a region of a field by its plan name ("water_height", ...), at cell centres for velocities, or of a
+    /// published field ("water_depth", "free_surface", "surface_saturation"). A field the mask lacks is zero.
+    Status read(const std::string& name, const Region& region, std::span<float> values);
     Result<WorldStats> stats();
     /// The hash of the statistics alone: fields are read, nothing is run.
     Result<std::uint64_t> hash();
@@ -35,9 +32,8 @@ class StateReader {
   private:
     Status publish(const std::string& stage, const std::map<std::string, std::string>& fields,
                    const std::vector<const char*>& outputs);
-    Status read_cells(compute::Buffer from, std::span<float> values);
+    Status read_cells(compute::Buffer from, const Region& region, std::span<float> values);
     Result<std::vector<float>> read_buffer(compute::Buffer from);
-    Result<Ledger> read_ledger();
     /// Reads every hashed field and hashes it; `look` sees each of its rows as well, ghosts excluded.
     using Look = std::function<void(const std::string& field, std::span<const float> row)>;
     Result<std::uint64_t> hash_fields(const Look& look);

@@ -71,6 +71,19 @@ Status Stepper::hold(Content content) {
     return ok_status();
 }
 
+Status Stepper::prepare() {
+    for (const bool sand : {false, true}) {
+        for (const bool water : {false, true}) {
+            const Content content{sand, water};
+            auto choice = check_allowed(state_.settings(), content) ? effects_required(state_.settings(), content)
+                                                                    : Result<EffectChoice>(state_.effects());
+            if (!choice) return choice.status();
+            if (auto status = state_.prepare(choice->mask); !status) return state_.note(status);
+        }
+    }
+    return ok_status();
+}
+
 Status Stepper::record_parts(std::size_t turn) {
     Parity parity = state_.parity_of(static_cast<int>(turn));
     for (int part = 0; part < parts(); ++part) {

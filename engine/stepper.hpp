@@ -41,6 +41,9 @@ class Stepper {
     /// allocated and freed and everything is recorded anew, the state kept to the bit. Errors: out_of_memory, nothing changed.
     Status hold(Content content);
 
+    /// Compiles what any hold() that the level allows would need.
+    Status prepare();
+
     /// Called ahead of the first pass of every step: edits.
     void set_before_step(std::function<Status()> call) { before_step_ = std::move(call); }
     /// Called whenever a step has become whole: work that was asked for in the middle of a step, or that is due every so many.

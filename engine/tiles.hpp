@@ -1,15 +1,11 @@
 // Tiles of STRIP x STRIP cells for a host's collision shapes: how high they reach, and when they last changed.
 #pragma once
 #include "engine/compute/params.hpp"
+#include "engine/region.hpp"
 #include <cstdint>
 #include <span>
 
 namespace wadi {
-
-/// Cells [i, i + nx) x [j, j + ny).
-struct Region {
-    int i = 0, j = 0, nx = 0, ny = 0;
-};
 
 struct Tile {
     Region cells;
@@ -35,7 +31,7 @@ template <class Call> void for_dirty_regions(const Tiles& tiles, std::int64_t si
     for (int n = 0; n < tiles.count(); ++n) {
         const Tile tile = tiles[n];
         const bool dirty = tile.changed_step > since;
-        const bool joins = dirty && open.nx > 0 && open.j == tile.cells.j;
+        const bool joins = dirty && open.nx > 0 && open.j0 == tile.cells.j0;
         if (joins) {
             open.nx += tile.cells.nx;
             continue;

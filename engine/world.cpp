@@ -47,8 +47,13 @@ Status World::finish_step() {
 }
 
 Status World::read(const std::string& name, std::span<float> values) {
+    return read(name, {0, 0, settings().grid.nx, settings().grid.ny}, values);
+}
+
+Status World::read(const std::string& name, const Region& region, std::span<float> values) {
+    if (auto status = check_region("read", region, settings().grid, values.size()); !status) return status;
     auto status = finish_step();
-    return status ? reader_.read(name, values) : status;
+    return status ? reader_.read(name, region, values) : status;
 }
 
 Result<WorldStats> World::stats() {
@@ -63,7 +68,8 @@ Result<std::uint64_t> World::hash() {
 
 Status World::at_boundary() {
     auto status = snapshots_.at_boundary();
-    return status ? queries_.at_boundary() : status;
+    if (status) status = queries_.at_boundary();
+    return status ? commands_.at_boundary() : status;
 }
 
 Status World::save(std::span<std::byte> to) {
@@ -71,10 +77,14 @@ Status World::save(std::span<std::byte> to) {
     return status ? snapshots_.save(to) : status;
 }
 
-Status World::edit(std::span<const Edit> edits) {
-    auto status = edits_.check("edit", edits, edits_.stamps());
-    if (status) edits_.schedule(edits);
-    return status;
+Status World::write_region(EditLayer layer, const Region& region, std::span<const float> values) {
+    auto status = finish_step();
+    return status ? commands_.write_region(layer, region, values) : status;
+}
+
+Status World::trim() {
+    auto status = finish_step();
+    return status ? commands_.trim() : status;
 }
 
 Status World::load(std::span<const std::byte> from) {
@@ -83,6 +93,7 @@ Status World::load(std::span<const std::byte> from) {
     if (!status) return status;
     edits_.forget();
     frames_.went_back();
+    commands_.went_to(state_.steps);
     return roll_back_.restart();
 }
 
@@ -95,6 +106,8 @@ Result<std::uint64_t> World::roll_back_to(std::uint64_t step) {
     auto reached = roll_back_.go_back(step);
     if (!reached) return reached;
     edits_.forget();
+    frames_.went_back();
+    commands_.went_to(state_.steps);
     auto status = at_boundary();
     return status ? reached : status;
 }

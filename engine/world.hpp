@@ -1,6 +1,6 @@
 // A world: its state on a device, and the parts that step it and answer for it. Each part has a file of its own.
 #pragma once
-#include "engine/edits.hpp"
+#include "engine/command_log.hpp"
 #include "engine/frame_driver.hpp"
 #include "engine/outputs.hpp"
 #include "engine/queries.hpp"
@@ -32,6 +32,7 @@ class World {
 
     /// Fields, statistics and hash of the state between two steps: what is left of a step begun in parts is done first.
     Status read(const std::string& name, std::span<float> values);
+    Status read(const std::string& name, const Region& region, std::span<float> values);
     Result<WorldStats> stats();
     Result<std::vector<float>> read_raw(const std::string& field);
 
@@ -52,9 +53,15 @@ class World {
     Status set_rollback(std::uint32_t frames, std::uint32_t interval);
     Queries& queries() { return queries_; }
 
-    /// Checks edits and queues them for their steps (edits.hpp). Errors: bad_argument, nothing queued.
-    Status edit(std::span<const Edit> edits);
+    /// Edits queued for their steps; heights written and effects dropped between two steps; the log of all that
+    /// (command_log.hpp).
+    Status edit(std::span<const Edit> edits) { return commands_.edit(edits); }
+    Status write_region(EditLayer layer, const Region& region, std::span<const float> values);
+    Status trim();
+    /// Compiles now what edits of new materials would need later.
+    Status prepare() { return stepper_.prepare(); }
     Edits& edits() { return edits_; }
+    CommandLog& commands() { return commands_; }
 
     Status set_profiling(bool on) { return stepper_.set_profiling(on); }
     /// Mean over the steps since profiling was switched on.
@@ -95,6 +102,7 @@ class World {
     Edits edits_{state_, stepper_};
     RollBack roll_back_{state_, stepper_};
     Queries queries_{state_, stepper_};
+    CommandLog commands_{state_, stepper_, edits_};
 };
 
 } // namespace wadi

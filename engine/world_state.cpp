@@ -164,6 +164,17 @@ Status WorldState::adopt(const EffectChoice& effects) {
     return ok_status();
 }
 
+Status WorldState::prepare(std::uint32_t effects) const {
+    const StepPlan plan = make_step_plan(effects, settings_.method.substeps);
+    std::set<int> stages = {compute::find_stage("apply_edits")};
+    for (const auto* passes : {&plan.water_passes, &plan.substep_passes})
+        for (const auto& pass : *passes) stages.insert(pass.stage);
+    for (const int stage : stages) {
+        if (auto made = device_->create_pipeline(stage, effects, group_); !made) return made.status();
+    }
+    return ok_status();
+}
+
 Status WorldState::upload(const InitialFields& fields) {
     const double quantum = height_quantum(settings_.method);
     const auto put = [&](const char* name, const std::vector<float>& values) {

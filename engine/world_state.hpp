@@ -44,6 +44,8 @@ class WorldState {
     /// new ones are zero, others are freed; the next step is turn 0 and every program must be recorded anew. Waits for the
     /// device. Errors: out_of_memory, with the old plan still in force.
     Status adopt(const EffectChoice& effects);
+    /// Creates the pipelines that a plan of another mask would need, so that adopting it later records but compiles nothing.
+    Status prepare(std::uint32_t effects) const;
     /// Writes the level's fields into the current buffers.
     Status upload(const InitialFields& fields);
 

@@ -41,13 +41,31 @@ LevelOverrides to_overrides(const wadi_level_overrides* o) {
     return overrides;
 }
 
+// The host's files: asked for their size first, then for their bytes.
+FileReader host_files(wadi_read_file_callback read_file, void* user) {
+    return [=](const std::string& name, std::uint64_t limit) -> Result<std::vector<std::uint8_t>> {
+        std::size_t size = 0;
+        if (read_file == nullptr || read_file(user, name.c_str(), nullptr, &size) == 0)
+            return error(Code::not_found, name + (read_file == nullptr ? ": read_file is NULL" : ": read_file does not know it"));
+        if (size > limit) {
+            return error(Code::bad_file, name + ": " + std::to_string(size) + " bytes is more than the largest accepted file, " +
+                                             std::to_string(limit) + " bytes");
+        }
+        std::vector<std::uint8_t> bytes(size);
+        std::size_t filled = size;
+        if (size > 0 && (read_file(user, name.c_str(), bytes.data(), &filled) == 0 || filled != size))
+            return error(Code::bad_file, name + ": read_file gave no bytes, or another number than it had said");
+        return bytes;
+    };
+}
+
 wadi_result host(Result<Level> level, const wadi_device_options* options, wadi_world_id* id) {
     if (!level) return report(level.status());
     auto device = open(options);
     if (!device) return report(device.status());
     auto world = World::create(level->settings, level->fields, std::move(*device));
     if (!world) return report(world.status());
-    *id = plugin::worlds().add({std::move(*world), level->name, level->duration, level->warnings});
+    *id = plugin::worlds().add({std::move(*world), level->name, level->duration, level->warnings, {}});
     return report(ok_status());
 }
 
@@ -106,6 +124,19 @@ wadi_result wadi_create_world_from_level(const char* path, const wadi_level_over
         const bool json = std::string(path).ends_with(".json");
         return host(json ? load_level(path, to_overrides(overrides)) : level_from_terrain(path, to_overrides(overrides)), options,
                     world);
+    });
+}
+
+wadi_result wadi_create_world_from_level_text(const char* json, wadi_read_file_callback read_file, void* user,
+                                              const wadi_level_overrides* overrides, const wadi_device_options* options,
+                                              wadi_world_id* world) {
+    return guarded(__func__, [&] {
+        if (json == nullptr || world == nullptr) return bad_argument("wadi_create_world_from_level_text: json or world is NULL");
+        if (overrides != nullptr && !right_size(overrides))
+            return wrong_struct<wadi_level_overrides>("wadi_create_world_from_level_text", "overrides");
+        if (options != nullptr && !right_size(options))
+            return wrong_struct<wadi_device_options>("wadi_create_world_from_level_text", "options");
+        return host(parse_level(json, host_files(read_file, user), to_overrides(overrides)), options, world);
     });
 }
 

@@ -119,7 +119,7 @@ wadi_result wadi_world_get_dirty_regions(wadi_world_id id, int64_t since_step, w
         if (!found) return report(named(function, found.status()));
         uint32_t all = 0;
         for_dirty_regions(*found, since_step, [&](const Region& region) {
-            if (regions != nullptr && all < *count) regions[all] = {region.i, region.j, region.nx, region.ny};
+            if (regions != nullptr && all < *count) regions[all] = {region.i0, region.j0, region.nx, region.ny};
             ++all;
         });
         *count = all;

@@ -16,6 +16,7 @@ struct HostedWorld {
     std::string name;
     double duration = 0;
     std::vector<std::string> warnings;
+    std::vector<Edit> edits; // of the last wadi_world_edit: its room is used again
 };
 
 enum class Entry { entered, unknown, busy };

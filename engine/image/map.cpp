@@ -63,7 +63,13 @@ Result<std::vector<std::uint8_t>> read_file_bytes(const std::string& path, std::
     return bytes;
 }
 
-Result<Map> read_map(const std::string& path, std::optional<std::pair<int, int>> size) {
+FileReader files_in(const std::string& folder) {
+    return [folder](const std::string& name, std::uint64_t limit) {
+        return read_file_bytes((std::filesystem::path(folder) / name).string(), limit);
+    };
+}
+
+Result<Map> read_map(const std::string& path, std::optional<std::pair<int, int>> size, const FileReader& files) {
     const std::string ending = lower_case_ending(path);
     const bool raw = ending == ".r16" || ending == ".raw";
     if (!raw && ending != ".png" && ending != ".npy")
@@ -71,7 +77,7 @@ Result<Map> read_map(const std::string& path, std::optional<std::pair<int, int>>
     if (!raw && size) return error(Code::bad_argument, path + ": only .r16 and .raw maps are given a size");
     // The largest map as float64, and some room for a header.
     const std::uint64_t limit = std::uint64_t{MAP_LIMIT} * MAP_LIMIT * 8 + 65536;
-    auto bytes = read_file_bytes(path, limit);
+    auto bytes = files(path, limit);
     if (!bytes) return bytes.status();
     if (raw) return decode_r16(*bytes, path, size);
     return ending == ".png" ? decode_png(*bytes, path) : decode_npy(*bytes, path);

@@ -2,6 +2,7 @@
 #pragma once
 #include "engine/compute/status.hpp"
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -19,10 +20,16 @@ struct Map {
     std::vector<float> values; // row-major nx * ny, row 0 in the south
 };
 
+/// The whole of a file of at most `limit` bytes, by the name that a level gives it. Errors: not_found, bad_file.
+using FileReader = std::function<Result<std::vector<std::uint8_t>>(const std::string& name, std::uint64_t limit)>;
+
+/// Files on disk, relative to a folder.
+FileReader files_in(const std::string& folder);
+
 /// Reads a map by the ending of its name: .png, .r16 (or .raw) and .npy. `size` (nx, ny) is what an r16 file holds, square
 /// when absent; for the other formats it must be absent. Errors: not_found, bad_file, bad_argument; the message names the
 /// file.
-Result<Map> read_map(const std::string& path, std::optional<std::pair<int, int>> size);
+Result<Map> read_map(const std::string& path, std::optional<std::pair<int, int>> size, const FileReader& files = files_in(""));
 
 /// The same from bytes already read; `name` is used in messages.
 /// PNG with 8 or 16 bits: grey, or the luma of a colour image; alpha is ignored. The file's first row is the north.

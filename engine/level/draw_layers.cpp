@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <filesystem>
 
 namespace wadi {
 namespace {
@@ -33,9 +32,9 @@ double combined(double current, double value, Combine combine) {
 
 double rounded(double height, double quantum) { return quantum > 0 ? std::round(height / quantum) * quantum : height; }
 
-Result<std::vector<float>> load_heights(const Layer& layer, const Frame& frame, const std::string& folder) {
+Result<std::vector<float>> load_heights(const Layer& layer, const Frame& frame, const FileReader& files) {
     const MapSource& source = *layer.map;
-    auto map = read_map((std::filesystem::path(folder) / source.file).string(), source.size);
+    auto map = read_map(source.file, source.size, files);
     if (!map) // a bad argument of ours is a bad field of the level's author
         return error(map.status().code == Code::bad_argument ? Code::bad_file : map.status().code,
                      layer.path + ".file: " + map.status().message);
@@ -78,13 +77,13 @@ Sample sample_layer(const Layer& layer, double relative, double ground, double s
 } // namespace
 
 Result<std::vector<float>> draw_layers(const std::vector<Layer>& layers, LayerTarget target, const Frame& frame,
-                                       const std::string& folder, const std::vector<float>& terrain,
-                                       const std::vector<float>& sand, std::vector<std::string>& warnings) {
+                                       const FileReader& files, const std::vector<float>& terrain, const std::vector<float>& sand,
+                                       std::vector<std::string>& warnings) {
     std::vector<float> field(layers.empty() ? 0 : cell_count(frame), 0.0f);
     for (const Layer& layer : layers) {
         std::vector<float> heights;
         if (layer.map) {
-            auto loaded = load_heights(layer, frame, folder);
+            auto loaded = load_heights(layer, frame, files);
             if (!loaded) return loaded.status();
             heights = std::move(*loaded);
         }

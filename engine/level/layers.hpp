@@ -1,6 +1,7 @@
 // The layers of a level's terrain, sand and water: maps and shapes combined in order into fields.
 #pragma once
 #include "engine/compute/status.hpp"
+#include "engine/image/map.hpp"
 #include "engine/level/json_reader.hpp"
 #include "engine/level/shapes.hpp"
 #include <optional>
@@ -63,11 +64,11 @@ struct VelocityRegion {
 std::vector<Layer> read_layers(const Json& value, const std::string& path, LayerTarget target, Status& status);
 std::vector<VelocityRegion> read_velocities(const Json& value, const std::string& path, Status& status);
 
-/// Draws the layers. `terrain` and `sand` are the fields below, empty = zero. Maps are relative to `folder`. A layer that
+/// Draws the layers. `terrain` and `sand` are the fields below, empty = zero. Maps come from `files`. A layer that
 /// changes no cell is worth a warning. The result is empty when there are no layers.
 Result<std::vector<float>> draw_layers(const std::vector<Layer>& layers, LayerTarget target, const Frame& frame,
-                                       const std::string& folder, const std::vector<float>& terrain,
-                                       const std::vector<float>& sand, std::vector<std::string>& warnings);
+                                       const FileReader& files, const std::vector<float>& terrain, const std::vector<float>& sand,
+                                       std::vector<std::string>& warnings);
 
 /// Draws the velocities of water or of sand into x and y; both stay empty when no region sets any.
 void draw_velocities(const std::vector<VelocityRegion>& regions, bool of_sand, const Frame& frame, std::vector<float>& x,

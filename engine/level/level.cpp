@@ -28,7 +28,7 @@ void read_version(ObjectReader& root) {
                   std::to_string(version) + " is newer than this build reads, " + std::to_string(FORMAT_VERSION));
 }
 
-Status read_root(const Json& json, const std::string& folder, Level& level, Layers& layers) {
+Status read_root(const Json& json, const FileReader& files, Level& level, Layers& layers) {
     Status status;
     ObjectReader root(json, "", status);
     read_version(root);
@@ -38,7 +38,7 @@ Status read_root(const Json& json, const std::string& folder, Level& level, Laye
     root.string("name", level.name);
     root.string("description", level.description);
     root.number("duration", level.duration, 0, DURATION_MOST);
-    read_settings(root, folder, level.settings);
+    read_settings(root, files, level.settings);
     if (const Json* list = root.find("terrain")) layers.terrain = read_layers(*list, "terrain", LayerTarget::terrain, status);
     if (const Json* list = root.find("sand")) layers.sand = read_layers(*list, "sand", LayerTarget::sand, status);
     if (const Json* list = root.find("water")) layers.water = read_layers(*list, "water", LayerTarget::water, status);
@@ -47,10 +47,10 @@ Status read_root(const Json& json, const std::string& folder, Level& level, Laye
     return status;
 }
 
-Status draw(const Layers& layers, const Frame& frame, const std::string& folder, Level& level) {
+Status draw(const Layers& layers, const Frame& frame, const FileReader& files, Level& level) {
     InitialFields& fields = level.fields;
     const auto into = [&](std::vector<float>& field, const std::vector<Layer>& list, LayerTarget target) {
-        auto drawn = draw_layers(list, target, frame, folder, fields.terrain, fields.sand, level.warnings);
+        auto drawn = draw_layers(list, target, frame, files, fields.terrain, fields.sand, level.warnings);
         if (drawn) field = std::move(*drawn);
         return drawn.status();
     };
@@ -62,17 +62,17 @@ Status draw(const Layers& layers, const Frame& frame, const std::string& folder,
     return ok_status();
 }
 
-Result<Level> parse(const std::string& text, const std::string& folder, const LevelOverrides& overrides) {
+Result<Level> parse(const std::string& text, const FileReader& files, const LevelOverrides& overrides) {
     auto json = parse_json(text);
     if (!json) return json.status();
     Level level;
     Layers layers;
-    if (Status status = read_root(*json, folder, level, layers); !status) return status;
+    if (Status status = read_root(*json, files, level, layers); !status) return status;
     if (Status status = validate(level.settings); !status) return error(Code::bad_file, status.message);
     auto frame = apply_overrides(overrides, level.settings);
     if (!frame) return frame.status();
     if (Status status = validate(level.settings); !status) return error(Code::bad_argument, status.message);
-    if (Status status = draw(layers, *frame, folder, level); !status) return status;
+    if (Status status = draw(layers, *frame, files, level); !status) return status;
     if (Status status = validate(level.fields, level.settings); !status) return error(Code::bad_file, status.message);
     for (std::string& warning : level_warnings(level.settings, level.fields)) level.warnings.push_back(std::move(warning));
     return level;
@@ -80,12 +80,16 @@ Result<Level> parse(const std::string& text, const std::string& folder, const Le
 
 } // namespace
 
-Result<Level> parse_level(const std::string& text, const std::string& folder, const LevelOverrides& overrides) {
+Result<Level> parse_level(const std::string& text, const FileReader& files, const LevelOverrides& overrides) {
     try {
-        return parse(text, folder, overrides);
+        return parse(text, files, overrides);
     } catch (const std::bad_alloc&) {
         return error(Code::out_of_memory, "the level does not fit into memory");
     }
+}
+
+Result<Level> parse_level(const std::string& text, const std::string& folder, const LevelOverrides& overrides) {
+    return parse_level(text, files_in(folder), overrides);
 }
 
 Result<Level> load_level(const std::string& path, const LevelOverrides& overrides) {

@@ -1,6 +1,7 @@
 // Level files: JSON plus maps, or a terrain map alone. docs: samples/levels/README.md; schema: samples/levels/level.schema.json.
 #pragma once
 #include "engine/compute/status.hpp"
+#include "engine/image/map.hpp"
 #include "engine/include/wadi/settings.hpp"
 #include <optional>
 #include <string>
@@ -30,7 +31,9 @@ struct LevelOverrides {
 /// Reads a level file. Errors: not_found, bad_file (position or field, nearest known key, allowed range).
 Result<Level> load_level(const std::string& path, const LevelOverrides& overrides);
 
-/// The same from text; map paths are relative to `folder`.
+/// The same from text; the maps and series that it names come from `files`.
+Result<Level> parse_level(const std::string& text, const FileReader& files, const LevelOverrides& overrides);
+/// The same with files on disk, relative to `folder`.
 Result<Level> parse_level(const std::string& text, const std::string& folder, const LevelOverrides& overrides);
 
 /// A level from a terrain map alone (PNG, r16, NPY): the map's size unless overridden, cell size 1 m. Integer maps are scaled

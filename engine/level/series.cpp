@@ -2,7 +2,6 @@
 #include "engine/level/settings_reader.hpp"
 #include <charconv>
 #include <cstddef>
-#include <filesystem>
 #include <limits>
 #include <string_view>
 
@@ -28,8 +27,8 @@ bool parse_number(std::string_view text, double& number) {
 
 } // namespace
 
-Result<TimeSeries> read_series_file(const std::string& path) {
-    auto bytes = read_file_bytes(path, SERIES_BYTES_MOST);
+Result<TimeSeries> read_series_file(const std::string& path, const FileReader& files) {
+    auto bytes = files(path, SERIES_BYTES_MOST);
     if (!bytes) return bytes.status();
     std::string_view rest(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     TimeSeries series;
@@ -53,7 +52,7 @@ Result<TimeSeries> read_series_file(const std::string& path) {
     return series;
 }
 
-TimeSeries read_series(const Json& value, const std::string& path, const std::string& folder, Status& status) {
+TimeSeries read_series(const Json& value, const std::string& path, const FileReader& files, Status& status) {
     TimeSeries series;
     if (value.is_object()) {
         ObjectReader reader(value, path, status);
@@ -62,7 +61,7 @@ TimeSeries read_series(const Json& value, const std::string& path, const std::st
         reader.string("file", file);
         reader.finish();
         if (!status) return series;
-        auto read = read_series_file((std::filesystem::path(folder) / file).string());
+        auto read = read_series_file(file, files);
         if (read) return std::move(*read);
         status = error(read.status().code, path + ".file: " + read.status().message);
     } else if (value.is_array()) {

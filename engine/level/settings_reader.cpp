@@ -44,7 +44,7 @@ void read_method(const Json& value, Method& method, Status& status) {
     reader.finish();
 }
 
-void read_sides(const Json& value, const std::string& folder, std::array<Side, 4>& sides, Status& status) {
+void read_sides(const Json& value, const FileReader& files, std::array<Side, 4>& sides, Status& status) {
     ObjectReader reader(value, "sides", status);
     for (std::size_t n = 0; n < sides.size(); ++n) {
         const Json* found = reader.find(side_names()[n].c_str());
@@ -58,13 +58,13 @@ void read_sides(const Json& value, const std::string& folder, std::array<Side, 4
         side.kind = static_cast<SideKind>(kind);
         side_reader.number("from", side.from, 0, ANY);
         side_reader.number("to", side.to, 0, ANY);
-        if (const Json* series = side_reader.find("value")) side.value = read_series(*series, path + ".value", folder, status);
+        if (const Json* series = side_reader.find("value")) side.value = read_series(*series, path + ".value", files, status);
         side_reader.finish();
     }
     reader.finish();
 }
 
-Source read_source(const Json& value, const std::string& path, const std::string& folder, Status& status) {
+Source read_source(const Json& value, const std::string& path, const FileReader& files, Status& status) {
     Source source;
     ObjectReader reader(value, path, status);
     int shape = static_cast<int>(SourceShape::disc);
@@ -90,7 +90,7 @@ Source read_source(const Json& value, const std::string& path, const std::string
         reader.require("radius");
         reader.number("radius", source.radius, 0, ANY);
     }
-    if (const Json* rate = reader.require("rate")) source.rate = read_series(*rate, path + ".rate", folder, status);
+    if (const Json* rate = reader.require("rate")) source.rate = read_series(*rate, path + ".rate", files, status);
     source.set_velocity = reader.find("velocity") != nullptr;
     reader.pair("velocity", source.velocity, -SPEED_MOST, SPEED_MOST);
     reader.finish();
@@ -110,7 +110,7 @@ void read_effects(const Json& value, Settings& settings, Status& status) {
 
 } // namespace
 
-void read_settings(ObjectReader& root, const std::string& folder, Settings& settings) {
+void read_settings(ObjectReader& root, const FileReader& files, Settings& settings) {
     Status& status = root.status();
     if (const Json* grid = root.require("grid")) read_grid(*grid, settings.grid, status);
     root.require("dt");
@@ -118,15 +118,15 @@ void read_settings(ObjectReader& root, const std::string& folder, Settings& sett
     root.number("gravity", settings.gravity, 0, GRAVITY_MOST);
     if (const Json* material = root.find("material")) read_material(*material, settings.material, status);
     if (const Json* method = root.find("method")) read_method(*method, settings.method, status);
-    if (const Json* sides = root.find("sides")) read_sides(*sides, folder, settings.sides, status);
+    if (const Json* sides = root.find("sides")) read_sides(*sides, files, settings.sides, status);
     if (const Json* sources = root.find("sources")) {
         const auto elements = read_array(*sources, "sources", SOURCES_READ, status);
         for (std::size_t n = 0; n < elements.size() && status; ++n)
-            settings.sources.push_back(read_source(*elements[n], "sources[" + std::to_string(n) + "]", folder, status));
+            settings.sources.push_back(read_source(*elements[n], "sources[" + std::to_string(n) + "]", files, status));
     }
-    if (const Json* rain = root.find("rain")) settings.rain = read_series(*rain, "rain", folder, status);
+    if (const Json* rain = root.find("rain")) settings.rain = read_series(*rain, "rain", files, status);
     if (const Json* evaporation = root.find("evaporation"))
-        settings.evaporation = read_series(*evaporation, "evaporation", folder, status);
+        settings.evaporation = read_series(*evaporation, "evaporation", files, status);
     if (const Json* effects = root.find("effects")) read_effects(*effects, settings, status);
 }
 

@@ -1,19 +1,20 @@
 // The settings of a level file: grid, time step, material, method, sides, sources, rain, effects.
 #pragma once
+#include "engine/image/map.hpp"
 #include "engine/include/wadi/settings.hpp"
 #include "engine/level/json_reader.hpp"
 #include <string>
 
 namespace wadi {
 
-/// Reads every settings key of the root object. Ranges that validate() checks are left to it. Series files are relative to
-/// `folder`. Errors go to the reader's status.
-void read_settings(ObjectReader& root, const std::string& folder, Settings& settings);
+/// Reads every settings key of the root object. Ranges that validate() checks are left to it. Series files come from
+/// `files`. Errors go to the reader's status.
+void read_settings(ObjectReader& root, const FileReader& files, Settings& settings);
 
 /// A number, a list of [time, value], or {"file": "series.csv"}.
-TimeSeries read_series(const Json& value, const std::string& path, const std::string& folder, Status& status);
+TimeSeries read_series(const Json& value, const std::string& path, const FileReader& files, Status& status);
 
 /// "time,value" lines; empty lines, lines that start with # and one heading line are skipped.
-Result<TimeSeries> read_series_file(const std::string& path);
+Result<TimeSeries> read_series_file(const std::string& path, const FileReader& files);
 
 } // namespace wadi

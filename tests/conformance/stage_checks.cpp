@@ -1,4 +1,5 @@
 #include "tests/conformance/stage_checks.hpp"
+#include "tests/conformance/edits_check.hpp"
 #include "tests/conformance/stage_inputs.hpp"
 #include <algorithm>
 #include <bit>
@@ -136,6 +137,7 @@ constexpr Definition definitions[] = {
     {"apply_sources", check_source_ledger},
     {"mark_limits", check_marks},
     {"sample_points", check_samples},
+    {"apply_edits", check_edits},
 };
 
 } // namespace

@@ -1,5 +1,6 @@
 #include "tests/conformance/stage_inputs.hpp"
 #include "tests/conformance/compare.hpp"
+#include "tests/conformance/edits_check.hpp"
 #include "tests/conformance/fields.hpp"
 #include "tests/conformance/stage_checks.hpp"
 #include <algorithm>
@@ -132,6 +133,7 @@ std::uint32_t ledger_start(std::size_t word) { return 0xFFFFFF00u + static_cast<
 
 compute::Range2 written_range(const std::string& stage, const std::string& base, const WorldParams& params) {
     if (stage == "open_sides" && base == "water_height") return {-1, -1, params.nx + 1, params.ny + 1};
+    if (stage == "apply_edits" && base == "terrain") return {-GHOST, -GHOST, params.nx + 1 + GHOST, params.ny + 1 + GHOST};
     return values_of(base, params);
 }
 
@@ -153,6 +155,11 @@ std::vector<BenchBuffer> stage_buffers(const compute::StageInfo& stage, const Sc
         } else if (binding.name == "samples") {
             fill_words(buffers[b], std::vector<std::uint32_t>(std::size_t{sampled_points} * SAMPLE_FLOATS, nan_word), true);
             buffers[b].must_change = buffers[b].may_change;
+        } else if (binding.name == "stamp_images") {
+            std::vector<std::uint32_t> words(STAMP_PAGE, nan_word);
+            std::size_t at = 0;
+            for (const float value : stamp_of_cases().values) words[at++] = std::bit_cast<std::uint32_t>(value);
+            fill_words(buffers[b], std::move(words), false);
         } else if (binding.name == "source_ledger") {
             fill_words(buffers[b],
                        ledger_words(std::size_t{2 * LEDGER_ENTRIES} * static_cast<std::size_t>(layout.strips() * layout.pitch())),

@@ -1,6 +1,7 @@
 #include "tests/conformance/stage_layer.hpp"
 #include "engine/world_params.hpp"
 #include "tests/conformance/compare.hpp"
+#include "tests/conformance/edits_check.hpp"
 #include "tests/conformance/fields.hpp"
 #include "tests/conformance/masks.hpp"
 #include "tests/conformance/stage_checks.hpp"
@@ -119,7 +120,8 @@ Verdict run_stage_case(const CaseSpec& spec, compute::Device& device, const Tamp
     if (!scene) return verdict_of(scene.status());
     const auto& info = compute::stage_table()[static_cast<std::size_t>(stage)];
     const WorldParams params = derive_params(scene->settings);
-    const Pilot pilot = make_pilot(*scene, spec.name);
+    Pilot pilot = make_pilot(*scene, spec.name);
+    if (spec.name == "apply_edits") add_edits(*scene, pilot.input);
     auto buffers = stage_buffers(info, *scene, pilot, params);
     if (auto status = run_bench(device, stage, *mask, params, pilot.input, {}, buffers); !status) return verdict_of(status);
     if (tamper) tamper(info, buffers);

@@ -57,6 +57,12 @@ typedef struct wadi_world_id {
 /** Gets messages of drivers and validation layers. level: 0 error, 1 warning, 2 information. Called during a call of the library, or from a driver's thread; it must not call the library. */
 typedef void (*wadi_log_callback)(void* user, int level, const char* message);
 
+/** The cells (i, j) with i0 <= i < i0 + nx and j0 <= j < j0 + ny. */
+typedef struct wadi_region {
+    int32_t i0, j0;
+    int32_t nx, ny;
+} wadi_region;
+
 /** Where and how a world runs. */
 typedef struct wadi_device_options {
     uint32_t struct_size;
@@ -339,9 +345,6 @@ typedef struct wadi_tile {
  *  Errors: BAD_ARGUMENT (not asked for, count NULL), NOT_READY (none has arrived yet), DEVICE_LOST. */
 WADI_API wadi_result wadi_world_get_tiles(wadi_world_id world, wadi_tile* tiles, uint32_t* count, uint64_t* step);
 
-typedef struct wadi_region {
-    int32_t i, j, nx, ny;          /* cells */
-} wadi_region;
 /** Rectangles that hold every cell whose solid or visible surface changed in a publish after step `since_step` (-1 = ever): tiles,
  *  neighbours in a row of tiles as one. Pass *step of one call as since_step to the next, and -1 after wadi_world_load.
  *  *count, *step and errors as in wadi_world_get_tiles; also BAD_ARGUMENT for since_step < -1. */
@@ -475,6 +478,98 @@ WADI_API wadi_result wadi_world_get_effects(wadi_world_id world, wadi_effect_inf
 /** OK, or what broke the world for good (DEVICE_LOST) with wadi_get_last_error() saying how. Does not wait: a fault that the
  *  device has not reported yet is not known. */
 WADI_API wadi_result wadi_world_get_error(wadi_world_id world);
+
+/* ---- Edits ---- */
+
+typedef enum wadi_layer {
+    WADI_LAYER_TERRAIN = 0,
+    WADI_LAYER_SAND = 1,
+    WADI_LAYER_WATER = 2
+} wadi_layer;
+
+typedef enum wadi_edit_kind {
+    WADI_EDIT_BRUSH = 0, /* raises (amount > 0) or lowers a layer within a disc or capsule */
+    WADI_EDIT_STAMP = 1, /* the same by an image over a rectangle */
+    WADI_EDIT_PUSH = 2   /* a body that drags sand and water along and feels nothing itself; moves no mass */
+} wadi_edit_kind;
+
+/** One edit. It counts for cells whose centre lies inside its shape, which may lie outside the grid in part or as a whole.
+ *  Positions are kept to 1/256 of a cell. */
+typedef struct wadi_edit {
+    uint32_t struct_size;
+    int32_t kind;         /* wadi_edit_kind */
+    int32_t layer;        /* wadi_layer, of brush and stamp */
+    int32_t capsule;      /* brush and push: 0 = disc round (x0, y0), 1 = all within radius of the line from (x0, y0) to (x1, y1) */
+    uint64_t step;        /* the water step ahead of which it acts, as wadi_world_get_time counts; 0 = the next one */
+    double x0, y0;        /* [m], -1e9 ... 1e9; of a stamp the low corner */
+    double x1, y1;        /* [m], capsule and stamp only; of a stamp the high corner, greater than the low one */
+    double radius;        /* [m], 1e-9 ... 1e9, brush and push */
+    double softness;      /* 0 ... 1, brush and push: share of the radius over which the effect falls to 0 (3 s^2 - 2 s^3) */
+    double amount;        /* brush: change at the centre [m]; stamp: metres per unit of the image. At most twice
+                           * method.largest_height up or down */
+    double strength;      /* 0 ... 1, push: how far velocities are drawn to the body's at the centre */
+    double velocity_x;    /* [m/s], -1e4 ... 1e4, push: the body's velocity */
+    double velocity_y;
+    uint32_t stamp;       /* stamp: its number, from wadi_world_create_stamp */
+} wadi_edit;
+WADI_API wadi_edit wadi_default_edit(void); /* a brush on terrain: radius 1, softness 0.5, strength 1, the rest 0 */
+
+/** Queues `count` edits. Those of one step act in the order of the calls, ahead of that step; in the middle of a step that runs in
+ *  parts "the next one" is the one after it. Depths change by whole quanta and every quantum is in the ledger; what finds no room
+ *  below method.largest_height is refused and counted (wadi_world_stats.refused); no more is taken than there is. Sand and water
+ *  keep their depth where terrain changes, added sand is unstrained. An edit that adds a material the world has not held so far
+ *  promotes it when its step comes: buffers are allocated and programs recorded anew, once, and that step may wait for the device.
+ *  Returns at once. wadi_world_load and every other way back in time drops the edits that wait: queue those of later steps again.
+ *  Errors: BAD_ARGUMENT, naming edit, field and range, or `effects` when the level forces off what an edit adds; none is queued. */
+WADI_API wadi_result wadi_world_edit(wadi_world_id world, const wadi_edit* edits, uint32_t count);
+
+/** Copies an image for stamps: nx * ny values (1 ... 4096 each, |value| <= 1e12), row 0 in the south, bilinear between pixels.
+ *  *stamp counts up from 1; stamps live as long as the world. Allocates; may wait. Errors: BAD_ARGUMENT, OUT_OF_MEMORY. */
+WADI_API wadi_result wadi_world_create_stamp(wadi_world_id world, int32_t nx, int32_t ny, const float* values, uint32_t* stamp);
+
+/** Compiles the pipelines of every effect that the level allows, so that a later promotion only allocates and records. Costs time once
+ *  (GPU drivers: up to seconds) and next to no memory; call it while loading. Does not wait for steps. */
+WADI_API wadi_result wadi_world_prepare_effects(wadi_world_id world);
+/** Frees the passes and buffers of materials that the world no longer holds; what it gave and took stays in the ledger. Waits for
+ *  the steps asked for and reads the heights. */
+WADI_API wadi_result wadi_world_trim(wadi_world_id world);
+
+/** Reads a field in a region within the grid, count = nx * ny floats; waits for the steps asked for. Errors: BAD_ARGUMENT. */
+WADI_API wadi_result wadi_world_read_region(wadi_world_id world, wadi_field field, const wadi_region* region, float* values, size_t count);
+/** Overwrites terrain, sand height or water height [m] in a region at once, after the steps asked for, which it waits for. Values
+ *  are rounded to quanta; what that adds or takes is in the ledger; velocities stay. Promotes like an edit.
+ *  Errors, nothing changed: BAD_ARGUMENT (another field, a region outside, NaN, a negative depth, a column above
+ *  method.largest_height: the message names the cell; `effects` forced off). */
+WADI_API wadi_result wadi_world_write_region(wadi_world_id world, wadi_field field, const wadi_region* region, const float* values,
+                                             size_t count);
+
+/* ---- Command log ---- */
+
+/** 1 = from now on remember every edit, written region and trim with its step, in host memory that grows; 0 = stop and drop the log.
+ *  Off at first. Going back in time drops what was remembered for later steps. Does not wait. */
+WADI_API wadi_result wadi_world_set_command_log(wadi_world_id world, int32_t on);
+/** The log as bytes, with all stamps of the world: a few dozen bytes per edit, versioned and checksummed. *size: bytes at `data` in,
+ *  bytes of the log out; data may be NULL to ask the number. Does not wait. Errors: BAD_ARGUMENT (size NULL or too small). */
+WADI_API wadi_result wadi_world_get_commands(wadi_world_id world, void* data, size_t* size);
+/** Queues the commands of a log in a world of the same level: a fresh one, or one that stands where logging began. After the same
+ *  number of steps, in frames of any rhythm, both have the same hash, on every backend that passes the exact-float test. Allocates
+ *  for stamps; waits where a written region or trim counts at once, as do later steps ahead of which one counts.
+ *  Errors, nothing queued: BAD_FILE (no log, a newer version, truncated, changed), BAD_ARGUMENT (of another level, or with commands
+ *  for steps already done). */
+WADI_API wadi_result wadi_world_play_commands(wadi_world_id world, const void* data, size_t size);
+
+/* ---- Levels from memory ---- */
+
+/** Reads a file that a level names, for the host's own file system. Called with data NULL first: sets *size to the file's bytes;
+ *  then with room for *size bytes: fills it and sets *size to what it wrote. Returns 1, or 0 where there is no such file. `name` is
+ *  as the level writes it, '/' between folders. Called only inside wadi_create_world_from_level_text, on its thread. */
+typedef int32_t (*wadi_read_file_callback)(void* user, const char* name, void* data, size_t* size);
+
+/** A world from the text of a level file. Maps and series that it names come from read_file; with read_file NULL the text may name
+ *  none: nothing is read from disk. Errors: those of wadi_create_world_from_level. */
+WADI_API wadi_result wadi_create_world_from_level_text(const char* json, wadi_read_file_callback read_file, void* user,
+                                                       const wadi_level_overrides* overrides, const wadi_device_options* options,
+                                                       wadi_world_id* world);
 
 #ifdef __cplusplus
 }

@@ -1,0 +1,13 @@
+// A rectangle of cells.
+#pragma once
+#include <cstddef>
+
+namespace wadi {
+
+/// Cells [i0, i0 + nx) x [j0, j0 + ny).
+struct Region {
+    int i0 = 0, j0 = 0, nx = 0, ny = 0;
+    std::size_t cells() const { return static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny); }
+};
+
+} // namespace wadi

@@ -1,0 +1,148 @@
+// Brushes, stamps, pushes and written regions; effects that follow them.
+#include "plugin/abi.hpp"
+
+using namespace wadi;
+using namespace wadi::plugin;
+
+namespace {
+
+// What the engine's types cannot hold is refused here.
+Result<Edit> to_edit(const wadi_edit& e, uint32_t index) {
+    const auto refuse = [&](const std::string& text) {
+        return error(Code::bad_argument, "wadi_world_edit: edits[" + std::to_string(index) + "]." + text);
+    };
+    if (e.struct_size != sizeof e) return refuse("struct_size is not " + std::to_string(sizeof e) + "; use wadi_default_edit()");
+    if (e.kind < WADI_EDIT_BRUSH || e.kind > WADI_EDIT_PUSH)
+        return refuse("kind: " + std::to_string(e.kind) + " is no wadi_edit_kind (0 ... 2)");
+    if (e.layer < WADI_LAYER_TERRAIN || e.layer > WADI_LAYER_WATER)
+        return refuse("layer: " + std::to_string(e.layer) + " is no wadi_layer (0 ... 2)");
+    Edit edit;
+    edit.kind = static_cast<EditKind>(e.kind);
+    edit.layer = static_cast<EditLayer>(e.layer);
+    edit.capsule = e.capsule != 0;
+    edit.step = e.step;
+    edit.x0 = e.x0;
+    edit.y0 = e.y0;
+    edit.x1 = e.x1;
+    edit.y1 = e.y1;
+    edit.radius = e.radius;
+    edit.softness = e.softness;
+    edit.amount = e.amount;
+    edit.strength = e.strength;
+    edit.velocity_x = e.velocity_x;
+    edit.velocity_y = e.velocity_y;
+    edit.stamp = e.stamp;
+    return edit;
+}
+
+Region to_region(const wadi_region& r) { return {r.i0, r.j0, r.nx, r.ny}; }
+
+} // namespace
+
+extern "C" {
+
+wadi_edit wadi_default_edit(void) {
+    auto edit = sized<wadi_edit>();
+    edit.radius = 1;
+    edit.softness = 0.5;
+    edit.strength = 1;
+    return edit;
+}
+
+wadi_result wadi_world_edit(wadi_world_id id, const wadi_edit* edits, uint32_t count) {
+    return with_world(__func__, id, [&](HostedWorld& hosted) {
+        if (edits == nullptr && count > 0) return bad_argument("wadi_world_edit: edits is NULL");
+        std::vector<Edit>& list = hosted.edits;
+        list.clear();
+        for (uint32_t n = 0; n < count; ++n) {
+            auto edit = to_edit(edits[n], n);
+            if (!edit) return report(edit.status());
+            list.push_back(*edit);
+        }
+        return report(hosted.world->edit(list));
+    });
+}
+
+wadi_result wadi_world_create_stamp(wadi_world_id id, int32_t nx, int32_t ny, const float* values, uint32_t* stamp) {
+    return with_world(__func__, id, [&](HostedWorld& hosted) {
+        if (values == nullptr || stamp == nullptr) return bad_argument("wadi_world_create_stamp: values or stamp is NULL");
+        const bool positive = nx > 0 && ny > 0;
+        const auto pixels = positive ? static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny) : 0;
+        auto made = hosted.world->edits().create_stamp(nx, ny, {values, pixels});
+        if (made) *stamp = *made;
+        return report(made.status());
+    });
+}
+
+wadi_result wadi_world_read_region(wadi_world_id id, wadi_field field, const wadi_region* region, float* values, size_t count) {
+    return with_world(__func__, id, [&](HostedWorld& hosted) {
+        if (region == nullptr) return bad_argument("wadi_world_read_region: region is NULL");
+        if (plan_name(field) == nullptr)
+            return bad_argument("wadi_world_read_region: no field " + std::to_string(static_cast<int>(field)));
+        if (values == nullptr) return bad_argument("wadi_world_read_region: values is NULL");
+        return report(hosted.world->read(plan_name(field), to_region(*region), {values, count}));
+    });
+}
+
+wadi_result wadi_world_write_region(wadi_world_id id, wadi_field field, const wadi_region* region, const float* values,
+                                    size_t count) {
+    return with_world(__func__, id, [&](HostedWorld& hosted) {
+        if (region == nullptr) return bad_argument("wadi_world_write_region: region is NULL");
+        if (values == nullptr) return bad_argument("wadi_world_write_region: values is NULL");
+        EditLayer layer = EditLayer::terrain;
+        switch (field) {
+        case WADI_FIELD_TERRAIN:
+            break;
+        case WADI_FIELD_SAND_HEIGHT:
+            layer = EditLayer::sand;
+            break;
+        case WADI_FIELD_WATER_HEIGHT:
+            layer = EditLayer::water;
+            break;
+        default:
+            return bad_argument("wadi_world_write_region: field " + std::to_string(static_cast<int>(field)) +
+                                " is not terrain, sand height or water height");
+        }
+        return report(hosted.world->write_region(layer, to_region(*region), {values, count}));
+    });
+}
+
+wadi_result wadi_world_prepare_effects(wadi_world_id id) {
+    return with_world(__func__, id, [&](HostedWorld& hosted) { return report(hosted.world->prepare()); });
+}
+
+wadi_result wadi_world_trim(wadi_world_id id) {
+    return with_world(__func__, id, [&](HostedWorld& hosted) { return report(hosted.world->trim()); });
+}
+
+wadi_result wadi_world_set_command_log(wadi_world_id id, int32_t on) {
+    return with_world(__func__, id, [&](HostedWorld& hosted) {
+        hosted.world->commands().remember(on != 0);
+        return report(ok_status());
+    });
+}
+
+wadi_result wadi_world_get_commands(wadi_world_id id, void* data, size_t* size) {
+    return with_world(__func__, id, [&](HostedWorld& hosted) {
+        if (size == nullptr) return bad_argument("wadi_world_get_commands: size is NULL");
+        const auto bytes = hosted.world->commands().bytes();
+        const size_t room = *size;
+        *size = bytes.size();
+        if (data == nullptr) return report(ok_status());
+        if (room < bytes.size()) {
+            return bad_argument("wadi_world_get_commands: size is " + std::to_string(room) + ", the log needs " +
+                                std::to_string(bytes.size()) + " bytes");
+        }
+        std::memcpy(data, bytes.data(), bytes.size());
+        return report(ok_status());
+    });
+}
+
+wadi_result wadi_world_play_commands(wadi_world_id id, const void* data, size_t size) {
+    return with_world(__func__, id, [&](HostedWorld& hosted) {
+        if (data == nullptr) return bad_argument("wadi_world_play_commands: data is NULL");
+        return report(hosted.world->commands().play({static_cast<const std::byte*>(data), size}));
+    });
+}
+
+} // extern "C"

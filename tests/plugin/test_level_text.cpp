@@ -1,0 +1,107 @@
+// Levels as text, with maps that come from the host: the same world as from disk, and hosts that answer badly.
+#include <cstring>
+#include <doctest/doctest.h>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <string>
+#include <wadi/wadi.h>
+
+namespace {
+
+const std::string canyon = WADI_SOURCE_DIR "/samples/levels/canyon/";
+
+std::string contents(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    REQUIRE(file);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+// A file system of a host: names and bytes, and ways to go wrong.
+struct Host {
+    std::map<std::string, std::string> files;
+    int calls = 0;
+    bool shrinks = false, fails_later = false;
+    std::size_t claims = 0;
+};
+
+int32_t read_file(void* user, const char* name, void* data, size_t* size) {
+    auto& host = *static_cast<Host*>(user);
+    ++host.calls;
+    const auto found = host.files.find(name);
+    if (found == host.files.end()) return 0;
+    if (data == nullptr) {
+        *size = host.claims != 0 ? host.claims : found->second.size();
+        return 1;
+    }
+    if (host.fails_later) return 0;
+    if (host.shrinks) --*size;
+    std::memcpy(data, found->second.data(), *size);
+    return 1;
+}
+
+wadi_device_options cpu() {
+    auto options = wadi_default_device_options();
+    options.backend = "cpu";
+    return options;
+}
+
+} // namespace
+
+TEST_CASE("a level from memory is the level from disk") {
+    const auto options = cpu();
+    auto overrides = wadi_default_level_overrides();
+    overrides.nx = overrides.ny = 40;
+    Host host;
+    host.files["terrain.png"] = contents(canyon + "terrain.png");
+    const auto text = contents(canyon + "level.json");
+    wadi_world_id memory{}, disk{};
+    REQUIRE_MESSAGE(wadi_create_world_from_level_text(text.c_str(), read_file, &host, &overrides, &options, &memory) == WADI_OK,
+                    std::string(wadi_get_last_error()));
+    CHECK(host.calls == 2);
+    REQUIRE(wadi_create_world_from_level((canyon + "level.json").c_str(), &overrides, &options, &disk) == WADI_OK);
+    uint64_t a = 0, b = 1;
+    for (const auto id : {memory, disk}) REQUIRE(wadi_world_step(id, 3) == WADI_OK);
+    REQUIRE(wadi_world_get_hash(memory, &a) == WADI_OK);
+    REQUIRE(wadi_world_get_hash(disk, &b) == WADI_OK);
+    CHECK(a == b);
+    wadi_destroy_world(memory);
+    wadi_destroy_world(disk);
+}
+
+TEST_CASE("hosts without the file, or that change their mind, and texts that are no level") {
+    const auto options = cpu();
+    const auto text = contents(canyon + "level.json");
+    wadi_world_id id{};
+    Host host;
+    const auto create = [&](wadi_read_file_callback callback) {
+        return wadi_create_world_from_level_text(text.c_str(), callback, &host, nullptr, &options, &id);
+    };
+    const auto says = [](const char* words) { return std::string(wadi_get_last_error()).find(words) != std::string::npos; };
+    CHECK(create(nullptr) == WADI_ERROR_NOT_FOUND);
+    CHECK(says("read_file is NULL"));
+    CHECK(create(read_file) == WADI_ERROR_NOT_FOUND);
+    CHECK(says("terrain.png"));
+    host.files["terrain.png"] = contents(canyon + "terrain.png");
+    host.shrinks = true;
+    CHECK(create(read_file) == WADI_ERROR_BAD_FILE);
+    host.shrinks = false;
+    host.fails_later = true;
+    CHECK(create(read_file) == WADI_ERROR_BAD_FILE);
+    host.fails_later = false;
+    host.claims = std::size_t{1} << 60;
+    CHECK(create(read_file) == WADI_ERROR_BAD_FILE);
+    CHECK(says("largest accepted file"));
+    host.claims = 0;
+    host.files["terrain.png"].resize(100);
+    CHECK(create(read_file) == WADI_ERROR_BAD_FILE);
+    host.files["terrain.png"].clear();
+    CHECK(create(read_file) == WADI_ERROR_BAD_FILE);
+    CHECK(wadi_create_world_from_level_text("{", nullptr, nullptr, nullptr, &options, &id) == WADI_ERROR_BAD_FILE);
+    CHECK(wadi_create_world_from_level_text(nullptr, nullptr, nullptr, nullptr, &options, &id) == WADI_ERROR_BAD_ARGUMENT);
+    CHECK(wadi_create_world_from_level_text("{}", nullptr, nullptr, nullptr, &options, nullptr) == WADI_ERROR_BAD_ARGUMENT);
+    auto unsized = options;
+    unsized.struct_size = 1;
+    CHECK(wadi_create_world_from_level_text("{}", nullptr, nullptr, nullptr, &unsized, &id) == WADI_ERROR_BAD_ARGUMENT);
+    CHECK(id.index == 0);
+}

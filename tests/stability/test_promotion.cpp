@@ -1,0 +1,297 @@
+// Worlds that gain and lose materials while they run: the same bits as one that could hold all from the start, and no more
+// passes and memory than what they hold calls for.
+#include "tests/support/worlds.hpp"
+#include <cmath>
+#include <doctest/doctest.h>
+
+using namespace wadi;
+using namespace wadi::test;
+
+namespace {
+
+Edit disc(EditLayer layer, double x, double y, double radius, double amount) {
+    Edit edit;
+    edit.layer = layer;
+    edit.x0 = x;
+    edit.y0 = y;
+    edit.radius = radius;
+    edit.amount = amount;
+    edit.softness = 0.7;
+    return edit;
+}
+
+void add(World& world, const Edit& edit) {
+    const auto status = world.edit(std::span(&edit, 1));
+    REQUIRE_MESSAGE(status, status.message);
+}
+
+// A valley with a side that water and sand leave through.
+Scene dry_valley(bool open) {
+    auto scene = mixed_scene(28, 24);
+    scene.fields.sand.clear();
+    scene.fields.water.clear();
+    if (open) scene.settings.sides[SIDE_EAST].kind = SideKind::outflow;
+    return scene;
+}
+
+std::size_t passes(const World& world) {
+    return world.plan().water_passes.size() +
+           world.plan().substep_passes.size() * static_cast<std::size_t>(world.plan().substeps);
+}
+
+void check_books(World& world) {
+    auto s = world.stats();
+    REQUIRE_MESSAGE(s, s.status().message);
+    CHECK(s->sand_quanta == s->sand_initial + s->ledger.sand_in - s->ledger.sand_out);
+    CHECK(s->water_quanta == s->water_initial + s->ledger.water_in - s->ledger.water_out);
+}
+
+} // namespace
+
+TEST_CASE("terrain, then water, then sand: the bits of a world that had every effect from the start") {
+    for (const auto& backend : available_backends()) {
+        for (const bool open : {false, true}) {
+            for (const bool sand_first : {false, true}) {
+                auto scene = dry_valley(open);
+                // Drag gives the velocity of mixed water a value even where there is none yet; a world without water has no
+                // such value to begin with, and starts it at 0.
+                if (sand_first) scene.settings.material.exchange_rate = 0;
+                auto all = scene;
+                all.settings.effects = {{"water", Force::on}, {"sand", Force::on}};
+                auto grown = make_world(scene, {backend}), full = make_world(all, {backend});
+                const auto first = sand_first ? EditLayer::sand : EditLayer::water,
+                           second = sand_first ? EditLayer::water : EditLayer::sand;
+                const std::uint32_t bare = grown->plan().effects;
+                std::uint32_t one = 0;
+                for (int n = 0; n < 25; ++n) {
+                    for (auto* world : {grown.get(), full.get()}) {
+                        if (n == 2) add(*world, disc(EditLayer::terrain, 2, 2, 1, 0.3));
+                        if (n == 5 || n == 8) add(*world, disc(first, 3, 2, 1.3, 0.6));
+                        if (n == 14) add(*world, disc(second, 3.5, 2.4, 1, 0.5));
+                        if (n == 9) {
+                            Edit body = disc(EditLayer::terrain, 3, 2, 1, 0);
+                            body.kind = EditKind::push;
+                            body.strength = 0.5;
+                            body.velocity_x = 2;
+                            add(*world, body);
+                        }
+                        step(*world, 1);
+                    }
+                    if (n == 10) one = grown->plan().effects;
+                }
+                CHECK((bare & (EFFECT_WATER | EFFECT_SAND)) == 0);
+                CHECK(((one & EFFECT_SAND) != 0) == sand_first);
+                CHECK(grown->plan().effects == full->plan().effects);
+                const auto a = state_of(*grown), b = state_of(*full);
+                for (const auto& [name, values] : b) {
+                    const auto same = std::find_if(a.begin(), a.end(), [&](const auto& f) { return f.first == name; });
+                    REQUIRE(same != a.end());
+                    CHECK_MESSAGE(same->second == values,
+                                  name << " on " << backend << (open ? ", open" : "") << (sand_first ? ", sand first" : ""));
+                }
+                CHECK(hash_of(*grown) == hash_of(*full));
+                check_books(*grown);
+            }
+        }
+    }
+}
+
+TEST_CASE("a promotion keeps what runs in parts and what is profiled going") {
+    const auto scene = dry_valley(false);
+    auto parts = make_world(scene), whole = make_world(scene);
+    REQUIRE(parts->set_profiling(true));
+    for (int n = 0; n < 6; ++n) {
+        for (auto* world : {parts.get(), whole.get()}) {
+            if (n == 1) add(*world, disc(EditLayer::water, 2, 2, 1, 0.5));
+            if (n == 3) add(*world, disc(EditLayer::sand, 2, 2, 1, 0.5));
+        }
+        do {
+            REQUIRE(parts->stepper().step_part());
+        } while (parts->stepper().parts_done() > 0);
+        step(*whole, 1);
+    }
+    CHECK(hash_of(*parts) == hash_of(*whole));
+    step(*parts, 3);
+    auto times = parts->stage_times();
+    REQUIRE(times);
+    CHECK(times->size() > 10);
+}
+
+TEST_CASE("preparing for every material changes neither plan nor memory nor bits, whatever the level forces off") {
+    for (const char* off : {"", "sand", "water"}) {
+        auto scene = dry_valley(false);
+        if (*off != '\0') scene.settings.effects = {{off, Force::off}};
+        auto prepared = make_world(scene), plain = make_world(scene);
+        REQUIRE(prepared->prepare());
+        CHECK(prepared->device_bytes() == plain->device_bytes());
+        CHECK(prepared->plan().effects == plain->plan().effects);
+        for (auto* world : {prepared.get(), plain.get()}) {
+            add(*world, disc(*off == 'w' ? EditLayer::sand : EditLayer::water, 3, 2, 1, 0.5));
+            step(*world, 3);
+        }
+        CHECK(hash_of(*prepared) == hash_of(*plain));
+    }
+}
+
+TEST_CASE("trim brings passes and memory back, and a trimmed world goes on as one that never held the material") {
+    auto scene = dry_valley(true);
+    auto world = make_world(scene);
+    step(*world, 1);
+    add(*world, disc(EditLayer::terrain, 2, 2, 1, 0.1)); // what edits themselves need is there from now on
+    step(*world, 1);
+    REQUIRE(world->stats()); // needs a buffer of its own
+    const auto bytes = world->device_bytes();
+    const auto count = passes(*world);
+    const auto buffers = world->memory().size();
+    for (int n = 0; n < 3; ++n) {
+        add(*world, disc(EditLayer::water, 5, 2, 1, 0.5));
+        add(*world, disc(EditLayer::sand, 3, 2, 1, 0.5));
+        step(*world, 20);
+        CHECK(world->device_bytes() > bytes);
+        CHECK(passes(*world) > count);
+        REQUIRE(world->trim());
+        CHECK(passes(*world) > count); // it still holds both
+        add(*world, disc(EditLayer::sand, 3, 2, 20, -16));
+        step(*world, 1);
+        REQUIRE(world->trim());
+        CHECK((world->plan().effects & EFFECT_WATER) != 0);
+        CHECK((world->plan().effects & (EFFECT_SAND | EFFECT_MIXTURE)) == 0);
+        add(*world, disc(EditLayer::water, 3, 2, 20, -16));
+        step(*world, 1);
+        REQUIRE(world->trim());
+        CHECK(passes(*world) == count);
+        CHECK(world->device_bytes() == bytes);
+        CHECK(world->memory().size() == buffers);
+        auto s = world->stats();
+        REQUIRE(s);
+        CHECK(s->ledger.water_in == s->ledger.water_out); // what left through the side is still in the books
+        CHECK(s->ledger.water_out > 0);
+        check_books(*world);
+    }
+    step(*world, 5);
+}
+
+TEST_CASE("passes and bytes follow what the world holds") {
+    const auto scene = dry_valley(false);
+    auto world = make_world(scene);
+    struct Holding {
+        std::size_t passes;
+        double bytes_per_cell;
+    };
+    std::vector<Holding> held = {{passes(*world), world->plan().bytes_per_cell()}};
+    for (const auto layer : {EditLayer::water, EditLayer::sand}) {
+        add(*world, disc(layer, 3, 2, 1, 0.5));
+        step(*world, 1);
+        held.push_back({passes(*world), world->plan().bytes_per_cell()});
+    }
+    CHECK(held[0].passes == 0);
+    CHECK(held[0].bytes_per_cell == 4);
+    CHECK(held[1].passes == 4);
+    CHECK(held[2].passes > 20);
+    CHECK(held[1].bytes_per_cell < held[2].bytes_per_cell);
+}
+
+TEST_CASE("nothing is allocated or recorded by edits once a material is there") {
+    for (const auto& backend : available_backends()) {
+        auto world = make_world(dry_valley(false), {backend});
+        const auto frame = [&] {
+            add(*world, disc(EditLayer::water, 3, 2, 1, 0.05));
+            add(*world, disc(EditLayer::sand, 3, 2, 1, 0.05));
+            step(*world, 1);
+        };
+        for (int n = 0; n < 3; ++n) frame();
+        const auto before = world->device().counters();
+        for (int n = 0; n < 10; ++n) frame();
+        const auto after = world->device().counters();
+        CHECK(after.allocations == before.allocations);
+        CHECK(after.recordings == before.recordings);
+        CHECK(after.descriptor_writes == before.descriptor_writes);
+        CHECK(after.submits == before.submits + 20);
+    }
+}
+
+TEST_CASE("a snapshot of a promoted world promotes the world it is loaded into") {
+    const auto scene = dry_valley(false);
+    auto world = make_world(scene), fresh = make_world(scene);
+    add(*world, disc(EditLayer::water, 3, 2, 1, 0.5));
+    add(*world, disc(EditLayer::sand, 3, 2, 1, 0.5));
+    step(*world, 7);
+    const auto bytes = save(*world);
+    const auto hash = hash_of(*world);
+    REQUIRE(fresh->stepper().step_part());
+    REQUIRE(fresh->load(bytes));
+    CHECK(hash_of(*fresh) == hash);
+    step(*fresh, 3);
+    step(*world, 3);
+    CHECK(hash_of(*fresh) == hash_of(*world));
+    auto forced = scene;
+    forced.settings.effects = {{"sand", Force::off}};
+    auto closed = make_world(forced);
+    CHECK(closed->load(bytes).code == Code::bad_argument);
+}
+
+TEST_CASE("regions are written to the quantum, booked and checked") {
+    for (const auto& backend : available_backends()) {
+        auto world = make_world(dry_valley(false), {backend});
+        const Region corner{0, 20, 5, 4}, middle{10, 3, 8, 12};
+        const auto values = [](const Region& region, double base) {
+            std::vector<float> v(region.cells());
+            for (std::size_t n = 0; n < v.size(); ++n) v[n] = static_cast<float>(base + 0.01 * std::sin(static_cast<double>(n)));
+            return v;
+        };
+        const auto write = [&](EditLayer layer, const Region& region, double base) {
+            const auto status = world->write_region(layer, region, values(region, base));
+            REQUIRE_MESSAGE(status, status.message);
+        };
+        write(EditLayer::terrain, corner, 0.5);
+        auto raw = world->read_raw("terrain");
+        REQUIRE(raw);
+        const FieldLayout layout{28, 24};
+        for (int j = -GHOST; j < 24 + 1 + GHOST; ++j)
+            for (int i = -GHOST; i < 28 + 1 + GHOST; ++i)
+                CHECK((*raw)[layout.index(i, j)] == (*raw)[layout.index(std::clamp(i, 0, 27), std::clamp(j, 0, 23))]);
+        CHECK((world->plan().effects & EFFECT_WATER) == 0);
+        write(EditLayer::water, middle, 0.7);
+        write(EditLayer::sand, corner, 0.3);
+        std::vector<float> back(middle.cells());
+        REQUIRE(world->read("water_height", middle, back));
+        const double quantum = world->stats()->quantum;
+        const auto wanted = values(middle, 0.7);
+        for (std::size_t n = 0; n < back.size(); ++n) {
+            CHECK(std::abs(static_cast<double>(back[n]) - static_cast<double>(wanted[n])) <= quantum / 2);
+            CHECK(std::fmod(static_cast<double>(back[n]), quantum) == 0);
+        }
+        check_books(*world);
+        step(*world, 10);
+        write(EditLayer::sand, middle, 0.2);
+        write(EditLayer::sand, {12, 4, 3, 3}, 0.011);
+        write(EditLayer::water, corner, 0.02);
+        check_books(*world);
+        step(*world, 10);
+        check_books(*world);
+
+        const auto hash = hash_of(*world);
+        const auto refused = [&](EditLayer layer, const Region& region, std::vector<float> v, const char* text) {
+            const auto status = world->write_region(layer, region, v);
+            CHECK(status.code == Code::bad_argument);
+            CHECK_MESSAGE(status.message.find(text) != std::string::npos, status.message);
+        };
+        auto bad = values(corner, 0.5);
+        bad[6] = std::nanf("");
+        refused(EditLayer::sand, corner, bad, "in cell (1, 21)");
+        bad[6] = -0.1F;
+        refused(EditLayer::water, corner, bad, "in cell (1, 21)");
+        bad[6] = 15.9F;
+        refused(EditLayer::water, corner, bad, "largest_height");
+        refused(EditLayer::terrain, corner, {1, 2, 3}, "count is 3");
+        for (const Region region : {Region{-1, 0, 2, 2},
+                                    {27, 0, 2, 1},
+                                    {0, 0, 0, 1},
+                                    {0, 0, 1, -1},
+                                    {0, 23, 1, 2},
+                                    {0, 0, 2147483647, 1},
+                                    {2147483647, 0, 2, 1}})
+            refused(EditLayer::sand, region, {1}, "region of");
+        CHECK(hash_of(*world) == hash);
+    }
+}
