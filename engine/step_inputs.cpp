@@ -40,6 +40,7 @@ void StepInputs::set_sides(StepInput& input, double time) const {
 }
 
 StepInput StepInputs::next(int step) {
+    before_ = totals_;
     StepInput input{};
     const double time = step * settings_.dt;
     input.step = step;

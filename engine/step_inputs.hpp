@@ -20,6 +20,8 @@ class StepInputs {
     explicit StepInputs(const Settings& settings);
     /// The input of step `step`, which must be one more than at the last call.
     StepInput next(int step);
+    /// Takes the last next() back: its step could not be submitted.
+    void undo() { totals_ = before_; }
     const Totals& totals() const { return totals_; }
     void set_totals(const Totals& totals) { totals_ = totals; }
 
@@ -29,7 +31,7 @@ class StepInputs {
 
     const Settings settings_;
     const double quantum_;
-    Totals totals_;
+    Totals totals_, before_; // before the last next()
 };
 
 /// Shapes as apply_sources reads them: two vec4 per source, MAX_SOURCES of them.

@@ -106,7 +106,10 @@ Status Stepper::finish(int parts) {
     }
     for (; parts_done_ < parts; ++parts_done_) {
         auto ticket = state_.device().submit(part_programs_[turn][static_cast<std::size_t>(parts_done_)], input_);
-        if (!ticket) return state_.note(ticket.status());
+        if (!ticket) {
+            if (parts_done_ == 0) inputs_.undo();
+            return state_.note(ticket.status());
+        }
         ticket_ = *ticket;
     }
     return parts_done_ < this->parts() ? ok_status() : complete_step();
@@ -147,7 +150,10 @@ Status Stepper::step() {
     const auto turn = static_cast<std::size_t>(state_.turn());
     auto ticket = state_.device().submit(profiling_ ? timed_programs_[turn] : programs_[turn],
                                          inputs_.next(static_cast<int>(state_.steps)));
-    if (!ticket) return state_.note(ticket.status());
+    if (!ticket) {
+        inputs_.undo();
+        return state_.note(ticket.status());
+    }
     ticket_ = *ticket;
     if (profiling_) {
         pending_timings_.push_back(*ticket);
