@@ -112,6 +112,21 @@ void fill_info(const InstanceApi& api, const VkPhysicalDeviceProperties& propert
     device.info.memory_bytes = largest_device_heap(api, device.handle);
 }
 
+// The loader unloads the drivers with the last instance, and NVIDIA's cannot be loaded any number of times: each time it takes
+// static thread-local storage that is never given back (seen to fail after some 20 devices). One instance that is never destroyed
+// keeps them.
+void keep_drivers_loaded(PFN_vkCreateInstance create_instance) {
+    static const bool kept = [&] {
+        auto application = vk_struct<VkApplicationInfo>(VK_STRUCTURE_TYPE_APPLICATION_INFO);
+        application.apiVersion = required_version;
+        auto info = vk_struct<VkInstanceCreateInfo>(VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO);
+        info.pApplicationInfo = &application;
+        VkInstance keeper = VK_NULL_HANDLE;
+        return create_instance(&info, nullptr, &keeper) == VK_SUCCESS;
+    }();
+    static_cast<void>(kept);
+}
+
 } // namespace
 
 Result<std::unique_ptr<Instance>> Instance::create(const compute::DeviceOptions& options) {
@@ -165,6 +180,7 @@ Status Instance::open(const compute::DeviceOptions& options) {
         info.enabledExtensionCount = 2;
         info.ppEnabledExtensionNames = extensions;
     }
+    keep_drivers_loaded(create_instance);
     if (const VkResult r = create_instance(&info, nullptr, &handle_); r != VK_SUCCESS) return creation_error(r);
 
     find_calls();

@@ -210,7 +210,17 @@ void steps_allocate_nothing(Session& session, Device&, Expect& expect) {
     expect.that(after.submits == before.submits + 40, "a step is not one submission");
 }
 
+// A host that loads one level after another.
+void opened_again_and_again(Session& session, Device&, Expect& expect) {
+    for (int n = 0; n < 32; ++n) {
+        auto fresh = session.fresh({});
+        expect.ok(fresh.status(), "opening the device for the " + std::to_string(n + 1) + ". time");
+        if (!fresh) return;
+    }
+}
+
 constexpr Contract contracts[] = {
+    {"opened_again_and_again", opened_again_and_again},
     {"capabilities", capabilities},
     {"device_lost", device_lost},
     {"world_after_loss", world_after_loss},

@@ -1,11 +1,14 @@
 #include "tests/conformance/perf.hpp"
+#include "engine/edits.hpp"
 #include "engine/step_inputs.hpp"
 #include "tests/conformance/masks.hpp"
 #include "tests/conformance/pass_runner.hpp"
 #include "tests/conformance/report.hpp"
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
+#include <map>
 
 namespace wadi::conformance {
 
@@ -232,6 +235,72 @@ Status measure_step(Device& device, int size, const char* name, std::uint32_t ef
     return ok_status();
 }
 
+// A stage outside the step, its buffers the fields of `runner` or `extra`.
+Status measure_beside_step(Device& device, PassRunner& runner, const char* stage_name, const StepInput& input,
+                           const std::map<std::string, compute::Buffer>& extra, Row row, const PerfOptions& options,
+                           std::vector<Row>& rows) {
+    const int index = compute::find_stage(stage_name);
+    const auto& stage = compute::stage_table()[static_cast<std::size_t>(index)];
+    auto pipeline = device.create_pipeline(index, ALL, {});
+    if (!pipeline) return pipeline.status();
+    compute::Dispatch dispatch{*pipeline, index, ALL, {}, compute::extent_range(stage.extent, runner.params(), input.point_count),
+                               stage_name};
+    for (const auto& binding : stage.bindings) {
+        const auto found = extra.find(std::string(binding.name));
+        dispatch.slots.push_back(found != extra.end() ? found->second : runner.buffer(std::string(binding.name)));
+    }
+    ProgramBuilder builder(stage_name);
+    builder.timestamp("start");
+    builder.dispatch(std::move(dispatch));
+    builder.timestamp(stage_name);
+    auto times = time_program(device, builder, runner.params(), input, options.repeats);
+    if (!times) return times.status();
+    row.milliseconds = *times;
+    rows.push_back(std::move(row));
+    return ok_status();
+}
+
+// What a host asks for beside the step: one brush 64 cells wide, 1000 points.
+Status measure_host_work(Device& device, int size, const PerfOptions& options, std::vector<Row>& rows) {
+    constexpr int points = 1000;
+    auto scene = make_large_scene(size, ALL);
+    if (!scene) return scene.status();
+    PassRunner runner(device, *scene);
+    if (auto status = runner.open(); !status) return status;
+    const double dx = scene->settings.grid.dx, middle = 0.5 * size * dx;
+    std::vector<float> xy;
+    for (int n = 0; n < points; ++n)
+        for (const double step : {0.7548776662, 0.5698402910}) // spread over the grid
+            xy.push_back(static_cast<float>(size * dx * std::fmod(step * (n + 1), 1.0)));
+    std::map<std::string, compute::Buffer> extra;
+    Status status;
+    for (const auto& [name, bytes] : {std::pair<const char*, std::uint64_t>{"stamp_images", STAMP_PAGE * 4},
+                                      {"points", xy.size() * 4},
+                                      {"samples", std::uint64_t{points} * SAMPLE_FLOATS * 4}}) {
+        auto made = device.create_buffer({bytes, name});
+        if (made) extra[name] = *made;
+        if (status) status = made.status();
+    }
+    if (status) status = device.write(extra["points"], 0, std::as_bytes(std::span(xy)));
+    StepInput brush{}, query{};
+    Edit edit;
+    edit.layer = EditLayer::sand;
+    edit.x0 = edit.y0 = middle;
+    edit.radius = 32 * dx;
+    edit.softness = 0.5;
+    edit.amount = 0; // the same work, and the state stays what it is
+    brush.edit_count = pack_edit(edit, {}, scene->settings.grid, brush.edit) ? 1 : 0;
+    query.point_count = points;
+    if (status)
+        status = measure_beside_step(device, runner, "apply_edits", brush, extra, {.name = "one brush of 64 cells", .size = size},
+                                     options, rows);
+    if (status)
+        status = measure_beside_step(device, runner, "sample_points", query, extra, {.name = "1000 points", .size = size},
+                                     options, rows);
+    for (const auto& [name, buffer] : extra) device.destroy_buffer(buffer);
+    return status;
+}
+
 void print(const Session& session, const Device& device, const PerfOptions& options, const Ceiling& ceiling,
            const std::vector<Row>& rows, bool first) {
     const char* clock = device.capabilities().timestamps ? "device" : "host";
@@ -289,6 +358,7 @@ Status run_perf(Session& session, const PerfOptions& options, bool first) {
                                                                    {"step, dry sand", EFFECT_SAND | EFFECT_ELASTOPLASTIC}};
         for (const auto& [name, effects] : steps)
             if (auto status = measure_step(**device, size, name, effects, options, rows); !status) return status;
+        if (auto status = measure_host_work(**device, size, options, rows); !status) return status;
     }
     print(session, **device, options, *ceiling, rows, first);
     return ok_status();
