@@ -11,7 +11,7 @@ if len(sys.argv) < 3:
     raise SystemExit(__doc__)
 strict, relaxed = perf_table.by_row_and_size(sys.argv[1]), perf_table.by_row_and_size(sys.argv[2])
 sizes = [int(size) for size in sys.argv[3:]] or sorted({size for _, size in strict})
-rows = list(dict.fromkeys(row for row, _ in strict))
+rows = list(dict.fromkeys(row for row, size in strict if (row, size) in relaxed))
 print("| row | " + " | ".join(f"{size}² strict ms | relaxed ms | ratio" for size in sizes) + " |")
 print("| --- |" + " ---: | ---: | ---: |" * len(sizes))
 for row in rows:
