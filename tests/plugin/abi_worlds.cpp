@@ -78,6 +78,12 @@ std::uint64_t steps_of(const AbiWorld& world) {
     return steps;
 }
 
+std::uint64_t device_bytes(const AbiWorld& world) {
+    auto info = wadi_default_world_info();
+    REQUIRE(wadi_world_get_info(world.id, &info) == WADI_OK);
+    return info.device_bytes;
+}
+
 std::vector<unsigned char> saved(const AbiWorld& world) {
     std::size_t size = 0;
     REQUIRE(wadi_world_save(world.id, nullptr, &size) == WADI_OK);

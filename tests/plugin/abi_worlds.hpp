@@ -30,6 +30,7 @@ AbiWorld world_of(const std::string& backend, const std::string& json, int nx, i
 void step(const AbiWorld& world, unsigned count);
 std::uint64_t hash_of(const AbiWorld& world);
 std::uint64_t steps_of(const AbiWorld& world);
+std::uint64_t device_bytes(const AbiWorld& world);
 /// By wadi_world_save.
 std::vector<unsigned char> saved(const AbiWorld& world);
 bool error_mentions(const std::string& text);

@@ -1,5 +1,6 @@
 // Worlds behind the C ABI for tests: sand and water on a slope, on every backend that has a device here.
 #pragma once
+#include "tests/plugin/abi_worlds.hpp"
 #include <cmath>
 #include <cstdint>
 #include <doctest/doctest.h>
@@ -9,17 +10,10 @@
 
 namespace plugin_test {
 
+using wadi::test::error_mentions;
+
 /// Backends with a device here, the CPU first.
-inline std::vector<std::string> backends() {
-    uint32_t count = 0;
-    REQUIRE(wadi_list_devices(nullptr, &count, nullptr, 0) == WADI_OK);
-    std::vector<wadi_device_info> infos(count);
-    REQUIRE(wadi_list_devices(infos.data(), &count, nullptr, 0) == WADI_OK);
-    std::vector<std::string> names;
-    for (const auto& info : infos)
-        if (names.empty() || names.back() != info.backend) names.emplace_back(info.backend);
-    return names;
-}
+inline std::vector<std::string> backends() { return wadi::test::abi_backends(); }
 
 /// nx * ny cells of 0.5 m, dt [s], sand and water that meet; destroyed at the end.
 struct World {
@@ -77,7 +71,5 @@ struct World {
     /// Returns once the device has done all that was submitted.
     void wait() const { read(WADI_FIELD_TERRAIN); }
 };
-
-inline bool error_mentions(const std::string& text) { return std::string(wadi_get_last_error()).find(text) != std::string::npos; }
 
 } // namespace plugin_test

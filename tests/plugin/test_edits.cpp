@@ -1,4 +1,5 @@
 // Edits, regions and the command log through the C ABI: what a host may ask for, what it may not, and the same hash again.
+#include "tests/plugin/abi_worlds.hpp"
 #include <cmath>
 #include <cstring>
 #include <doctest/doctest.h>
@@ -17,17 +18,6 @@ std::string with(const char* more) {
     text += more;
     text += "}";
     return text;
-}
-
-std::vector<const char*> backends() {
-    uint32_t count = 0;
-    wadi_list_devices(nullptr, &count, nullptr, 0);
-    std::vector<wadi_device_info> infos(count);
-    wadi_list_devices(infos.data(), &count, nullptr, 0);
-    std::vector<const char*> names = {"cpu"};
-    for (const auto& info : infos)
-        if (std::strcmp(info.backend, "vulkan") == 0) return {"cpu", "vulkan"};
-    return names;
 }
 
 struct World {
@@ -131,7 +121,8 @@ TEST_CASE("a command log replays to the same hash on every backend, in steps of 
     const auto hash = first.hash();
     const auto log = first.commands();
     CHECK(log.size() > 40 * 100);
-    for (const char* backend : backends()) {
+    for (const auto& name : wadi::test::abi_backends()) {
+        const char* const backend = name.c_str();
         for (const uint32_t at_once : {1u, 7u, 41u}) {
             const World again(backend);
             REQUIRE_MESSAGE(wadi_world_play_commands(again.id, log.data(), log.size()) == WADI_OK, last_error());
@@ -300,7 +291,8 @@ TEST_CASE("bad edits and regions get a code and a text and change nothing") {
 }
 
 TEST_CASE("a region read back is the field's part, and promotion shows in the effects") {
-    for (const char* backend : backends()) {
+    for (const auto& name : wadi::test::abi_backends()) {
+        const char* const backend = name.c_str();
         const World world(backend);
         auto info = wadi_default_world_info();
         REQUIRE(wadi_world_get_info(world.id, &info) == WADI_OK);

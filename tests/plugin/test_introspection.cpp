@@ -17,12 +17,6 @@ std::vector<wadi_memory_item> memory_of(const AbiWorld& world) {
     return items;
 }
 
-uint64_t device_bytes(const AbiWorld& world) {
-    auto info = wadi_default_world_info();
-    REQUIRE(wadi_world_get_info(world.id, &info) == WADI_OK);
-    return info.device_bytes;
-}
-
 } // namespace
 
 TEST_CASE("the list of buffers adds up to the bytes on the device, and grows with what is asked for") {

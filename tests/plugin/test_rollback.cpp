@@ -15,12 +15,6 @@ std::vector<uint64_t> kept_steps(const AbiWorld& world) {
     return steps;
 }
 
-uint64_t device_bytes(const AbiWorld& world) {
-    auto info = wadi_default_world_info();
-    REQUIRE(wadi_world_get_info(world.id, &info) == WADI_OK);
-    return info.device_bytes;
-}
-
 using Steps = std::vector<uint64_t>;
 
 } // namespace
