@@ -70,9 +70,11 @@ std::vector<compute::BufferDesc> Outputs::wanted_buffers(const Asked& asked) con
     std::vector<compute::BufferDesc> wanted;
     for_outputs(fields_of(asked), [&](Output o) {
         for (std::size_t set = 0; set < sets; ++set)
-            wanted.push_back({layout.size() * 4 * static_cast<std::uint64_t>(kind_of(o).components), label(o, set)});
+            wanted.push_back({.bytes = layout.size() * 4 * static_cast<std::uint64_t>(kind_of(o).components),
+                              .label = label(o, set),
+                              .shared = true});
         if (asked.interpolate && (asked.mask & bit(o)) != 0 && kind_of(o).components == 1)
-            wanted.push_back({layout.size() * 4, interpolated_label(o)});
+            wanted.push_back({.bytes = layout.size() * 4, .label = interpolated_label(o), .shared = true});
     });
     if ((asked.mask & tiles_bit) != 0) {
         const auto strips = static_cast<std::uint64_t>(layout.strips());

@@ -36,8 +36,6 @@ compute::SyncPoint to_point(const wadi_vulkan_sync& point) {
 template <class Call> wadi_result on_host(const char* function, wadi_world_id id, const void* argument, Call call) {
     return with_world(function, id, [&](HostedWorld& hosted) {
         if (argument == nullptr) return bad_argument(std::string(function) + ": a pointer is NULL");
-        if (hosted.world->device().capabilities().backend != "vulkan")
-            return report(error(Code::not_supported, std::string(function) + ": the world does not run on a Vulkan device"));
         Status status = call(hosted.world->device());
         if (!status) status.message = std::string(function) + ": " + status.message;
         return report(status);

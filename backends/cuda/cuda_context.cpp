@@ -8,10 +8,24 @@ namespace {
 // Stages compute their indices as int, so a buffer of floats ends before 2^31 elements.
 constexpr std::uint64_t largest_indexed_buffer = std::uint64_t{4} << 31;
 
-Result<ListedDevice> choose(int index) {
+// The GPU that the lender lends from.
+Result<ListedDevice> choose_beside(const compute::Lender& lender, const std::vector<ListedDevice>& devices, int index) {
+    const auto same =
+        std::find_if(devices.begin(), devices.end(), [&](const ListedDevice& d) { return d.uuid == lender.device_uuid(); });
+    const std::string name = "the host's Vulkan device " + lender.device_name();
+    if (same == devices.end()) return error(Code::not_found, name + " is no CUDA device");
+    if (index >= 0 && index != same->info.index) {
+        return error(Code::bad_argument,
+                     name + " is CUDA device " + std::to_string(same->info.index) + ", not " + std::to_string(index));
+    }
+    return *same;
+}
+
+Result<ListedDevice> choose(int index, const compute::Lender* lender) {
     std::string why;
     const std::vector<ListedDevice> devices = list_devices(why);
     if (devices.empty()) return error(Code::not_found, "no CUDA device: " + why);
+    if (lender != nullptr) return choose_beside(*lender, devices, index);
     const int wanted = index < 0 ? 0 : index;
     if (wanted < static_cast<int>(devices.size())) return devices[static_cast<std::size_t>(wanted)];
     std::string list;
@@ -39,7 +53,7 @@ Result<std::unique_ptr<Context>> Context::open(int index, const compute::DeviceO
     auto context = std::make_unique<Context>();
     Context& c = *context;
     c.options = options;
-    const auto chosen = choose(index);
+    const auto chosen = choose(index, options.lender.get());
     if (!chosen) return chosen.status();
     if (Status s = read_capabilities(c, chosen.value()); !s) return s;
     auto driver = load_driver();

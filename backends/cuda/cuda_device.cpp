@@ -109,8 +109,20 @@ class CudaDevice final : public compute::Device {
     Result<compute::NativeBuffer> native(compute::Buffer buffer) override {
         const Memory* memory = buffers_.find(buffer);
         if (memory == nullptr) return error(Code::bad_argument, "native: no buffer has the handle " + std::to_string(buffer.id));
+        if (const auto& lent = memory->borrowed.lent; lent.handle != 0)
+            return compute::NativeBuffer{compute::NativeBuffer::Kind::vulkan_buffer, lent.handle, memory->bytes};
         return compute::NativeBuffer{compute::NativeBuffer::Kind::cuda_pointer, reinterpret_cast<std::uintptr_t>(memory->data),
                                      memory->bytes};
+    }
+
+    Status wait_before(std::span<const compute::SyncPoint> points) override {
+        if (context_->options.lender == nullptr) return Device::wait_before(points);
+        return unless_lost<Status>([&] { return semaphores_.wait(points); });
+    }
+
+    Status signal_after(const compute::SyncPoint& point) override {
+        if (context_->options.lender == nullptr) return Device::signal_after(point);
+        return unless_lost<Status>([&] { return semaphores_.signal(point); });
     }
 
     void inject_device_lost() override { context_->lose("injected"); }
@@ -130,6 +142,7 @@ class CudaDevice final : public compute::Device {
 
     // Destroyed from the last to the first.
     std::unique_ptr<Context> context_;
+    Semaphores semaphores_{*context_};
     Buffers buffers_{*context_};
     Pipelines pipelines_{*context_};
     Submissions submissions_{*context_};

@@ -1,6 +1,7 @@
 #include "backends/cuda/cuda_device_list.hpp"
 #include "backends/cuda/cuda_errors.hpp"
 #include <algorithm>
+#include <cstring>
 
 namespace wadi::cuda {
 namespace {
@@ -60,8 +61,12 @@ std::vector<ListedDevice> list_devices(std::string& why_none) {
             continue;
         }
         const auto kind = properties.integrated != 0 ? compute::DeviceKind::integrated_gpu : compute::DeviceKind::discrete_gpu;
-        list.push_back(
-            {ordinal, capability, {"cuda", static_cast<int>(list.size()), properties.name, kind, properties.totalGlobalMem}});
+        compute::DeviceUuid uuid{};
+        std::memcpy(uuid.data(), properties.uuid.bytes, uuid.size());
+        list.push_back({ordinal,
+                        capability,
+                        uuid,
+                        {"cuda", static_cast<int>(list.size()), properties.name, kind, properties.totalGlobalMem}});
     }
     return list;
 }

@@ -7,6 +7,7 @@ namespace wadi::cuda {
 struct ListedDevice {
     int ordinal = 0;    // as CUDA counts, which also counts devices that are left out here
     int capability = 0; // 10 x major + minor
+    compute::DeviceUuid uuid{};
     compute::DeviceInfo info;
 };
 

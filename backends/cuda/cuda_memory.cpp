@@ -10,6 +10,13 @@ std::string free_text() {
     return "; " + std::to_string(free >> 20) + " of " + std::to_string(total >> 20) + " MiB are free";
 }
 
+Result<Memory> allocate_borrowed(Context& c, const compute::BufferDesc& desc) {
+    auto borrowed = borrow(c, desc.bytes, desc.label);
+    if (!borrowed) return borrowed.status();
+    ++c.counters.allocations;
+    return Memory{borrowed->data, desc.bytes, desc.label, false, *borrowed};
+}
+
 } // namespace
 
 Result<Memory> allocate(Context& c, std::uint64_t bytes, std::string label, bool host) {
@@ -21,11 +28,13 @@ Result<Memory> allocate(Context& c, std::uint64_t bytes, std::string label, bool
         return s;
     }
     ++c.counters.allocations;
-    return Memory{static_cast<std::byte*>(data), bytes, std::move(label), host};
+    return Memory{static_cast<std::byte*>(data), bytes, std::move(label), host, {}};
 }
 
 void release(Context& c, Memory& memory) {
-    if (memory.data != nullptr && memory.host) {
+    if (memory.borrowed.data != nullptr) {
+        give_back(c, memory.borrowed);
+    } else if (memory.data != nullptr && memory.host) {
         c.note(cudaFreeHost(memory.data), "cudaFreeHost", memory.label);
     } else if (memory.data != nullptr) {
         c.note(cudaFree(memory.data), "cudaFree", memory.label);
@@ -65,7 +74,9 @@ Result<compute::Buffer> Buffers::create(const compute::BufferDesc& desc) {
     }
     buffers_.reserve(buffers_.size() + 1); // so that nothing can fail once the memory exists
     auto owner = std::make_unique<Memory>();
-    auto memory = allocate(c_, desc.bytes, desc.label, desc.host != compute::HostAccess::none);
+    const bool borrowed = desc.shared && c_.options.lender != nullptr;
+    auto memory =
+        borrowed ? allocate_borrowed(c_, desc) : allocate(c_, desc.bytes, desc.label, desc.host != compute::HostAccess::none);
     if (!memory) return memory.status();
     *owner = std::move(*memory);
     if (owner->host) {

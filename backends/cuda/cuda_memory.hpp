@@ -1,6 +1,6 @@
 // Device memory: the engine's buffers by handle, zeroed when made, and copies to and from the host.
 #pragma once
-#include "backends/cuda/cuda_context.hpp"
+#include "backends/cuda/cuda_borrowed.hpp"
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -11,7 +11,8 @@ struct Memory {
     std::byte* data = nullptr; // device address; of page-locked host memory the one address that both use
     std::uint64_t bytes = 0;
     std::string label;
-    bool host = false; // page-locked host memory
+    bool host = false;       // page-locked host memory
+    BorrowedMemory borrowed; // the lender's, or empty
 };
 
 /// Contents are undefined. Errors: out_of_memory with the label and what is free.

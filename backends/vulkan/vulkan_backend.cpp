@@ -1,6 +1,7 @@
 #include "backends/vulkan/vulkan_backend.hpp"
 #include "backends/vulkan/vulkan_device.hpp"
 #include "backends/vulkan/vulkan_instance.hpp"
+#include "backends/vulkan/vulkan_lender.hpp"
 #include <new>
 
 namespace wadi::vulkan {
@@ -25,7 +26,7 @@ std::vector<compute::DeviceInfo> enumerate(std::string& why_none) {
 } // namespace
 
 const compute::Backend& vulkan_backend() {
-    static const compute::Backend backend{"vulkan", enumerate, open_device};
+    static const compute::Backend backend{"vulkan", enumerate, open_device, lend};
     return backend;
 }
 

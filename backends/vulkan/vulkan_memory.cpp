@@ -22,18 +22,25 @@ Status bind_memory(Context& c, Memory& m, Place place) {
     c.vk.vkGetBufferMemoryRequirements(c.device, m.buffer, &needs);
     // The specification promises both kinds; cached host memory makes reading back fast.
     const auto type =
-        place == Place::device
-            ? memory_type(c, needs.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0)
-            : memory_type(c, needs.memoryTypeBits, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
-                          VK_MEMORY_PROPERTY_HOST_CACHED_BIT);
+        place == Place::host
+            ? memory_type(c, needs.memoryTypeBits, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT,
+                          VK_MEMORY_PROPERTY_HOST_CACHED_BIT)
+            : memory_type(c, needs.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, 0);
     if (!type) return error(Code::not_supported, "no memory type suits the buffer '" + m.label + "'");
     auto info = vk_struct<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
     info.allocationSize = needs.size;
     info.memoryTypeIndex = *type;
+    auto dedicated = vk_struct<VkMemoryDedicatedAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_DEDICATED_ALLOCATE_INFO);
+    dedicated.buffer = m.buffer;
+    auto exported = vk_struct<VkExportMemoryAllocateInfo>(VK_STRUCTURE_TYPE_EXPORT_MEMORY_ALLOCATE_INFO);
+    exported.pNext = &dedicated;
+    exported.handleTypes = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT;
+    if (place == Place::shared) info.pNext = &exported;
+    m.allocated = needs.size;
     const std::string what = "vkAllocateMemory (" + std::to_string(needs.size) + " bytes)";
     if (Status s = c.check(c.vk.vkAllocateMemory(c.device, &info, nullptr, &m.memory), what, m.label); !s) return s;
     if (Status s = c.check(c.vk.vkBindBufferMemory(c.device, m.buffer, m.memory, 0), "vkBindBufferMemory", m.label); !s) return s;
-    if (place == Place::device) return ok_status();
+    if (place != Place::host) return ok_status();
     return c.check(c.vk.vkMapMemory(c.device, m.memory, 0, VK_WHOLE_SIZE, 0, &m.mapped), "vkMapMemory", m.label);
 }
 
@@ -59,6 +66,9 @@ Result<Memory> allocate(Context& c, std::uint64_t bytes, VkBufferUsageFlags usag
     auto info = vk_struct<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
     info.size = (bytes + 3) / 4 * 4;
     info.usage = usage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+    auto external = vk_struct<VkExternalMemoryBufferCreateInfo>(VK_STRUCTURE_TYPE_EXTERNAL_MEMORY_BUFFER_CREATE_INFO);
+    external.handleTypes = VK_EXTERNAL_MEMORY_HANDLE_TYPE_OPAQUE_FD_BIT;
+    if (place == Place::shared) info.pNext = &external;
     if (!c.sharing_families.empty()) {
         info.sharingMode = VK_SHARING_MODE_CONCURRENT;
         info.queueFamilyIndexCount = static_cast<std::uint32_t>(c.sharing_families.size());

@@ -10,12 +10,14 @@ namespace wadi::vulkan {
 struct Memory {
     VkBuffer buffer = VK_NULL_HANDLE;
     VkDeviceMemory memory = VK_NULL_HANDLE;
-    std::uint64_t bytes = 0; // as asked for; the Vulkan buffer is rounded up to whole words
+    std::uint64_t bytes = 0;     // as asked for; the Vulkan buffer is rounded up to whole words
+    std::uint64_t allocated = 0; // of the memory
     void* mapped = nullptr;
     std::string label;
 };
 
-enum class Place { device, host };
+/// shared: on the device, exportable to another API by a descriptor.
+enum class Place { device, host, shared };
 
 /// Contents are undefined. Errors: out_of_memory with the label.
 Result<Memory> allocate(Context& context, std::uint64_t bytes, VkBufferUsageFlags usage, Place place, std::string label);

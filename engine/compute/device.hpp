@@ -1,6 +1,7 @@
 // The compute interface that every backend implements, and the only thing the engine knows of a device.
 // How to add a backend: backends/README.md.
 #pragma once
+#include "engine/compute/lender.hpp"
 #include "engine/compute/params.hpp"
 #include "engine/compute/program.hpp"
 #include "engine/compute/status.hpp"
@@ -62,7 +63,8 @@ struct DeviceOptions {
     std::string instruction_set;    // CPU backend: "" = best, "avx2", "base"
     bool validate = false;          // Vulkan: validation and synchronization validation layers
     bool full_barriers = false;     // a barrier before every operation
-    std::optional<HostDevice> host; // Vulkan: run on the host's device
+    std::optional<HostDevice> host; // Vulkan: run on the host's device; CUDA: beside it
+    std::shared_ptr<Lender> lender; // CUDA: lends shared buffers and semaphores; filled by open_device()
     bool no_replay = false;         // record anew for each submit (GPU backends; the CPU has nothing recorded)
     /// Messages from drivers and validation layers; level 0 = error, 1 = warning, 2 = information.
     std::function<void(int level, const std::string& message)> log;
@@ -78,6 +80,7 @@ struct BufferDesc {
     std::uint64_t bytes = 0;
     std::string label; // for errors
     HostAccess host = HostAccess::none;
+    bool shared = false; // the host's API works with it too: with a lender it is the lender's
 };
 
 /// Threads per group along i and j (GPU backends; the CPU ignores it). 0 = the backend's choice for the stage.
@@ -180,6 +183,8 @@ struct Backend {
     const char* name;
     std::vector<DeviceInfo> (*enumerate)(std::string& why_none);
     Result<std::unique_ptr<Device>> (*open)(int index, const DeviceOptions& options);
+    /// Lends from the host's device (DeviceOptions::host). Null: this API has nothing to lend. Errors: not_supported.
+    Result<std::shared_ptr<Lender>> (*lend)(const DeviceOptions& options) = nullptr;
 };
 
 /// All backends of this build, the CPU first. Defined in a file that CMake writes: engine code names no backend.

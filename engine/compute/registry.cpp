@@ -17,6 +17,14 @@ std::string known_backends() {
     return names;
 }
 
+// The backend that runs on a host's device and lends from it; null where the build lacks it.
+const Backend* lending_backend() {
+    for (const auto& backend : backends()) {
+        if (backend.lend != nullptr) return &backend;
+    }
+    return nullptr;
+}
+
 bool real_gpu(DeviceKind kind) {
     return kind == DeviceKind::discrete_gpu || kind == DeviceKind::integrated_gpu || kind == DeviceKind::virtual_gpu;
 }
@@ -42,11 +50,17 @@ Result<std::unique_ptr<Device>> open_device(const std::string& wanted, int index
     if (name == "auto" && forced != nullptr && *forced != '\0') name = forced;
     std::string why;
     if (options.host) {
-        for (const auto& backend : backends()) {
-            if (backend.name == std::string("vulkan") && (name == "auto" || name == "vulkan")) return backend.open(0, options);
+        const auto* lending = lending_backend();
+        if (lending == nullptr)
+            return error(Code::not_supported, "a host's Vulkan device was given, but this build has no Vulkan");
+        if (name == "auto" || name == lending->name) return lending->open(0, options);
+        if (name != "cuda") {
+            return error(Code::not_supported, "a host's Vulkan device was given, but the backend is " + name +
+                                                  "; on one run vulkan and auto, beside one cuda");
         }
-        return error(Code::not_supported, "a host's Vulkan device was given, but the backend is " + name +
-                                              (name == "auto" || name == "vulkan" ? " and this build has no Vulkan" : ""));
+        auto lender = lending->lend(options);
+        if (!lender) return lender.status();
+        options.lender = std::move(*lender);
     }
     if (name == "auto") {
         for (const auto& backend : backends()) {
@@ -60,12 +74,11 @@ Result<std::unique_ptr<Device>> open_device(const std::string& wanted, int index
         if (name != backend.name) continue;
         const auto devices = backend.enumerate(why);
         if (devices.empty()) return error(Code::not_found, "backend " + name + " has no device: " + why);
-        const int chosen = index < 0 ? devices.front().index : index;
-        if (chosen >= static_cast<int>(devices.size())) {
+        if (index >= static_cast<int>(devices.size())) {
             return error(Code::not_found, "backend " + name + " has no device " + std::to_string(index) + ", only 0 ... " +
                                               std::to_string(devices.size() - 1));
         }
-        return backend.open(chosen, options);
+        return backend.open(index, options);
     }
     return error(Code::not_found, "no backend '" + name + "' in this build; known: " + known_backends());
 }

@@ -72,7 +72,7 @@ typedef struct wadi_device_options {
     int32_t validate;          /* 1 = Vulkan validation layers; messages go to the log callback */
     wadi_log_callback log;     /* may be NULL */
     void* log_user;
-    const struct wadi_vulkan_host* vulkan_host; /* NULL, or the host's own Vulkan device (wadi_vulkan.h): backend "auto" or "vulkan" */
+    const struct wadi_vulkan_host* vulkan_host; /* NULL, or the host's own Vulkan device (wadi_vulkan.h): "auto" and "vulkan" run on it, "cuda" beside it */
 } wadi_device_options;
 WADI_API wadi_device_options wadi_default_device_options(void);
 

@@ -8,6 +8,10 @@
  *  - timeline semaphores: wadi_vulkan_wait() ahead of the next submission, wadi_vulkan_signal() behind the last;
  *  - recording: between wadi_vulkan_begin_recording() and wadi_vulkan_end_recording() the world's work goes into the host's
  *    command buffer instead of the queue.
+ * With the backend "cuda" the world runs in CUDA on the same GPU, beside the device: only the outputs' buffers are made there, in
+ * memory that both share, and the timeline semaphores order the two. The device must have VK_KHR_external_memory_fd and
+ * VK_KHR_external_semaphore_fd, the semaphores VkExportSemaphoreCreateInfo with VK_EXTERNAL_SEMAPHORE_HANDLE_TYPE_OPAQUE_FD_BIT; they
+ * must outlive the world. There is no recording.
  */
 #ifndef WADI_VULKAN_H
 #define WADI_VULKAN_H
@@ -41,7 +45,8 @@ typedef struct wadi_vulkan_sync {
 } wadi_vulkan_sync;
 
 /** The world's next submission waits on the device for these points. Does not wait itself.
- *  Errors: BAD_ARGUMENT (a null semaphore), NOT_SUPPORTED (no timeline semaphores, or the world runs on no Vulkan host). */
+ *  Errors: BAD_ARGUMENT (a null semaphore), NOT_SUPPORTED (no timeline semaphores, the world knows no Vulkan host, or CUDA cannot take
+ *  the semaphore). */
 WADI_API wadi_result wadi_vulkan_wait(wadi_world_id world, const wadi_vulkan_sync* points, uint32_t count);
 /** Signals a point once everything the world submitted so far is done. Errors: as wadi_vulkan_wait, and NOT_READY while recorded
  *  work has not run. */
