@@ -61,6 +61,11 @@ class Run:
         field = self.field(name, time)
         return math.fsum(field[n] for n, _, _ in self.cells(box)) * self.dx * self.dx
 
+    def standing(self, time, least, box=None):
+        """Volume of the sand in cells that hold more than `least` metres of it [m3]: what is still a wall and not a film."""
+        sand = self.field("hs", time)
+        return math.fsum(sand[n] for n, _, _ in self.cells(box) if sand[n] > least) * self.dx * self.dx
+
     def largest(self, name, time, box=None):
         field = self.field(name, time)
         return max(field[n] for n, _, _ in self.cells(box))

@@ -1,75 +1,24 @@
 #!/usr/bin/env python3
-"""Writes sand.png: the words SAND & WATER as sand, 640 x 320 samples of 0.1 m, 16 bits, black 0 m, white 1 m.
-
-The glyphs come from font.pbm, whose comment lists them in their order. They are magnified with the corners of their pixels
-rounded, and their edges rise over about 0.2 m.
-"""
+"""Writes sand.png: the words SAND & WATER as sand, 640 x 320 samples of 0.1 m, 16 bits, black 0 m, white 1 m."""
 import os
 import sys
 
+from lettering import Font, draw_line
+
 HERE = os.path.dirname(os.path.abspath(__file__))
-sys.path.insert(0, os.path.dirname(HERE))
+sys.path.append(os.path.dirname(HERE))
 from map_writer import write_png  # noqa: E402
 
 NX, NY, DX = 640, 320, 0.1
 WHITE = 1.0
 HEIGHT = 0.8            # of the letters [m]
 PIXEL = 0.22            # side of a pixel of the font [m]
-GAP, SPACE = 2, 9       # between letters and between words [pixels of the font]
-
-
-class Font:
-    def __init__(self):
-        with open(os.path.join(HERE, "font.pbm"), encoding="ascii") as file:
-            lines = file.read().split("\n")
-        self.order = lines[1].split()[1].rstrip(":")
-        width, self.height = map(int, lines[2].split())
-        self.width = width // len(self.order)
-        self.rows = lines[3:3 + self.height]
-
-    def ink(self, glyph, column, row):
-        """1 where the glyph has ink; row 0 is its lowest."""
-        if not (0 <= column < self.width and 0 <= row < self.height):
-            return 0
-        return int(self.rows[self.height - 1 - row][self.order.index(glyph) * self.width + column])
-
-
-def line_width(font, text):
-    """Of a line of text [pixels of the font]."""
-    return sum(SPACE if letter == " " else font.width + GAP for letter in text) - GAP
-
-
-def draw_line(cells, dx, font, text, centre, bottom, pixel, height):
-    """Raises cells[row][column] (row 0 in the south) to a line of text whose middle is at x = centre [m]."""
-    ny, nx = len(cells), len(cells[0])
-    pen = centre / pixel - 0.5 * line_width(font, text)
-    for letter in text:
-        if letter == " ":
-            pen += SPACE
-            continue
-        for row in range(max(0, int((bottom - pixel) / dx)), min(ny, int((bottom + (font.height + 1) * pixel) / dx) + 1)):
-            for column in range(max(0, int((pen - 1) * pixel / dx)), min(nx, int((pen + font.width + 1) * pixel / dx) + 1)):
-                x = (column + 0.5) * dx / pixel - pen
-                y = ((row + 0.5) * dx - bottom) / pixel
-                cells[row][column] = max(cells[row][column], height * edge(font, letter, x, y))
-        pen += font.width + GAP
-
-
-def edge(font, letter, x, y):
-    """0 ... 1 across the outline of a glyph: its pixels blurred by a tent two pixels wide on each side, then steepened."""
-    share = total = 0.0
-    for row in range(int(y) - 2, int(y) + 3):
-        for column in range(int(x) - 2, int(x) + 3):
-            weight = max(0.0, 2 - abs(column + 0.5 - x)) * max(0.0, 2 - abs(row + 0.5 - y))
-            share += weight * font.ink(letter, column, row)
-            total += weight
-    t = min(max((share / total - 0.35) / 0.3, 0.0), 1.0)
-    return t * t * (3 - 2 * t)
+FOOT = 14.0             # of the line of text, from the south [m]
 
 
 def main():
     cells = [[0.0] * NX for _ in range(NY)]
-    draw_line(cells, DX, Font(), "SAND & WATER", 0.5 * NX * DX, 14.0, PIXEL, HEIGHT)
+    draw_line(cells, DX, Font(), "SAND & WATER", 0.5 * NX * DX, FOOT, PIXEL, HEIGHT)
     write_png(os.path.join(HERE, "sand.png"), NX, NY, WHITE, lambda column, row: cells[row][column])
 
 
