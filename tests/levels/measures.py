@@ -66,6 +66,11 @@ class Run:
         sand = self.field("hs", time)
         return math.fsum(sand[n] for n, _, _ in self.cells(box) if sand[n] > least) * self.dx * self.dx
 
+    def emerged(self, time, box=None):
+        """Volume of the sand in cells where it rises above the water [m3]."""
+        sand, water = self.field("hs", time), self.field("W", time)
+        return math.fsum(sand[n] for n, _, _ in self.cells(box) if sand[n] > water[n]) * self.dx * self.dx
+
     def largest(self, name, time, box=None):
         field = self.field(name, time)
         return max(field[n] for n, _, _ in self.cells(box))
