@@ -73,7 +73,7 @@ TEST_CASE("a steeper bank slumps at the water line to the slope that buoyant fri
     const double held = FRICTION * (1 - 0.5 * 0.45 / 0.5); // full to 0.45 m of 0.5 m, sand twice as dense as water
     double steepest = 0;
     for (std::size_t i = 1; i < 120; ++i) {
-        const auto [low, high] = std::minmax(static_cast<double>(sand[i - 1]), static_cast<double>(sand[i]));
+        const auto [low, high] = std::minmax({static_cast<double>(sand[i - 1]), static_cast<double>(sand[i])});
         if (low > 0.45 && high < 0.55) steepest = std::max(steepest, (high - low) / 0.1);
     }
     CHECK(steepest < 1.1 * held);
