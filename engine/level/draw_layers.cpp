@@ -32,7 +32,8 @@ double combined(double current, double value, Combine combine) {
 
 double rounded(double height, double quantum) { return quantum > 0 ? std::round(height / quantum) * quantum : height; }
 
-Result<std::vector<float>> load_heights(const Layer& layer, const Frame& frame, const FileReader& files) {
+Result<std::vector<float>> load_heights(const Layer& layer, const Frame& frame, const FileReader& files,
+                                        std::vector<std::string>& warnings) {
     const MapSource& source = *layer.map;
     auto map = read_map(source.file, source.size, files);
     if (!map) // a bad argument of ours is a bad field of the level's author
@@ -44,6 +45,7 @@ Result<std::vector<float>> load_heights(const Layer& layer, const Frame& frame, 
     if (map->integer && !source.grey_range && !source.scale_given)
         return error(Code::bad_file, layer.path + ": " + source.file + " holds grey values; give min and max, the heights of " +
                                          "black and white in metres");
+    if (map->filled > 0) warnings.push_back(filled_warning(*map, layer.path + ".file: " + source.file));
     std::vector<float> values = resample(*map, frame.nx, frame.ny);
     const double scale = source.grey_range ? source.max - source.min : source.scale;
     const double offset = source.grey_range ? source.min : source.offset;
@@ -76,6 +78,11 @@ Sample sample_layer(const Layer& layer, double relative, double ground, double s
 
 } // namespace
 
+std::string filled_warning(const Map& map, const std::string& path) {
+    return path + ": " + std::to_string(map.filled) + " of " + std::to_string(std::int64_t{map.nx} * map.ny) +
+           " cells hold NODATA_value; they take the height of the nearest cell that has one";
+}
+
 Result<std::vector<float>> draw_layers(const std::vector<Layer>& layers, LayerTarget target, const Frame& frame,
                                        const FileReader& files, const std::vector<float>& terrain, const std::vector<float>& sand,
                                        std::vector<std::string>& warnings) {
@@ -83,7 +90,7 @@ Result<std::vector<float>> draw_layers(const std::vector<Layer>& layers, LayerTa
     for (const Layer& layer : layers) {
         std::vector<float> heights;
         if (layer.map) {
-            auto loaded = load_heights(layer, frame, files);
+            auto loaded = load_heights(layer, frame, files, warnings);
             if (!loaded) return loaded.status();
             heights = std::move(*loaded);
         }

@@ -112,7 +112,7 @@ int main_checked(int argc, char** argv) {
     CLI::App app("Records a Wadi level: shaded PNG frames, a contact sheet, fields as NPY, and a table of figures.",
                  "wadi-recorder");
     app.add_option("level", level, "level name (--list-levels), level file (.json) or level folder");
-    app.add_option("--terrain", terrain, "a terrain map (.png, .r16, .npy) instead of a level")->excludes("level");
+    app.add_option("--terrain", terrain, "a terrain map (.png, .r16, .npy, .asc) instead of a level")->excludes("level");
     app.add_option("--backend", options.backend, "auto, cpu, vulkan or cuda")->capture_default_str();
     app.add_option("--device", options.device, "device number within the backend (--list-backends); -1 = best")
         ->capture_default_str();

@@ -97,7 +97,7 @@ typedef struct wadi_level_overrides {
 } wadi_level_overrides;
 WADI_API wadi_level_overrides wadi_default_level_overrides(void);
 
-/** Creates a world from a level file (.json) or from a terrain map (.png, .r16, .npy).
+/** Creates a world from a level file (.json) or from a terrain map (.png, .r16, .npy, .asc).
  *  Errors: NOT_FOUND, BAD_FILE, BAD_ARGUMENT, OUT_OF_MEMORY, NOT_SUPPORTED. */
 WADI_API wadi_result wadi_create_world_from_level(const char* path, const wadi_level_overrides* overrides,
                                                   const wadi_device_options* options, wadi_world_id* world);
