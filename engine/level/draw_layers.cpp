@@ -70,7 +70,8 @@ Sample sample_layer(const Layer& layer, double relative, double ground, double s
     if (std::isinf(relative)) return {};
     if (layer.amount == Amount::wet) return {true, layer.top * sand};
     double value = layer.top + relative;
-    if (layer.amount == Amount::surface) value = std::max(value - ground, 0.0);
+    // Water counts from the terrain, inside the sand too; sand that stands above the surface stays as it is.
+    if (layer.amount == Amount::surface) value = value > ground ? value - ground + sand : 0.0;
     // Beyond the line where a sloping side meets the ground, the shape is over.
     if (has_sloping_sides(layer.shape) && relative < 0 && value <= 0) return {};
     return {true, value};

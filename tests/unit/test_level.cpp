@@ -133,7 +133,7 @@ TEST_CASE("level: surface fills up to an absolute elevation, flat to the bit") {
         "water": [{"shape": "plane", "surface": 2.1234567}])"));
     double surface = 0;
     for (int i = 0; i < 5; ++i) {
-        const double ground = at(level, level.fields.terrain, i, 4) + at(level, level.fields.sand, i, 4);
+        const double ground = at(level, level.fields.terrain, i, 4); // sand in the lake takes no room from the water
         const double here = ground + at(level, level.fields.water, i, 4);
         if (i > 0) CHECK(here == surface);
         surface = here;
@@ -141,6 +141,10 @@ TEST_CASE("level: surface fills up to an absolute elevation, flat to the bit") {
     }
     CHECK(surface == doctest::Approx(2.1234567));
     CHECK(at(level, level.fields.water, 9, 4) == 0); // ground above
+    const Level island = must(parse(R"("sand": [{"shape": "box", "from": [2, 0], "to": [5, 8], "height": 3}],
+        "water": [{"shape": "plane", "surface": 2}])"));
+    CHECK(at(island, island.fields.water, 3, 4) == 0); // sand above: dry
+    CHECK(at(island, island.fields.water, 1, 4) == 2);
 }
 
 TEST_CASE("level: a dam with a flat crest across a valley") {
