@@ -25,6 +25,8 @@ Json read_json(const std::filesystem::path& path) {
     return json ? json.value() : Json{};
 }
 
+constexpr const char* SHIPPED[] = {"dam_break", "piles", "canyon", "beach", "wadi"};
+
 /// All warnings of a level of 0.1 m cells and 0.009 s, one per line.
 std::string warnings(const std::string& rest, double dt = 0.009) {
     const std::string text = R"({"format_version": 1, "name": "w", "grid": {"nx": 40, "ny": 30, "dx": 0.1}, "dt": )" +
@@ -176,8 +178,8 @@ TEST_CASE("level warnings: a layer that changes nothing") {
     CHECK(warnings(R"("terrain": [{"shape": "plane", "height": 0}])").empty());
 }
 
-TEST_CASE("shipped levels: piles and canyon load without a warning, dam_break with the three its README explains") {
-    for (const char* name : {"piles", "canyon"}) {
+TEST_CASE("shipped levels load without a warning, dam_break with the three its README explains") {
+    for (const char* name : {"piles", "canyon", "beach", "wadi"}) {
         const auto level = load_level((samples() / name / "level.json").string(), {});
         REQUIRE_MESSAGE(level, message(level));
         for (const std::string& warning : level->warnings) CHECK_MESSAGE(false, name << ": " << warning);
@@ -200,7 +202,7 @@ TEST_CASE("shipped levels: other sizes load") {
     for (const auto& [nx, ny] : {std::pair{64, 64}, std::pair{97, 33}, std::pair{512, 512}}) {
         LevelOverrides overrides;
         overrides.size = {nx, ny};
-        for (const char* name : {"dam_break", "piles", "canyon"}) {
+        for (const char* name : SHIPPED) {
             const auto level = load_level((samples() / name / "level.json").string(), overrides);
             CHECK_MESSAGE(level, name << ": " << message(level));
         }
@@ -244,12 +246,56 @@ TEST_CASE("shipped levels: the canyon's dams close it, and its reaches lie one b
     CHECK(level.fields.water.empty());
 }
 
+TEST_CASE("shipped levels: the beach's lake is level over the sand, its castle dry above it, its wall in reach of the brushes") {
+    const auto loaded = load_level((samples() / "beach" / "level.json").string(), {});
+    REQUIRE_MESSAGE(loaded, message(loaded));
+    const Level& level = loaded.value();
+    CHECK(at(level, level.fields.terrain, 160, 20) + at(level, level.fields.water, 160, 20) ==
+          doctest::Approx(1.05).epsilon(1e-5));
+    CHECK(at(level, level.fields.sand, 160, 20) > 0.2);
+    const auto top = [&](int i, int j) { return at(level, level.fields.terrain, i, j) + at(level, level.fields.sand, i, j); };
+    CHECK(top(160, 160) - top(160, 220) > 0.5); // the keep over the beach behind it, which is higher ground
+    for (const ScriptedEdit& script : level.settings.edits) {
+        const double end = script.edit.x0 + script.move[0] * (script.until - script.time);
+        CHECK(script.edit.x0 >= 12);
+        CHECK(end <= 20);
+        CHECK(script.until < level.duration);
+    }
+    CHECK(level.settings.edits.size() == 8);
+}
+
+TEST_CASE("shipped levels: the wadi's floor falls to the east, dunes lie on it alone, the flood enters over the floor") {
+    const auto loaded = load_level((samples() / "wadi" / "level.json").string(), {});
+    REQUIRE_MESSAGE(loaded, message(loaded));
+    const Level& level = loaded.value();
+    const Grid& grid = level.settings.grid;
+    double before = 1e9;
+    for (int i = 40; i < grid.nx; i += 80) { // the lowest place of a column of cells is the floor
+        double lowest = 1e9;
+        for (int j = 0; j < grid.ny; ++j) {
+            lowest = std::min(lowest, at(level, level.fields.terrain, i, j));
+            if (at(level, level.fields.sand, i, j) > 1) CHECK(at(level, level.fields.terrain, i, j) < 14);
+        }
+        CHECK(lowest < before - 1);
+        before = lowest;
+    }
+    double deepest = 0;
+    for (const float sand : level.fields.sand) deepest = std::max(deepest, static_cast<double>(sand));
+    CHECK(deepest > 2);
+    CHECK(deepest < 4);
+    const Side& west = level.settings.sides[static_cast<std::size_t>(SideName::west)];
+    for (int j = 0; j < grid.ny; ++j) {
+        const double y = (j + 0.5) * grid.dx;
+        if (y > west.from && y < west.to) CHECK(at(level, level.fields.terrain, 0, j) < 11);
+    }
+}
+
 TEST_CASE("shipped levels: every key is in the schema, and the schema has every setting with its range and default") {
     const Json schema = read_json(samples() / "level.schema.json");
     REQUIRE(schema.is_object());
     std::set<std::string> names;
     collect_properties(schema, names);
-    for (const char* name : {"dam_break", "piles", "canyon"}) {
+    for (const char* name : SHIPPED) {
         std::set<std::string> keys;
         collect_keys(read_json(samples() / name / "level.json"), keys);
         CHECK(keys.size() > 10);
