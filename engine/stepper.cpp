@@ -66,6 +66,7 @@ Status Stepper::hold(Content content) {
             if (auto back = record(); !back) return back;
             return status;
         }
+        if (state_.log) state_.log(2, "step " + std::to_string(state_.steps) + ": effects " + effect_names(choice->mask));
     }
     state_.content = content;
     return ok_status();

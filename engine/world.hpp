@@ -19,6 +19,9 @@ class World {
     static Result<std::unique_ptr<World>> create(const Settings& settings, const InitialFields& fields,
                                                  std::unique_ptr<compute::Device> device, compute::GroupSize group = {});
 
+    /// Where the world tells what happens to it; WorldState::log.
+    void set_log(compute::Log log) { state_.log = std::move(log); }
+
     /// Submits water steps beside the clock of update(); returns before the device has finished them. A step that an update began
     /// in parts is finished first and counts as that update's.
     Status step(std::uint32_t count);

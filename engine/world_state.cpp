@@ -250,7 +250,10 @@ Status WorldState::append_stage(compute::ProgramBuilder& builder, const char* st
 }
 
 Status WorldState::note(Status status) {
-    if (status.code == Code::device_lost) lost_ = status;
+    if (status.code == Code::device_lost) {
+        if (lost_ && log) log(0, "step " + std::to_string(steps) + ": " + status.message);
+        lost_ = status;
+    }
     return status;
 }
 

@@ -68,6 +68,8 @@ class WorldState {
     /// Counts up whenever buffers or pipelines changed so that every program must be recorded anew.
     std::uint64_t recording() const { return recording_; }
 
+    /// Tells the host what happens to the world: other effects, a lost device. May be empty.
+    compute::Log log;
     /// Whole water steps done.
     std::uint64_t steps = 0;
     /// Quanta of sand and water at creation.

@@ -9,17 +9,24 @@ using namespace wadi::plugin;
 
 namespace {
 
-Result<std::unique_ptr<compute::Device>> open(const wadi_device_options* options) {
+// What a host's callback throws ends here: behind it are drivers, which no exception may pass.
+compute::Log to_log(const wadi_device_options* options) {
+    if (options == nullptr || options->log == nullptr) return {};
+    return [log = options->log, user = options->log_user](int level, const std::string& message) {
+        try {
+            log(user, level, message.c_str());
+        } catch (...) {
+        }
+    };
+}
+
+Result<std::unique_ptr<compute::Device>> open(const wadi_device_options* options, const compute::Log& log) {
     const auto defaults = wadi_default_device_options();
     if (options == nullptr) options = &defaults;
     compute::DeviceOptions o;
+    o.log = log;
     o.threads = options->threads;
     o.validate = options->validate != 0;
-    if (options->log != nullptr) {
-        o.log = [log = options->log, user = options->log_user](int level, const std::string& message) {
-            log(user, level, message.c_str());
-        };
-    }
     if (options->vulkan_host != nullptr) {
 #ifdef WADI_HAS_VULKAN
         auto host = to_host_device(options->vulkan_host);
@@ -38,6 +45,7 @@ LevelOverrides to_overrides(const wadi_level_overrides* o) {
     if (o->nx != 0 || o->ny != 0) overrides.size = {o->nx, o->ny};
     if (o->dt != 0) overrides.dt = o->dt;
     if (o->method != nullptr) overrides.method = o->method;
+    if (o->variant != nullptr) overrides.variant = o->variant;
     return overrides;
 }
 
@@ -61,10 +69,18 @@ FileReader host_files(wadi_read_file_callback read_file, void* user) {
 
 wadi_result host(Result<Level> level, const wadi_device_options* options, wadi_world_id* id) {
     if (!level) return report(level.status());
-    auto device = open(options);
+    const auto log = to_log(options);
+    auto device = open(options, log);
     if (!device) return report(device.status());
     auto world = World::create(level->settings, level->fields, std::move(*device));
     if (!world) return report(world.status());
+    (*world)->set_log(log);
+    if (log) {
+        for (const auto& warning : level->warnings) log(1, level->name + ": " + warning);
+        const auto& grid = level->settings.grid;
+        log(2, level->name + ": " + std::to_string(grid.nx) + " x " + std::to_string(grid.ny) + " cells on " +
+                   (*world)->device().capabilities().name + ", effects " + effect_names((*world)->effects().mask));
+    }
     *id = plugin::worlds().add({std::move(*world), level->name, level->duration, level->warnings, {}});
     return report(ok_status());
 }

@@ -58,6 +58,9 @@ struct NativeBuffer {
     std::uint64_t bytes = 0;
 };
 
+/// Level 0 = error, 1 = warning, 2 = information. Drivers call it from any thread.
+using Log = std::function<void(int level, const std::string& message)>;
+
 struct DeviceOptions {
     int threads = 0;                // CPU backend: worker threads, 0 = all cores
     std::string instruction_set;    // CPU backend: "" = best, "avx2", "base"
@@ -66,8 +69,7 @@ struct DeviceOptions {
     std::optional<HostDevice> host; // Vulkan: run on the host's device; CUDA: beside it
     std::shared_ptr<Lender> lender; // CUDA: lends shared buffers and semaphores; filled by open_device()
     bool no_replay = false;         // record anew for each submit (GPU backends; the CPU has nothing recorded)
-    /// Messages from drivers and validation layers; level 0 = error, 1 = warning, 2 = information.
-    std::function<void(int level, const std::string& message)> log;
+    Log log;                        // of drivers and validation layers
 };
 
 /// Reads WADI_VALIDATE, WADI_FULL_BARRIERS and WADI_NO_REPLAY into options that the caller left off.

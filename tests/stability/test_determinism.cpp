@@ -187,11 +187,17 @@ TEST_CASE("a lost device is reported by every call, and only by worlds on it") {
         auto world = make_world(mixed_scene(16, 16), {backend}), other = make_world(mixed_scene(16, 16), {backend});
         step(*world, 3);
         const auto saved = save(*world);
+        std::vector<std::string> errors;
+        world->set_log([&](int level, const std::string& message) {
+            if (level == 0) errors.push_back(message);
+        });
         world->device().inject_device_lost();
         CHECK(world->step(1).code == Code::device_lost);
         CHECK(world->stats().status().code == Code::device_lost);
         std::vector<float> cells(256);
         CHECK(world->read("water_height", cells).code == Code::device_lost);
+        REQUIRE(errors.size() == 1); // told once
+        CHECK(errors[0].starts_with("step 3: "));
         // The last snapshot survives the device.
         REQUIRE(other->load(saved));
         step(*other, 1);

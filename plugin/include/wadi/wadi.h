@@ -54,7 +54,9 @@ typedef struct wadi_world_id {
     uint32_t generation;
 } wadi_world_id;
 
-/** Gets messages of drivers and validation layers. level: 0 error, 1 warning, 2 information. Called during a call of the library, or from a driver's thread; it must not call the library. */
+/** Gets what the library has to tell: advice on a level (warning), each world made and each change of its effects (information), a
+ *  lost device (error), messages of drivers and validation layers. level: 0 error, 1 warning, 2 information. Called during a call of
+ *  the library, or from a driver's thread; it must not call the library. */
 typedef void (*wadi_log_callback)(void* user, int level, const char* message);
 
 /** The cells (i, j) with i0 <= i < i0 + nx and j0 <= j < j0 + ny. */
@@ -94,6 +96,7 @@ typedef struct wadi_level_overrides {
     int32_t nx, ny;            /* keeps the x extent and square cells, stretches maps in y, scales dt with dx */
     double dt;                 /* [s] */
     const char* method;        /* "robust" */
+    const char* variant;       /* one of the level's variants; NULL = the level as it is. Not for terrain maps */
 } wadi_level_overrides;
 WADI_API wadi_level_overrides wadi_default_level_overrides(void);
 

@@ -1,0 +1,66 @@
+// What the log callback hears, and a callback that throws.
+#include "tests/plugin/abi_worlds.hpp"
+#include <doctest/doctest.h>
+#include <stdexcept>
+
+using namespace wadi::test;
+
+namespace {
+
+struct Heard {
+    std::vector<std::pair<int, std::string>> messages;
+    bool throws = false;
+    bool has(int level, const std::string& text) const {
+        for (const auto& [l, message] : messages) {
+            if (l == level && message.find(text) != std::string::npos) return true;
+        }
+        return false;
+    }
+};
+
+void hear(void* user, int level, const char* message) {
+    auto& heard = *static_cast<Heard*>(user);
+    heard.messages.emplace_back(level, message);
+    if (heard.throws) throw std::runtime_error("from the host's callback");
+}
+
+// Water 40 m deep at a step far too long for it: the level gets advice.
+AbiWorld deep_pond(const std::string& backend, Heard& heard) {
+    const char* settings = R"({ "format_version": 1, "name": "deep pond", "grid": { "nx": 16, "ny": 8, "dx": 0.5 }, "dt": 0.1,
+        "water": [ { "shape": "plane", "height": 40 } ], "method": { "largest_height": 64 } })";
+    auto options = wadi_default_device_options();
+    options.backend = backend.c_str();
+    options.log = hear;
+    options.log_user = &heard;
+    wadi_world_id world{};
+    REQUIRE(wadi_create_world_from_level_text(settings, nullptr, nullptr, nullptr, &options, &world) == WADI_OK);
+    return AbiWorld(world);
+}
+
+} // namespace
+
+TEST_CASE("the log callback hears advice, the world and a promotion; what it throws is swallowed") {
+    for (const auto& backend : abi_backends()) {
+        for (const bool throws : {false, true}) {
+            CAPTURE(backend);
+            Heard heard;
+            heard.throws = throws;
+            const auto world = deep_pond(backend, heard);
+            CHECK(heard.has(1, "deep pond: "));
+            CHECK(heard.has(2, "16 x 8 cells on "));
+            CHECK(heard.has(2, "effects water"));
+            CHECK_FALSE(heard.has(2, "sand"));
+            const auto before = heard.messages.size();
+            step(world, 3);
+            CHECK(heard.messages.size() == before); // nothing to tell per step
+            auto edit = wadi_default_edit();
+            edit.layer = WADI_LAYER_SAND;
+            edit.amount = 0.5;
+            edit.x0 = 4;
+            edit.y0 = 2;
+            REQUIRE(wadi_world_edit(world.id, &edit, 1) == WADI_OK);
+            step(world, 1);
+            CHECK(heard.has(2, "step 3: effects water, sand"));
+        }
+    }
+}
