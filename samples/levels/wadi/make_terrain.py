@@ -151,7 +151,7 @@ def make_sand(line, terrain):
         across = (y - centre(at)) / FLOOR[1]
         along = (at + 5 * noise(x, y, 30, 2, 21) - 6 * across * across) / SPACING
         number, phase = math.floor(along), along % 1
-        profile = phase / 0.75 if phase < 0.75 else (1 - phase) / 0.25
+        profile = phase / 0.65 if phase < 0.65 else (1 - phase) / 0.35
         height = (2.5 + 0.6 * noise(x, y, 50, 2, 33)) * smooth((profile - 0.25) / 0.75)
         if number % 3:
             height *= smooth(((1 if number % 3 == 1 else -1) * across + 0.75) / 0.7)
