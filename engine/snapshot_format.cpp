@@ -61,6 +61,8 @@ std::uint64_t level_digest(const Settings& s) {
                                w.gravity_cap_least,
                                w.sand_gravity_cap,
                                w.elastic_cap,
+                               w.shock_viscosity,
+                               w.bulk_viscosity,
                                w.rest_surface,
                                w.rest_velocity,
                                w.passive_pressure,

@@ -49,6 +49,8 @@ struct Method {
     double gravity_cap_least = 0.15;
     double sand_gravity_cap = 0.25; // NUMERICS 2.7; 0 = off
     double elastic_cap = 0.2;       // lambda + 2 mu <= elastic_cap rho_s dx^2/dts^2; 0 = off
+    double shock_viscosity = 0;     // c1 of NUMERICS 2.3, damps the ripples behind a bore; 0 = off
+    double bulk_viscosity = 0;      // beta of NUMERICS 2.7, damps elastic waves; 0 = off
     double rest_surface = 1e-5;     // eta_rest [m]; 0 with rest_velocity 0 = off
     double rest_velocity = 1e-3;    // v_rest [m/s]
     double passive_pressure = 1;    // K of the compression cap, NUMERICS 2.7; 0 = off
