@@ -49,6 +49,8 @@ std::uint64_t level_digest(const Settings& s) {
                                m.exchange_rate,
                                m.diffusion_rate,
                                m.bed_friction,
+                               m.bed_shear,
+                               m.grain_size,
                                double(w.substeps),
                                double(w.outflow_limiter),
                                w.quantum,

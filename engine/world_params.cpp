@@ -76,6 +76,13 @@ WorldParams derive_params(const Settings& s) {
     p.rest_velocity = rest ? f(w.rest_velocity) : -1.0F;
     p.diffusion_number = f(std::min(m.diffusion_rate, 0.2 * dx * dx / dt) * dt / (dx * dx));
     p.bed_friction_dt = f(dt * m.bed_friction);
+    const double submerged = std::max(m.sand_density / m.water_density - 1, 0.05) * s.gravity; // (s - 1) g
+    p.bed_shear = f(m.bed_shear);
+    p.bed_shear_dt = f(dt * m.bed_shear);
+    p.bed_shear_threshold = f(0.047 * submerged * m.grain_size);
+    p.bed_load = submerged > 0 ? f(8 / submerged) : 0.0F;
+    p.bed_slope_number = f(2 / dx);
+    p.bed_slope_cap = f(0.2 * dx / dt);
     p.limiter = w.outflow_limiter ? 1.0F : 0.0F;
     p.inv_substeps = f(1.0 / w.substeps);
 

@@ -76,6 +76,12 @@ struct WorldParams {
     float rest_velocity;        // v_rest [m/s]; negative = rule off
     float diffusion_number;     // min(c_d, 0.2 dx^2/dt) dt/dx^2
     float bed_friction_dt;      // dt c of the Manning-like friction, c dimensionless [s]
+    float bed_shear;            // c of the shear stress rho_w c |u|^2 of pure water on sand
+    float bed_shear_dt;         // dt c: what the water loses by it [s]
+    float bed_shear_threshold;  // stress over rho_w below which sand stays [m2/s2]
+    float bed_load;             // 8/((rho_s/rho_w - 1) g) [s2/m]
+    float bed_slope_number;     // 2/dx: how the bed's slope turns bed load downhill [1/m]
+    float bed_slope_cap;        // keeps that stable: 0.2 dx/dt [m/s]
     float limiter;              // 1 = outflow limiter on, 0 = off
     float inv_substeps;         // 1/T
 

@@ -27,6 +27,8 @@ inline constexpr SettingField<Material, double> MATERIAL_FIELDS[] = {
     {"exchange_rate", &Material::exchange_rate, 0, 1e15},
     {"diffusion_rate", &Material::diffusion_rate, 0, 1e6},
     {"bed_friction", &Material::bed_friction, 0, 10},
+    {"bed_shear", &Material::bed_shear, 0, 10},
+    {"grain_size", &Material::grain_size, 1e-6, 1},
 };
 
 inline constexpr SettingField<Method, double> METHOD_FIELDS[] = {

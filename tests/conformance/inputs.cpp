@@ -268,6 +268,7 @@ Result<Scene> make_scene(const std::string& grid, const std::string& name, const
     s.material.cohesion_capillary = 1e4;
     s.material.exchange_rate = 3e4;
     s.material.bed_friction = 0.01;
+    s.material.bed_shear = 0.05;
     if (!set_method(s.method, method)) return error(Code::bad_argument, "method=" + method + ": no such choice");
     if (name == "deep") {
         make_deep(scene);

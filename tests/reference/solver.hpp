@@ -23,6 +23,8 @@ template <class Real> struct Constants {
     Real exchange{};                  // c_e [kg/(m3 s)], 0 without the drag effect
     Real diffusion{};                 // min(c_d, 0.2 dx2/dt) [m2/s]
     Real bed_friction{};              // Manning-like, 0 without its effect
+    Real bed_shear{};                 // c, 0 without its effect
+    Real bed_threshold{}, bed_rate{}; // [m2/s2], [s2/m]
     Real lambda{}, shear{};           // Lame constants [Pa], capped (2.7)
     Real eps{};                       // dry threshold [m]
     Real quantum{}, largest_height{}; // [m]; quantum 0 = plain arithmetic
@@ -64,6 +66,7 @@ template <class Real> class Solver {
     void integrate_water_height();               // 2.2 -> water, pure_predicted, mixed_predicted, pure, mixed
     void damp_shocks(const Faces<Real>& before); // 2.3
     void integrate_water_velocity();             // 2.3, 2.4 -> pure_velocity, mixed_velocity, mixed_push
+    void compute_bed_load();                     // 2.11 -> bed_load
     void compute_saturation();                   // 2.7 -> saturation
     void update_open_sand_sides();               // 2.9, sand: in every substep
     void limit_sand_outflow();                   // 2.2 -> sand_scale
@@ -95,6 +98,7 @@ template <class Real> class Solver {
     Field<Real> pure_scale, mixed_scale, sand_scale;
     Faces<Real> diffusion_flux; // q_D [m2/s]
     Faces<Real> pure_flux, mixed_flux, sand_flux;
+    Faces<Real> bed_load;                  // [m2/s]
     Faces<Real> mixed_push;                // d_f, pressure's change of um per sand substep [m/s]
     Field<Real> saturation;                // phibar
     Field<Real> sand_before, mixed_before; // hs^n and min(W, hs^n)

@@ -83,6 +83,8 @@ template <class Real> void Solver<Real>::water_face(const Axis& ax, int a, int b
     if (blocked(pure[L], pure[R], eta_L, eta_R, P.eps)) uw = Real(0);
     const Real depth = mean(pure[L], pure[R]);
     if (has(EFFECT_BED_FRICTION) && depth > Real(0)) uw /= Real(1) + P.dt * P.bed_friction * std::abs(uw) / depth;
+    if (has(EFFECT_BED_SHEAR) && depth > Real(0) && mean(sand[L], sand[R]) > P.eps)
+        uw /= Real(1) + P.dt * P.bed_shear * std::abs(uw) / depth;
     uw = clamped(uw, P.clamp);
 
     if (!has(EFFECT_MIXTURE)) return;
@@ -120,6 +122,28 @@ template <class Real> void Solver<Real>::integrate_water_velocity() {
         exchange_split(mixed_predicted, pure_predicted, mixed);
     }
     for_inner_faces([&](const Axis& ax, int a, int b) { water_face(ax, a, b); });
+}
+
+/// 2.11: sand that pure water drags along its bed.
+template <class Real> void Solver<Real>::compute_bed_load() {
+    for_inner_faces([&](const Axis& ax, int a, int b) {
+        const std::size_t L = ax.cell(a - 1, b);
+        const std::size_t R = ax.cell(a, b);
+        Real& q = bed_load.along(ax)[ax.face(a, b)];
+        q = Real(0);
+        if (water[L] - sand[L] <= P.eps || water[R] - sand[R] <= P.eps) return;
+        const Real u = pure_velocity.along(ax)[ax.face(a, b)];
+        const Field<Real>& cross = pure_velocity.across(ax);
+        const Real v =
+            ((cross[ax.cross(a - 1, b)] + cross[ax.cross(a - 1, b + 1)]) + (cross[ax.cross(a, b)] + cross[ax.cross(a, b + 1)])) /
+            Real(4);
+        const Real speed = std::sqrt(u * u + v * v);
+        const Real excess = std::max(P.bed_shear * speed * speed - P.bed_threshold, Real(0));
+        const Real moved = P.bed_rate * std::pow(excess, Real(1.5));
+        const Real rise = (terrain[R] + sand[R]) - (terrain[L] + sand[L]);
+        if (speed > Real(0)) q = moved * u / speed;
+        q -= std::min(Real(2) / P.dx * moved, Real(0.2) / P.k) * rise;
+    });
 }
 
 /// 2.7: low-passed saturation. Offsets are summed in classes that mirroring and transposing leave unchanged.
