@@ -4,6 +4,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
+#include <glm/vec2.hpp>
 #include <stdexcept>
 
 namespace viewer {
@@ -19,9 +20,32 @@ struct Preset {
 };
 // Yaw 0 looks north.
 const Preset presets[] = {
-    {"overview", -30, -36, 1.0f, 0.5f, 0.47f}, {"opposite", 150, -36, 1.0f, 0.5f, 0.53f}, {"top", 0, -89, 1.0f, 0.5f, 0.5f},
-    {"close", -35, -30, 0.45f, 0.5f, 0.5f},    {"low", -25, -13, 0.5f, 0.5f, 0.45f},
+    {"overview", -30, -38, 1.0f, 0.5f, 0.5f}, {"opposite", 150, -38, 1.0f, 0.5f, 0.5f}, {"top", 0, -89, 1.0f, 0.5f, 0.5f},
+    {"close", -48, -30, 0.5f, 0.5f, 0.5f},    {"low", -30, -14, 0.6f, 0.5f, 0.5f},
 };
+
+/// Moves the eye until the share of the block round the target fills the picture.
+void fit(Camera& camera, const Block& block, float share, float aspect) {
+    const float tan_up = std::tan(0.5f * camera.field), tan_right = tan_up * aspect;
+    const glm::vec3 middle = share == 1.0f ? 0.5f * (block.low + block.high) : camera.target;
+    camera.target = middle;
+    camera.distance = 2 * glm::length(block.high - block.low);
+    for (int turn = 0; turn < 12; ++turn) {
+        glm::vec2 low{1e9f}, high{-1e9f};
+        for (int corner = 0; corner < 8; ++corner) {
+            const glm::vec3 half = 0.5f * share * (block.high - block.low);
+            const glm::vec3 place = middle + half * glm::vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1) - camera.eye();
+            const float depth = std::max(glm::dot(place, camera.forward()), 1e-3f);
+            const glm::vec2 seen{glm::dot(place, camera.right()) / (depth * tan_right), glm::dot(place, camera.up()) / (depth * tan_up)};
+            low = glm::min(low, seen);
+            high = glm::max(high, seen);
+        }
+        const glm::vec2 off = 0.5f * (low + high);
+        camera.target += (camera.right() * (off.x * tan_right) + camera.up() * (off.y * tan_up)) * camera.distance;
+        const glm::vec2 half_size = 0.5f * (high - low);
+        camera.distance *= std::clamp(std::max(half_size.x, half_size.y) / 0.93f, 0.6f, 1.6f);
+    }
+}
 
 } // namespace
 
@@ -68,19 +92,7 @@ Camera camera_preset(const std::string& name, const Block& block, float aspect) 
         camera.yaw = glm::radians(preset.yaw_degrees);
         camera.pitch = glm::radians(preset.pitch_degrees);
         camera.target = glm::mix(block.low, block.high, glm::vec3(preset.east, preset.north, 0.35f));
-        // The least distance from which all corners of the wanted share are inside the picture.
-        const glm::vec3 middle = 0.5f * (block.low + block.high);
-        const float tan_up = std::tan(0.5f * camera.field), tan_right = tan_up * aspect;
-        float distance = 0;
-        for (int corner = 0; corner < 8; ++corner) {
-            const glm::vec3 place{corner & 1 ? block.high.x : block.low.x, corner & 2 ? block.high.y : block.low.y,
-                                  corner & 4 ? block.high.z : block.low.z};
-            const glm::vec3 from_target = preset.share * (place - middle) + (preset.share == 1.0f ? middle - camera.target : glm::vec3(0));
-            const float across = std::abs(glm::dot(from_target, camera.right())) / tan_right;
-            const float upright = std::abs(glm::dot(from_target, camera.up())) / tan_up;
-            distance = std::max(distance, std::max(across, upright) - glm::dot(from_target, camera.forward()));
-        }
-        camera.distance = 1.04f * distance;
+        fit(camera, block, preset.share, aspect);
         return camera;
     }
     std::string message = "camera: \"" + name + "\" is none of";

@@ -241,13 +241,13 @@ void Buffer::swap(Buffer& other) noexcept {
     std::swap(memory_, other.memory_);
 }
 
-Image::Image(const Gpu& gpu, uint32_t across, uint32_t down, VkFormat format, VkImageUsageFlags usage, uint32_t levels)
+Image::Image(const Gpu& gpu, uint32_t across, uint32_t down, VkFormat format, VkImageUsageFlags usage)
     : width(across), height(down), device_(gpu.device) {
     VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
     info.imageType = VK_IMAGE_TYPE_2D;
     info.format = format;
     info.extent = {across, down, 1};
-    info.mipLevels = levels;
+    info.mipLevels = 1;
     info.arrayLayers = 1;
     info.samples = VK_SAMPLE_COUNT_1_BIT;
     info.usage = usage;
@@ -259,24 +259,18 @@ Image::Image(const Gpu& gpu, uint32_t across, uint32_t down, VkFormat format, Vk
     allocate.memoryTypeIndex = gpu.memory_type(needs.memoryTypeBits, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
     check(vkAllocateMemory(device_, &allocate, nullptr, &memory_), "vkAllocateMemory");
     check(vkBindImageMemory(device_, handle, memory_, 0), "vkBindImageMemory");
-    const auto make_view = [&](uint32_t first, uint32_t number) {
-        VkImageViewCreateInfo view_info{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
-        view_info.image = handle;
-        view_info.viewType = VK_IMAGE_VIEW_TYPE_2D;
-        view_info.format = format;
-        view_info.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, first, number, 0, 1};
-        VkImageView made;
-        check(vkCreateImageView(device_, &view_info, nullptr, &made), "vkCreateImageView");
-        return made;
-    };
-    view = make_view(0, levels);
-    for (uint32_t n = 0; n < levels; ++n) level_views.push_back(make_view(n, 1));
+    VkImageViewCreateInfo view_info{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
+    view_info.image = handle;
+    view_info.viewType = VK_IMAGE_VIEW_TYPE_2D;
+    view_info.format = format;
+    view_info.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    check(vkCreateImageView(device_, &view_info, nullptr, &view), "vkCreateImageView");
     gpu.run_once([&](VkCommandBuffer commands) {
         VkImageMemoryBarrier barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER};
         barrier.newLayout = VK_IMAGE_LAYOUT_GENERAL;
         barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
         barrier.image = handle;
-        barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, levels, 0, 1};
+        barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
         vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, 0, 0, nullptr, 0, nullptr, 1,
                              &barrier);
     });
@@ -284,7 +278,6 @@ Image::Image(const Gpu& gpu, uint32_t across, uint32_t down, VkFormat format, Vk
 
 Image::~Image() {
     if (device_ == VK_NULL_HANDLE) return;
-    for (VkImageView level : level_views) vkDestroyImageView(device_, level, nullptr);
     vkDestroyImageView(device_, view, nullptr);
     vkDestroyImage(device_, handle, nullptr);
     vkFreeMemory(device_, memory_, nullptr);
@@ -293,7 +286,6 @@ Image::~Image() {
 void Image::swap(Image& other) noexcept {
     std::swap(handle, other.handle);
     std::swap(view, other.view);
-    std::swap(level_views, other.level_views);
     std::swap(width, other.width);
     std::swap(height, other.height);
     std::swap(device_, other.device_);

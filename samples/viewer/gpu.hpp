@@ -82,7 +82,7 @@ class Buffer {
 class Image {
   public:
     Image() = default;
-    Image(const Gpu& gpu, uint32_t width, uint32_t height, VkFormat format, VkImageUsageFlags usage, uint32_t levels = 1);
+    Image(const Gpu& gpu, uint32_t width, uint32_t height, VkFormat format, VkImageUsageFlags usage);
     Image(Image&& other) noexcept { swap(other); }
     Image& operator=(Image&& other) noexcept {
         swap(other);
@@ -90,8 +90,7 @@ class Image {
     }
     ~Image();
     VkImage handle = VK_NULL_HANDLE;
-    VkImageView view = VK_NULL_HANDLE;     // all levels
-    std::vector<VkImageView> level_views;  // one each
+    VkImageView view = VK_NULL_HANDLE;
     uint32_t width = 0, height = 0;
 
   private:

@@ -22,9 +22,9 @@ float halton(int index, int base) {
 } // namespace
 
 const std::vector<Quality>& quality_presets() {
-    static const std::vector<Quality> presets = {{"low", 1, 96, 32, 32, 6, true, true},
-                                                 {"medium", 2, 160, 64, 64, 8, true, true},
-                                                 {"high", 8, 320, 128, 128, 16, true, false}};
+    static const std::vector<Quality> presets = {{"low", 1, 192, 32, 32, 6, true, true},
+                                                 {"medium", 2, 256, 64, 64, 8, true, true},
+                                                 {"high", 8, 512, 128, 128, 16, true, false}};
     return presets;
 }
 
@@ -77,7 +77,7 @@ FrameParams frame_params(const Picture& picture, const Grid& grid, int width, in
     p.sunlight = glm::vec4(glm::mix(glm::vec3(2.60f, 2.35f, 2.00f), glm::vec3(2.6f, 1.6f, 0.85f), low_sun), look.exposure);
     p.zenith = glm::vec4(0.20f, 0.36f, 0.72f, look.ambient);
     p.horizon = glm::vec4(0.72f, 0.80f, 0.90f, picture.time);
-    p.plinth = glm::vec4(0.42f, 0.40f, 0.38f, grid.block.low.z);
+    p.plinth = glm::vec4(0.30f, 0.295f, 0.29f, grid.block.low.z);
     p.domain = glm::vec4(grid.dx, extent.x, extent.y, 0);
     const bool one = quality.samples == 1;
     p.lens = glm::vec4(one ? 0.0f : halton(sample + 1, 2) - 0.5f, one ? 0.0f : halton(sample + 1, 3) - 0.5f,

@@ -24,19 +24,19 @@ const Quality& quality_preset(const std::string& name);
 
 /// Lengths in metres; colours linear.
 struct Look {
-    float sun_azimuth = 262;    // direction to the sun, from north to east [degrees]
-    float sun_elevation = 36;   // [degrees]
+    float sun_azimuth = 250;    // direction to the sun, from north to east [degrees]
+    float sun_elevation = 38;   // [degrees]
     float sun_softness = 0.05f; // half width of the penumbra, a difference of slopes
-    float exposure = 0.85f;
-    float ambient = 1.0f;
+    float exposure = 0.72f;
+    float ambient = 1.25f;
     float clarity = 2.5f;       // depth at which a third of green light is left [m]
     float ripples = 1.0f;
     float glitter = 1.2f;
     float rim = 0.5f;
-    glm::vec3 sand_dry{0.66f, 0.47f, 0.25f};
+    glm::vec3 sand_dry{0.56f, 0.355f, 0.165f};
     glm::vec3 sand_wet{0.155f, 0.085f, 0.040f};
-    glm::vec3 rock{0.30f, 0.275f, 0.25f};
-    glm::vec3 water_glow{0.012f, 0.10f, 0.125f};
+    glm::vec3 rock{0.215f, 0.185f, 0.155f};
+    glm::vec3 water_glow{0.010f, 0.085f, 0.11f};
 };
 
 /// A view of a quantity instead of materials.

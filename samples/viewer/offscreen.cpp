@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 
 namespace viewer {
 namespace {
@@ -45,7 +46,7 @@ int run_offscreen(const Options& options) {
         gpu.wait_idle();
 
         std::filesystem::create_directories(options.out);
-        double simulated = 0, drawn = 0;
+        double simulated = 0, drawn = 0, processor = 0;
         Milliseconds device;
         const auto every = static_cast<uint64_t>(std::llround(options.every * 1e9));
         for (uint64_t n = 0; n < options.frames; ++n) {
@@ -57,20 +58,23 @@ int run_offscreen(const Options& options) {
 
             picture.time = static_cast<float>(simulation.frame.time);
             const auto draw_start = std::chrono::steady_clock::now();
+            const std::clock_t processor_start = std::clock();
             renderer.draw(picture, simulation.grid, sources, simulation.foreign_memory(), simulation.next_submission(), nullptr);
             renderer.wait();
             const double draw_time = milliseconds_since(draw_start);
+            const double processor_time = 1e3 * static_cast<double>(std::clock() - processor_start) / CLOCKS_PER_SEC;
             if (n > 0 || options.frames == 1) { // the first picture also allocates
                 simulated += update_time;
                 drawn += draw_time;
+                processor += processor_time;
                 device = device + renderer.times();
             }
             write_png(options.out / numbered("frame", n), renderer.read_picture(), options.width, options.height);
         }
         const double counted = static_cast<double>(options.frames > 1 ? options.frames - 1 : 1);
         std::printf("time       %.3f s simulated\n", simulation.frame.time);
-        std::printf("frame      %.2f ms (wall), simulation %.2f ms (wall, %.3g s of it each)\n", drawn / counted, simulated / counted,
-                    options.every);
+        std::printf("frame      %.2f ms (wall), %.2f ms of processor time; simulation %.2f ms (wall, %.3g s of it each)\n", drawn / counted,
+                    processor / counted, simulated / counted, options.every);
         std::printf("passes     grid %.2f, see %.2f, shade %.2f, finish %.2f ms on the device\n", device.grid / counted,
                     device.see / counted, device.shade / counted, device.finish / counted);
         std::printf("pictures   %llu in %s\n", static_cast<unsigned long long>(options.frames), options.out.string().c_str());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <stdexcept>
 
 namespace viewer {
 namespace {
@@ -12,7 +13,7 @@ constexpr uint32_t GROUP = 8; // local size of the passes
 
 // Bindings of shaders/frame.glsl and of the passes.
 constexpr std::array<uint32_t, 7> sampled_bindings = {1, 2, 3, 4, 5, 6, 25};
-constexpr uint32_t first_source = 7, first_storage = 14, storage_count = 11;
+constexpr uint32_t first_source = 7, first_storage = 14, storage_count = 11, summit_storage = 26;
 
 template <std::size_t N>
 VkPipeline make_pipeline(const Gpu& gpu, VkPipelineLayout layout, const uint32_t (&words)[N]) {
@@ -85,8 +86,7 @@ Renderer::~Renderer() {
     for (VkPipeline pipeline : {prepare_, slopes_pass_, reduce_, summit_pass_, light_pass_, see_, shade_, finish_})
         vkDestroyPipeline(gpu_.device, pipeline, nullptr);
     vkDestroyPipelineLayout(gpu_.device, pipeline_layout_, nullptr);
-    vkDestroyDescriptorSetLayout(gpu_.device, frame_layout_, nullptr);
-    vkDestroyDescriptorSetLayout(gpu_.device, level_layout_, nullptr);
+    vkDestroyDescriptorSetLayout(gpu_.device, set_layout_, nullptr);
     vkDestroySampler(gpu_.device, sampler_, nullptr);
 }
 
@@ -99,20 +99,17 @@ void Renderer::make_layouts() {
     for (uint32_t binding : sampled_bindings) add(binding, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER);
     for (uint32_t n = 0; n < Sources{}.size(); ++n) add(first_source + n, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
     for (uint32_t n = 0; n < storage_count; ++n) add(first_storage + n, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
+    add(summit_storage, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
     VkDescriptorSetLayoutCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
     info.bindingCount = static_cast<uint32_t>(bindings.size());
     info.pBindings = bindings.data();
-    check(vkCreateDescriptorSetLayout(gpu_.device, &info, nullptr, &frame_layout_), "vkCreateDescriptorSetLayout");
-    bindings.clear();
-    add(0, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
-    add(1, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
-    info.bindingCount = 2;
-    info.pBindings = bindings.data();
-    check(vkCreateDescriptorSetLayout(gpu_.device, &info, nullptr, &level_layout_), "vkCreateDescriptorSetLayout");
-    const std::array<VkDescriptorSetLayout, 2> sets = {frame_layout_, level_layout_};
+    check(vkCreateDescriptorSetLayout(gpu_.device, &info, nullptr, &set_layout_), "vkCreateDescriptorSetLayout");
+    const VkPushConstantRange level{VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(uint32_t)};
     VkPipelineLayoutCreateInfo layout{VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO};
-    layout.setLayoutCount = 2;
-    layout.pSetLayouts = sets.data();
+    layout.setLayoutCount = 1;
+    layout.pSetLayouts = &set_layout_;
+    layout.pushConstantRangeCount = 1;
+    layout.pPushConstantRanges = &level;
     check(vkCreatePipelineLayout(gpu_.device, &layout, nullptr, &pipeline_layout_), "vkCreatePipelineLayout");
 }
 
@@ -123,7 +120,7 @@ void Renderer::resize(uint32_t width, uint32_t height) {
     colour_ = Image(gpu_, width, height, VK_FORMAT_R16G16B16A16_SFLOAT, VK_IMAGE_USAGE_STORAGE_BIT);
     picture_ = Image(gpu_, width, height, VK_FORMAT_R8G8B8A8_UNORM,
                      VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | usage_);
-    if (nx_ > 0) make_descriptor_sets();
+    if (nx_ > 0) make_descriptor_set();
 }
 
 void Renderer::make_grid_images(const Grid& grid) {
@@ -139,75 +136,71 @@ void Renderer::make_grid_images(const Grid& grid) {
     // Levels are halved without remainder: the base is padded, the coarsest level has a few texels.
     levels_ = 1;
     while ((std::max(across, down) + 1) >> levels_ >= 8) ++levels_;
-    const uint32_t block = 1u << (levels_ - 1);
-    const auto padded = [block](uint32_t patches) { return (patches + block - 1) / block * block; };
-    pyramid_ = Image(gpu_, padded(across + 1), padded(down + 1), VK_FORMAT_R32_SFLOAT, usage, levels_);
+    const uint32_t block = 1u << levels_;
+    base_width_ = (across + block) / block * block;
+    base_height_ = (down + block) / block * block;
+    VkPhysicalDeviceProperties properties;
+    vkGetPhysicalDeviceProperties(gpu_.physical, &properties);
+    const uint32_t most = properties.limits.maxImageDimension2D;
+    if (base_width_ > most || base_height_ + base_height_ / 2 > most)
+        throw std::runtime_error("grid: " + std::to_string(nx_) + " x " + std::to_string(ny_) + " cells need pictures larger than the " +
+                                 std::to_string(most) + " pixels that " + gpu_.name + " allows");
+    pyramid_ = Image(gpu_, base_width_, base_height_ + base_height_ / 2, VK_FORMAT_R32_SFLOAT, usage);
     summit_ = Image(gpu_, 1, 1, VK_FORMAT_R32_SFLOAT, usage);
-    make_descriptor_sets();
+    make_descriptor_set();
 }
 
-void Renderer::make_descriptor_sets() {
+void Renderer::make_descriptor_set() {
     vkDestroyDescriptorPool(gpu_.device, pool_, nullptr);
-    const uint32_t sets = 1 + levels_;
     const std::array<VkDescriptorPoolSize, 4> sizes = {
         VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, 1},
         VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, static_cast<uint32_t>(sampled_bindings.size())},
         VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, static_cast<uint32_t>(Sources{}.size())},
-        VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, storage_count + 2 * levels_}};
+        VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, storage_count + 1}};
     VkDescriptorPoolCreateInfo pool{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
-    pool.maxSets = sets;
+    pool.maxSets = 1;
     pool.poolSizeCount = static_cast<uint32_t>(sizes.size());
     pool.pPoolSizes = sizes.data();
     check(vkCreateDescriptorPool(gpu_.device, &pool, nullptr, &pool_), "vkCreateDescriptorPool");
-    const auto allocate = [&](VkDescriptorSetLayout layout) {
-        VkDescriptorSetAllocateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
-        info.descriptorPool = pool_;
-        info.descriptorSetCount = 1;
-        info.pSetLayouts = &layout;
-        VkDescriptorSet set;
-        check(vkAllocateDescriptorSets(gpu_.device, &info, &set), "vkAllocateDescriptorSets");
-        return set;
-    };
-    const auto write_image = [&](VkDescriptorSet set, uint32_t binding, VkDescriptorType type, VkImageView view) {
+    VkDescriptorSetAllocateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO};
+    info.descriptorPool = pool_;
+    info.descriptorSetCount = 1;
+    info.pSetLayouts = &set_layout_;
+    check(vkAllocateDescriptorSets(gpu_.device, &info, &set_), "vkAllocateDescriptorSets");
+    const auto write_image = [&](uint32_t binding, VkDescriptorType type, VkImageView view) {
         const VkDescriptorImageInfo image{sampler_, view, VK_IMAGE_LAYOUT_GENERAL};
         VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
-        write.dstSet = set;
+        write.dstSet = set_;
         write.dstBinding = binding;
         write.descriptorCount = 1;
         write.descriptorType = type;
         write.pImageInfo = &image;
         vkUpdateDescriptorSets(gpu_.device, 1, &write, 0, nullptr);
     };
-    frame_set_ = allocate(frame_layout_);
     const std::array<VkImageView, 7> sampled = {heights_.view, slopes_.view,  matter_.view, flow_.view,
                                                 light_.view,   pyramid_.view, summit_.view};
     for (std::size_t n = 0; n < sampled.size(); ++n)
-        write_image(frame_set_, sampled_bindings[n], VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, sampled[n]);
+        write_image(sampled_bindings[n], VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, sampled[n]);
     const std::array<VkImageView, storage_count> storage = {
-        heights_.view, matter_.view, flow_.view,   slopes_.view, pyramid_.level_views[0], light_.view,
+        heights_.view, matter_.view, flow_.view,   slopes_.view, pyramid_.view, light_.view,
         seen_.view,    seen_.view,   colour_.view, colour_.view, picture_.view};
     for (uint32_t n = 0; n < storage_count; ++n)
-        write_image(frame_set_, first_storage + n, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, storage[n]);
+        write_image(first_storage + n, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, storage[n]);
+    write_image(summit_storage, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, summit_.view);
     const VkDescriptorBufferInfo buffer{params_.handle, 0, sizeof(FrameParams)};
     VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
-    write.dstSet = frame_set_;
+    write.dstSet = set_;
     write.descriptorCount = 1;
     write.descriptorType = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC;
     write.pBufferInfo = &buffer;
     vkUpdateDescriptorSets(gpu_.device, 1, &write, 0, nullptr);
-    level_sets_.clear();
-    for (uint32_t n = 0; n < levels_; ++n) {
-        level_sets_.push_back(allocate(level_layout_));
-        write_image(level_sets_[n], 0, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, pyramid_.level_views[n]);
-        write_image(level_sets_[n], 1, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, n + 1 < levels_ ? pyramid_.level_views[n + 1] : summit_.view);
-    }
 }
 
 void Renderer::bind_sources(const Sources& sources) {
     for (uint32_t n = 0; n < sources.size(); ++n) {
         const VkDescriptorBufferInfo buffer{sources[n].buffer, 0, VK_WHOLE_SIZE};
         VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
-        write.dstSet = frame_set_;
+        write.dstSet = set_;
         write.dstBinding = first_source + n;
         write.descriptorCount = 1;
         write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
@@ -242,10 +235,10 @@ void Renderer::mark(uint32_t n) const {
     if (timed()) vkCmdWriteTimestamp(commands_, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, marks_, n);
 }
 
-void Renderer::dispatch(VkPipeline pipeline, uint32_t across, uint32_t down, uint32_t params, VkDescriptorSet level) const {
+void Renderer::dispatch(VkPipeline pipeline, uint32_t across, uint32_t down, uint32_t params, uint32_t level) const {
     const auto offset = static_cast<uint32_t>(params * params_stride_);
-    const std::array<VkDescriptorSet, 2> sets = {frame_set_, level != VK_NULL_HANDLE ? level : level_sets_[0]};
-    vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_layout_, 0, 2, sets.data(), 1, &offset);
+    vkCmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline_layout_, 0, 1, &set_, 1, &offset);
+    vkCmdPushConstants(commands_, pipeline_layout_, VK_SHADER_STAGE_COMPUTE_BIT, 0, sizeof(level), &level);
     vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
     vkCmdDispatch(commands_, (across + GROUP - 1) / GROUP, (down + GROUP - 1) / GROUP, 1);
     barrier();
@@ -260,6 +253,8 @@ void Renderer::draw(const Picture& what, const Grid& grid, const Sources& source
     for (uint32_t n = 0; n < samples; ++n) {
         FrameParams params = frame_params(what, grid, static_cast<int>(width()), static_cast<int>(height()), static_cast<int>(n));
         params.grid.z = static_cast<int>(levels_);
+        params.grid.w = static_cast<int>(base_width_);
+        params.image.w = static_cast<int>(base_height_);
         for (std::size_t s = 0; s < sources.size(); ++s) params.source[s] = {sources[s].offset, sources[s].row_pitch, 0, 0};
         std::memcpy(static_cast<char*>(params_.mapped) + n * params_stride_, &params, sizeof(params));
     }
@@ -289,10 +284,9 @@ void Renderer::draw(const Picture& what, const Grid& grid, const Sources& source
     mark(0);
     const auto across = static_cast<uint32_t>(nx_), down = static_cast<uint32_t>(ny_);
     dispatch(prepare_, across, down, 0);
-    dispatch(slopes_pass_, pyramid_.width, pyramid_.height, 0);
-    for (uint32_t n = 0; n + 1 < levels_; ++n)
-        dispatch(reduce_, std::max(pyramid_.width >> (n + 1), 1u), std::max(pyramid_.height >> (n + 1), 1u), 0, level_sets_[n]);
-    dispatch(summit_pass_, 1, 1, 0, level_sets_.back());
+    dispatch(slopes_pass_, base_width_, base_height_, 0);
+    for (uint32_t n = 1; n < levels_; ++n) dispatch(reduce_, base_width_ >> n, base_height_ >> n, 0, n);
+    dispatch(summit_pass_, 1, 1, 0);
     dispatch(light_pass_, across, down, 0);
     mark(1);
     for (uint32_t n = 0; n < samples; ++n) {

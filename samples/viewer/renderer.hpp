@@ -45,13 +45,12 @@ class Renderer {
     const Gpu& gpu_;
     VkImageUsageFlags usage_;
     VkSampler sampler_ = VK_NULL_HANDLE;
-    VkDescriptorSetLayout frame_layout_ = VK_NULL_HANDLE, level_layout_ = VK_NULL_HANDLE;
+    VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
     VkPipelineLayout pipeline_layout_ = VK_NULL_HANDLE;
     VkPipeline prepare_ = VK_NULL_HANDLE, slopes_pass_ = VK_NULL_HANDLE, reduce_ = VK_NULL_HANDLE, summit_pass_ = VK_NULL_HANDLE,
                light_pass_ = VK_NULL_HANDLE, see_ = VK_NULL_HANDLE, shade_ = VK_NULL_HANDLE, finish_ = VK_NULL_HANDLE;
     VkDescriptorPool pool_ = VK_NULL_HANDLE;
-    VkDescriptorSet frame_set_ = VK_NULL_HANDLE;
-    std::vector<VkDescriptorSet> level_sets_; // n: from level n to n + 1; the last: to the summit
+    VkDescriptorSet set_ = VK_NULL_HANDLE;
     VkCommandBuffer commands_ = VK_NULL_HANDLE;
     VkFence done_ = VK_NULL_HANDLE;
     VkQueryPool marks_ = VK_NULL_HANDLE;
@@ -61,17 +60,17 @@ class Renderer {
     Buffer params_;
     VkDeviceSize params_stride_ = 0;
     int nx_ = 0, ny_ = 0;
-    uint32_t levels_ = 0;
+    uint32_t levels_ = 0, base_width_ = 0, base_height_ = 0; // of the pyramid
     Image heights_, slopes_, matter_, flow_, light_, pyramid_, summit_;
     Image seen_, colour_, picture_;
 
     void make_layouts();
     void make_grid_images(const Grid& grid);
-    void make_descriptor_sets();
+    void make_descriptor_set();
     void bind_sources(const Sources& sources);
     void barrier() const;
     void mark(uint32_t n) const;
-    void dispatch(VkPipeline pipeline, uint32_t across, uint32_t down, uint32_t params, VkDescriptorSet level = VK_NULL_HANDLE) const;
+    void dispatch(VkPipeline pipeline, uint32_t across, uint32_t down, uint32_t params, uint32_t level = 0) const;
 };
 
 } // namespace viewer

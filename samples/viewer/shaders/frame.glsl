@@ -18,6 +18,14 @@ float summit() { return texelFetch(summit_image, ivec2(0), 0).x; }
 
 const int KIND_SKY = 0, KIND_PLINTH = 1, KIND_SOLID = 2, KIND_WATER = 3, KIND_SOLID_WALL = 4, KIND_WATER_WALL = 5;
 
+// The pyramid's levels lie in one texture, the base below and the others side by side on top of it: some drivers fetch wrong
+// texels where neighbouring lanes ask for different mip levels. F.image.w: height of the base; F.grid.w: its width.
+ivec2 pyramid_size(int level) { return ivec2(F.grid.w, F.image.w) >> level; }
+ivec2 pyramid_texel(ivec2 block, int level) {
+    block = clamp(block, ivec2(0), pyramid_size(level) - 1);
+    return level == 0 ? block : block + ivec2(F.grid.w - (F.grid.w >> (level - 1)), F.image.w);
+}
+
 vec2 cell_of(vec2 xy) { return xy / F.domain.x - 0.5; }
 vec2 texture_of(vec2 xy) { return xy / (F.domain.x * vec2(F.grid.xy)); }
 
@@ -29,6 +37,9 @@ vec4 heights_at(vec2 xy) {
     return mix(mix(texelFetch(heights, k, 0), texelFetch(heights, ivec2(n.x, k.y), 0), f.x),
                mix(texelFetch(heights, ivec2(k.x, n.y), 0), texelFetch(heights, n, 0), f.x), f.y);
 }
+
+// An `if` that software devices skip when no lane needs it: they run both sides of a branch, but leave a loop early.
+#define WHERE(condition) for (bool once = (condition); once; once = false)
 
 vec3 ray_through(vec2 pixel) {
     vec2 p = (pixel + 0.5 + F.lens.xy) / vec2(F.image.xy) * 2.0 - 1.0;

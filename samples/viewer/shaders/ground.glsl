@@ -5,7 +5,7 @@ vec2 sand_ripples(vec2 xy, vec2 slope, float pixel, float dry) {
     float wave = 0.45 * F.domain.x; // between crests [m]
     vec2 sum = vec2(0.0);
     float seen = resolved(wave, pixel) * dry;
-    if (seen > 0.0) {
+    WHERE (seen > 0.0) {
         vec2 bend = noise_slopes(xy / (wave * 9.0)).yz;
         vec2 q = xy / wave + 1.6 * bend;
         float steep = clamp(1.0 - 1.2 * length(slope), 0.0, 1.0); // they do not stand on slopes that slide
@@ -13,24 +13,25 @@ vec2 sand_ripples(vec2 xy, vec2 slope, float pixel, float dry) {
     }
     float grains = 0.16 * F.domain.x;
     seen = resolved(grains, pixel);
-    if (seen > 0.0) sum += noise_slopes(xy / grains).yz * (0.10 * seen);
+    WHERE (seen > 0.0) sum += noise_slopes(xy / grains).yz * (0.10 * seen);
     return sum;
 }
 
 // Grains that mirror the sun towards the eye: a random normal per grain, grains as large as a pixel at least.
-float glitter_on(vec2 xy, vec3 normal, vec3 halfway, float pixel) {
-    float size = exp2(ceil(log2(max(1.3 * pixel, 0.004 * F.domain.x))));
-    uint h = hash_of(uvec2(ivec2(floor(xy / size))));
+float glitter_on(vec3 place, vec3 normal, vec3 halfway, float pixel) {
+    float size = exp2(ceil(log2(max(pixel, 0.004 * F.domain.x))));
+    uvec3 k = uvec3(ivec3(floor(place / size)));
+    uint h = hash_of(k.xy + k.z * 7919u);
     vec3 grain = vec3(unit_of(h), unit_of(h * 747796405u + 1u), unit_of(h * 2891336453u + 7u)) * 2.0 - 1.0;
     float facing = dot(normalize(normal + 0.9 * grain), halfway);
-    return smoothstep(0.992, 1.0, facing);
+    return smoothstep(0.994, 1.0, facing);
 }
 
 vec3 rock_colour(vec3 place, vec3 normal, float pixel) {
     float layer = 0.35 * F.domain.x * 4.0;
     float strata = resolved(layer, pixel) * noise_slopes(vec2(place.z / layer, (place.x + place.y) * 0.02 / layer)).x;
     float spots = noise_slopes(place.xy / (6.0 * F.domain.x)).x;
-    vec3 flat_ground = F.rock.rgb * (1.0 + 0.07 * spots);
+    vec3 flat_ground = F.rock.rgb * (1.0 + 0.12 * spots);
     vec3 cliff = F.rock.rgb * vec3(0.80, 0.72, 0.66) * (1.0 + 0.16 * strata);
     return mix(cliff, flat_ground, smoothstep(0.55, 0.85, normal.z));
 }
@@ -52,8 +53,9 @@ vec3 shade_ground(Ground g) {
     float dry = (1.0 - damp) * cover;
 
     vec2 slope = -g.normal.xy / max(g.normal.z, 0.05);
-    vec2 detail = cover > 0.0 ? sand_ripples(g.place.xy, slope, g.pixel, dry) * cover * (1.0 - 0.5 * soaked) : vec2(0.0);
-    if (cover < 1.0) {
+    vec2 detail = vec2(0.0);
+    WHERE (cover > 0.0) detail = sand_ripples(g.place.xy, slope, g.pixel, dry) * cover * (1.0 - 0.5 * soaked);
+    WHERE (cover < 1.0) {
         float bump = 0.7 * F.domain.x;
         detail += noise_slopes(g.place.xy / bump + g.place.z / bump * 0.4).yz * (0.14 * resolved(bump, g.pixel) * (1.0 - cover));
     }
@@ -61,13 +63,14 @@ vec3 shade_ground(Ground g) {
 
     vec3 damp_sand = mix(F.sand_dry.rgb, F.sand_wet.rgb, 0.62);
     vec3 sand = mix(mix(F.sand_dry.rgb, damp_sand, damp), F.sand_wet.rgb, soaked);
-    sand *= 1.0 + 0.06 * noise_slopes(g.place.xy / (2.3 * F.domain.x)).x;
-    vec3 rock = rock_colour(g.place, g.normal, g.pixel) * mix(1.0, 0.62, g.drowned);
+    WHERE (cover > 0.0) sand *= 1.0 + 0.06 * noise_slopes(g.place.xy / (2.3 * F.domain.x)).x;
+    vec3 rock = vec3(0.0);
+    WHERE (cover < 1.0) rock = rock_colour(g.place, g.normal, g.pixel) * mix(1.0, 0.62, g.drowned);
     vec3 albedo = mix(rock, sand, cover);
 
     float lambert = max(dot(n, F.sun.xyz), 0.0);
     // Dry sand scatters between its grains: the terminator is sharper and the lit side flatter than Lambert's.
-    float grainy = clamp(2.2 * dot(normalize(n * vec3(1.0, 1.0, 0.45)), F.sun.xyz), 0.0, 1.0);
+    float grainy = clamp(1.9 * dot(normalize(n * vec3(1.0, 1.0, 0.45)), F.sun.xyz), 0.0, 1.0);
     float diffuse = mix(lambert, grainy, 0.4 * dry);
     vec3 sun = F.sunlight.rgb * g.sun;
     vec3 seen = albedo * (sun * diffuse + ambient_on(n, g.sky));
@@ -83,8 +86,8 @@ vec3 shade_ground(Ground g) {
     float fresnel = 0.02 + 0.98 * pow(1.0 - clamp(dot(n, g.to_eye), 0.0, 1.0), 5.0);
     seen = mix(seen, sky_in(reflect(-g.to_eye, n)), sheen * 0.6 * fresnel * g.sky);
     seen += sun * (sheen * 0.35 * pow(along, 90.0));
-    if (F.sand_dry.w > 0.0 && dry > 0.0)
-        seen += sun * (F.sand_dry.w * dry * lambert * glitter_on(g.place.xy, g.normal, halfway, g.pixel));
+    WHERE (F.sand_dry.w > 0.0 && dry > 0.0)
+        seen += sun * (F.sand_dry.w * dry * lambert * glitter_on(g.place, g.normal, halfway, g.pixel));
     return seen;
 }
 

@@ -1,9 +1,10 @@
 // Rays through the height fields. The pyramid skips blocks that a ray passes above; in a patch between four cell centres the
 // surfaces are bilinear, a ray is quadratic over them, and the first root is exact.
+const float NO_ROOT = -1e30;
 const int MARCH_SOLID = 1, MARCH_WATER = 2;
 
 // First t in [t0, t1] at which the ray is at or below the bilinear patch with corners h (x: west south, y: east south,
-// z: west north, w: east north); -1 = none. p, d: place in the patch and direction, in cells; z, dz: height.
+// z: west north, w: east north); NO_ROOT = none. p, d: place in the patch and direction, in cells; z, dz: height.
 float patch_root(vec4 h, vec2 p, vec2 d, float z, float dz, float t0, float t1) {
     float gx = h.y - h.x, gy = h.z - h.x, gxy = h.x - h.y - h.z + h.w;
     // z + dz t - h(p + d t) = c + b t + a t^2
@@ -13,16 +14,16 @@ float patch_root(vec4 h, vec2 p, vec2 d, float z, float dz, float t0, float t1) 
     if (c + t0 * (b + a * t0) <= 0.0) return t0;
     float root;
     if (abs(a) < 1e-7 * abs(b)) {
-        root = b < 0.0 ? -c / b : -1.0;
+        root = b < 0.0 ? -c / b : NO_ROOT;
     } else {
         float discriminant = b * b - 4.0 * a * c;
-        if (discriminant < 0.0) return -1.0;
+        if (discriminant < 0.0) return NO_ROOT;
         float q = -0.5 * (b + (b < 0.0 ? -sqrt(discriminant) : sqrt(discriminant)));
-        float r0 = q / a, r1 = q != 0.0 ? c / q : -1.0;
+        float r0 = q / a, r1 = q != 0.0 ? c / q : NO_ROOT;
         float low = min(r0, r1), high = max(r0, r1);
         root = low >= t0 ? low : high;
     }
-    return root >= t0 && root <= t1 ? root : -1.0;
+    return root >= t0 && root <= t1 ? root : NO_ROOT;
 }
 
 struct Hit {
@@ -46,7 +47,7 @@ Hit march(vec3 from, vec3 along, float t0, float t_end, int surfaces, int most_s
         vec2 block = floor(q / size);
         vec2 leave = ((block + ahead) * size - o) * inverse;
         float t1 = min(min(max(leave.x, t), max(leave.y, t)) + nudge + 4e-7 * t, t_end);
-        float highest = texelFetch(pyramid, clamp(ivec2(block), ivec2(0), textureSize(pyramid, level) - 1), level).x;
+        float highest = texelFetch(pyramid, pyramid_texel(ivec2(block), level), 0).x;
         float z = from.z + along.z * t;
         float lowest = min(z, from.z + along.z * t1);
         if (lowest > highest) {
@@ -56,18 +57,18 @@ Hit march(vec3 from, vec3 along, float t0, float t_end, int surfaces, int most_s
             if (z > highest) t = max(t, (highest - from.z) / along.z); // falls to the block's top: nothing before
             level -= 1;
         } else {
-            vec2 base = floor(q), p = o - base;
+            vec2 base = floor(q), p = q - base; // from here on, not from the eye: far away the quadratic would lose its digits
             vec2 corner = clamp(base, vec2(0.0), vec2(F.grid.xy)) / vec2(F.grid.xy); // textureGather takes the four texels round it
-            float early = max(t - 2.0 * nudge, t0);
+            float early = max(t - 2.0 * nudge, t0) - t, late = t1 - t;
             if ((surfaces & MARCH_SOLID) != 0) {
                 vec4 g = textureGather(heights, corner, 0);
-                float root = patch_root(vec4(g.w, g.z, g.x, g.y), p, d, from.z, along.z, early, t1);
-                if (root >= 0.0) hit = Hit(root, MARCH_SOLID);
+                float root = patch_root(vec4(g.w, g.z, g.x, g.y), p, d, z, along.z, early, late);
+                if (root >= early) hit = Hit(t + root, MARCH_SOLID);
             }
             if ((surfaces & MARCH_WATER) != 0) {
                 vec4 g = textureGather(heights, corner, 1);
-                float root = patch_root(vec4(g.w, g.z, g.x, g.y), p, d, from.z, along.z, early, t1);
-                if (root >= 0.0 && (hit.t < 0.0 || root < hit.t)) hit = Hit(root, MARCH_WATER);
+                float root = patch_root(vec4(g.w, g.z, g.x, g.y), p, d, z, along.z, early, late);
+                if (root >= early && (hit.t < 0.0 || t + root < hit.t)) hit = Hit(t + root, MARCH_WATER);
             }
             if (hit.t >= 0.0) break;
             t = t1;

@@ -15,7 +15,7 @@ layout(set = 0, binding = 22, rgba16f) uniform image2D to_colour;
 // A filmic curve: linear in the shadows, rolling off towards 1.
 vec3 tone_mapped(vec3 c) {
     c *= F.sunlight.w;
-    vec3 mapped = (c * (2.35 * c + 0.04)) / (c * (2.28 * c + 0.55) + 0.16);
+    vec3 mapped = (c * (2.35 * c + 0.14)) / (c * (2.28 * c + 0.70) + 0.17);
     return clamp(mapped, vec3(0.0), vec3(1.0));
 }
 
@@ -76,14 +76,14 @@ void main() {
     vec4 lit = vec4(1.0);
     vec3 mirror_colour = vec3(0.0);
     bool lost = false; // the bent ray leaves the block without meeting ground
-    if (water) {
+    WHERE (water) {
         vec4 state = textureLod(matter, uv, 0.0);
         vec2 velocity = textureLod(flow, uv, 0.0).xy;
         lit = textureLod(light, uv, 0.0);
         vec4 h = heights_at(place.xy);
         cover = smoothstep(0.0, 3.0 * F.water.w, h.y - h.x);
         Carried carried = carried_at(place.xy, velocity);
-        foam = foam_cover(carried, state.y, pixel_size) * cover;
+        foam = foam_cover(carried, state.y, h.y - h.x, pixel_size) * cover;
         vec2 slope = textureLod(slopes, uv, 0.0).zw + ripple_slopes(carried, length(velocity), pixel_size) * cover;
         normal = wall ? normalize(to_wall + vec3(0.15 * slope, 0.0)) : normalize(vec3(-slope, 1.0));
         if (dot(normal, along) > -0.02) normal = normalize(normal - along * (dot(normal, along) + 0.02));
@@ -99,15 +99,16 @@ void main() {
         fresnel = (0.02 + 0.98 * pow(1.0 - clamp(-dot(normal, along), 0.0, 1.0), 5.0)) * cover;
         mirrored = reflect(along, normal);
         if (!wall) mirrored = normalize(vec3(mirrored.xy, max(mirrored.z, 0.01)));
-        mirror_colour = sky_in(mirrored);
+        mirror_colour = mirrored.z > 0.0 ? sky_in(mirrored) : F.plinth.rgb * F.sunlight.rgb * F.sun.z;
+        if (wall) fresnel = min(fresnel, 0.06);
     }
 
     // Ground that is seen directly or through water, then ground in the mirror.
     vec3 colour = vec3(0.0);
-    if (kind == KIND_SOLID || water) {
+    WHERE (kind == KIND_SOLID || water) {
         int turns = 1;
         vec3 other = place;
-        if (water && !wall && F.march_steps.y > 0 && fresnel > 0.015) {
+        WHERE (water && !wall && F.march_steps.y > 0 && fresnel > 0.015) {
             int axis;
             vec2 span = block_span(place, mirrored, axis);
             Hit bank = march(place, mirrored, 0.05 * F.domain.x, span.y, MARCH_SOLID, F.march_steps.y);
@@ -130,8 +131,8 @@ void main() {
         }
     }
     if (kind == KIND_SKY) colour = sky_in(along) + sun_disc(along);
-    if (kind == KIND_PLINTH) colour = shade_plinth(place, along);
-    if (kind == KIND_SOLID_WALL) colour = shade_wall(place, to_wall, pixel_size);
+    WHERE (kind == KIND_PLINTH) colour = shade_plinth(place, along);
+    WHERE (kind == KIND_SOLID_WALL) colour = shade_wall(place, to_wall, pixel_size);
     if (water) {
         if (lost) colour = ambient_on(vec3(0.0, 0.0, 1.0), 1.0) * 0.5;
         vec3 through = exp(-F.water.rgb * path);
@@ -142,15 +143,15 @@ void main() {
         float foam_light = 0.35 + 0.65 * max(dot(normal, F.sun.xyz), 0.0);
         colour = mix(colour, 0.8 * (F.sunlight.rgb * (lit.x * foam_light) + ambient_on(normal, lit.y)), wall ? 0.0 : foam);
     }
-    if (F.view.x != 0 && kind >= KIND_SOLID) {
+    colour = tone_mapped(colour);
+    WHERE (F.view.x != 0 && kind >= KIND_SOLID) {
         vec2 slope = textureLod(slopes, uv, 0.0).xy;
         float shape = wall ? 0.6 : 0.55 + 0.45 * max(dot(normalize(vec3(-slope, 1.0)), F.sun.xyz), 0.0) / F.sun.z;
         float x = (quantity_at(F.view.x, place.xy) - F.range.x) / (F.range.y - F.range.x);
         colour = ramp(x) * shape;
-    } else {
-        colour = tone_mapped(colour);
     }
-    if (kind == KIND_SOLID || kind == KIND_WATER) colour = draw_marks(colour, place.xy, pixel_size);
+    bool marked = F.view.y != 0 || F.view.z != 0 || F.brush.w > 0.0;
+    WHERE (marked && (kind == KIND_SOLID || kind == KIND_WATER)) colour = draw_marks(colour, place.xy, pixel_size);
 
     if (F.image.z > 0) colour = mix(imageLoad(to_colour, pixel).rgb, colour, F.lens.z);
     imageStore(to_colour, pixel, vec4(colour, 1.0));

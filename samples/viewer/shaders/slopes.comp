@@ -13,7 +13,7 @@ float water_beside(vec4 here, vec4 there) { return there.y > there.x ? there.y :
 
 void main() {
     ivec2 c = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(c, imageSize(to_pyramid)))) return;
+    if (any(greaterThanEqual(c, pyramid_size(0)))) return;
     // Patch (a, b) lies between the centres of cells a - 1, a and b - 1, b.
     vec4 here = cell(c), west = cell(c - ivec2(1, 0)), south = cell(c - ivec2(0, 1)), corner = cell(c - ivec2(1, 1));
     vec4 top = max(max(here, west), max(south, corner));

@@ -21,17 +21,21 @@ vec2 ripple_slopes(Carried c, float speed, float pixel) {
     float coarse = resolved(wave, pixel), fine = resolved(0.37 * wave, pixel);
     for (int n = 0; n < 2; ++n) {
         vec2 p = c.back[n];
-        if (coarse > 0.0) sum += c.weight[n] * coarse * noise_slopes((p + drift) / wave).yz;
-        if (fine > 0.0) sum += c.weight[n] * 0.6 * fine * noise_slopes((p - 0.7 * drift) / (0.37 * wave)).yz;
+        WHERE (coarse > 0.0) sum += c.weight[n] * coarse * noise_slopes((p + drift) / wave).yz;
+        WHERE (fine > 0.0) sum += c.weight[n] * 0.6 * fine * noise_slopes((p - 0.7 * drift) / (0.37 * wave)).yz;
     }
     return strength * sum;
 }
 
-// Share of the surface under bubbles.
-float foam_cover(Carried c, float foam, float pixel) {
-    if (foam <= 0.02) return 0.0;
-    float size = 1.5 * F.domain.x, pattern = 0.0;
-    for (int n = 0; n < 2; ++n)
-        pattern += c.weight[n] * (noise_slopes(c.back[n] / size).x + 0.6 * noise_slopes(c.back[n] / (0.3 * size)).x * resolved(0.3 * size, pixel));
-    return 0.85 * smoothstep(0.45 - 0.55 * foam, 1.15 - 0.55 * foam, 0.5 + 0.45 * pattern);
+// Share of the surface under bubbles: patches that the flow carries, broken up where foam is thin.
+float foam_cover(Carried c, float foam, float depth, float pixel) {
+    foam *= smoothstep(0.02, 0.15, depth / F.domain.x); // a film does not foam
+    float size = 1.1 * F.domain.x, cover = 0.0;
+    WHERE (foam > 0.02) {
+        float pattern = 0.0;
+        for (int n = 0; n < 2; ++n)
+            pattern += c.weight[n] * (noise_slopes(c.back[n] / size).x + 0.7 * resolved(0.31 * size, pixel) * noise_slopes(c.back[n] / (0.31 * size)).x);
+        cover = foam * smoothstep(0.6 - 0.6 * foam, 1.7 - 0.6 * foam, 0.6 + 0.4 * pattern);
+    }
+    return 0.8 * cover;
 }
