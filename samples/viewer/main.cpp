@@ -1,5 +1,5 @@
 #include "../recorder/levels.hpp"
-#include "options.hpp"
+#include "app.hpp"
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <stdexcept>
@@ -49,6 +49,8 @@ int main_checked(int argc, char** argv) {
     app.add_option("--every", options.every, "offscreen: simulated time between pictures [s]; default 1/30")->check(CLI::Range(1e-6, 1e3));
     app.add_option("--out", options.out, "folder for pictures; default: out/LEVEL");
     app.add_flag("--video", options.video, "offscreen: also an MP4, where ffmpeg is installed");
+    app.add_flag("--panel", options.panel, "offscreen: draw the panel too");
+    app.add_option("--script", options.script, "input from a file: lines FRAME COMMAND WORDS, see README.md; ends after --frames");
     app.add_flag("--validate", options.validate, "Vulkan validation layers; any message makes the exit code 3");
     app.add_flag("--list-levels", only_list_levels, "list levels and exit");
     app.add_flag("--list-gpus", only_list_gpus, "list Vulkan devices and exit");
@@ -81,8 +83,11 @@ int main_checked(int argc, char** argv) {
     if (options.out.empty()) options.out = std::filesystem::path("out") / options.level_name;
     quality_preset(options.quality);
     view_number(options.view);
-    if (!options.offscreen) throw std::runtime_error("--offscreen is missing: this build has no window");
-    return run_offscreen(options);
+    if (!options.offscreen) {
+        options.panel = true;
+        return run_window(options);
+    }
+    return options.panel || !options.script.empty() ? run_scripted(options) : run_offscreen(options);
 }
 
 } // namespace

@@ -25,6 +25,8 @@ struct Options {
     double every = 1.0 / 30; // [s]
     std::filesystem::path out;
     bool video = false;
+    bool panel = false;
+    std::filesystem::path script;
 };
 
 /// Pictures as files, no window. Returns the exit code.

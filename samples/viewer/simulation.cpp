@@ -3,6 +3,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstring>
+#include <filesystem>
+#include <fstream>
 #include <mutex>
 #include <stdexcept>
 #include <thread>
@@ -35,6 +37,20 @@ VkSemaphore make_exportable_timeline(const Gpu& gpu) {
     return semaphore;
 }
 
+/// A file that a level names, from the folder at `user`.
+int32_t read_beside(void* user, const char* name, void* data, std::size_t* size) {
+    std::ifstream file(*static_cast<const std::filesystem::path*>(user) / name, std::ios::binary | std::ios::ate);
+    if (!file) return 0;
+    const std::streamoff length = file.tellg();
+    if (data != nullptr) {
+        file.seekg(0);
+        file.read(static_cast<char*>(data), static_cast<std::streamsize>(std::min(static_cast<std::size_t>(length), *size)));
+        if (!file) return 0;
+    }
+    *size = static_cast<std::size_t>(length);
+    return 1;
+}
+
 } // namespace
 
 void check(wadi_result result, const char* what) {
@@ -64,7 +80,11 @@ Simulation::Simulation(const Gpu& gpu, const SimulationChoice& choice) : gpu_(gp
     wadi_level_overrides overrides = wadi_default_level_overrides();
     overrides.nx = choice.nx;
     overrides.ny = choice.ny;
-    check(wadi_create_world_from_level(choice.level_file.c_str(), &overrides, &options, &world), "creating the world");
+    std::filesystem::path folder = std::filesystem::path(choice.level_file).parent_path();
+    check(choice.text.empty()
+              ? wadi_create_world_from_level(choice.level_file.c_str(), &overrides, &options, &world)
+              : wadi_create_world_from_level_text(choice.text.c_str(), read_beside, &folder, &overrides, &options, &world),
+          "creating the world");
     try {
         info = wadi_default_world_info();
         check(wadi_world_get_info(world, &info), "describing the world");

@@ -11,6 +11,7 @@ namespace viewer {
 
 struct SimulationChoice {
     std::string level_file;
+    std::string text; // not empty: instead of the file's own; maps are still found beside it
     std::string backend = "auto";
     int device = -1;
     int threads = 0;
