@@ -21,6 +21,7 @@ void App::frame(double seconds, const Submission& swapchain, const std::function
     ImGui::NewFrame();
     handle_input(session, seconds);
     script.apply_commands(frames_, session);
+    session.picture.shift = 0;
     if (shows_panel_ && !session.picture_is_kept()) panel_.draw(session, seconds);
     ImGui::Render();
     session.advance(seconds);

@@ -21,7 +21,7 @@ struct Preset {
 // Yaw 0 looks north.
 const Preset presets[] = {
     {"overview", -30, -38, 1.0f, 0.5f, 0.5f}, {"opposite", 150, -38, 1.0f, 0.5f, 0.5f}, {"top", 0, -89, 1.0f, 0.5f, 0.5f},
-    {"close", -48, -30, 0.5f, 0.5f, 0.5f},    {"low", -30, -14, 0.6f, 0.5f, 0.5f},
+    {"close", -15, -42, 0.45f, 0.5f, 0.55f},    {"low", -30, -14, 0.6f, 0.5f, 0.5f},
 };
 
 /// Moves the eye until the share of the block round the target fills the picture.

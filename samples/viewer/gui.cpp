@@ -1,6 +1,6 @@
 #include "gui.hpp"
-#include <backends/imgui_impl_glfw.h>
-#include <backends/imgui_impl_vulkan.h>
+#include <imgui_impl_glfw.h>
+#include <imgui_impl_vulkan.h>
 #include <imgui.h>
 
 namespace viewer {

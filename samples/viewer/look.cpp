@@ -72,7 +72,7 @@ FrameParams frame_params(const Picture& picture, const Grid& grid, int width, in
     p.eye = glm::vec4(camera.eye(), 0);
     p.right = glm::vec4(camera.right() * tan_right, 0);
     p.up = glm::vec4(camera.up() * tan_up, 0);
-    p.forward = glm::vec4(camera.forward(), 0);
+    p.forward = glm::vec4(camera.forward() - camera.right() * (tan_right * picture.shift), 0);
     p.sun = glm::vec4(sun, look.sun_softness);
     p.sunlight = glm::vec4(glm::mix(glm::vec3(2.60f, 2.35f, 2.00f), glm::vec3(2.6f, 1.6f, 0.85f), low_sun), look.exposure);
     p.zenith = glm::vec4(0.20f, 0.36f, 0.72f, look.ambient);
@@ -86,7 +86,7 @@ FrameParams frame_params(const Picture& picture, const Grid& grid, int width, in
     p.water_glow = glm::vec4(look.water_glow, look.ripples);
     p.sand_dry = glm::vec4(look.sand_dry, quality.glitter ? look.glitter : 0.0f);
     p.sand_wet = glm::vec4(look.sand_wet, look.rim);
-    p.rock = glm::vec4(look.rock, 0.05f * grid.dx);
+    p.rock = glm::vec4(look.rock, 0.15f * grid.dx);
     p.range = glm::vec4(picture.low, picture.high, longest / 40, longest / 160);
     p.section = picture.section.ends;
     p.brush = picture.brush;

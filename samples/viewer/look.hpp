@@ -65,7 +65,8 @@ struct Picture {
     bool arrows = false;
     Section section;
     glm::vec4 brush{0};
-    float time = 0; // moves ripples [s]
+    float time = 0;  // moves ripples [s]
+    float shift = 0; // of the middle to the right, in half widths: beside a panel
 };
 
 /// The grid that is drawn.

@@ -39,6 +39,7 @@ void Panel::draw(Session& session, double frame_seconds) {
     ImGui::SetNextWindowSize(ImVec2(WIDTH, ImGui::GetIO().DisplaySize.y));
     ImGui::Begin("Wadi", nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse);
     ImGui::PushItemWidth(150);
+    session.picture.shift = WIDTH / ImGui::GetIO().DisplaySize.x;
     try {
         simulation(session);
         if (ImGui::CollapsingHeader("Tools", ImGuiTreeNodeFlags_DefaultOpen)) tools(session);
@@ -278,6 +279,7 @@ void Panel::profile(const Session& session) {
     ImGui::Text("%.1f m along, elevation %.2f ... %.2f m", static_cast<double>(length), static_cast<double>(low), static_cast<double>(high));
     const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
     ImDrawList* list = ImGui::GetWindowDrawList();
+    list->Flags &= ~ImDrawListFlags_AntiAliasedFill; // soft edges would leave seams between the columns
     const auto place = [&](std::size_t n, float height) {
         return ImVec2(origin.x + room.x * static_cast<float>(n) / static_cast<float>(session.profile.size() - 1),
                       origin.y + room.y * (1 - (height - low) / (high - low)));

@@ -30,7 +30,7 @@ float glitter_on(vec3 place, vec3 normal, vec3 halfway, float pixel) {
 vec3 rock_colour(vec3 place, vec3 normal, float pixel) {
     float layer = 0.35 * F.domain.x * 4.0;
     float strata = resolved(layer, pixel) * noise_slopes(vec2(place.z / layer, (place.x + place.y) * 0.02 / layer)).x;
-    float spots = noise_slopes(place.xy / (6.0 * F.domain.x)).x;
+    float spots = noise_slopes(mat2(0.80, 0.60, -0.60, 0.80) * place.xy / (7.0 * F.domain.x)).x;
     vec3 flat_ground = F.rock.rgb * (1.0 + 0.12 * spots);
     vec3 cliff = F.rock.rgb * vec3(0.80, 0.72, 0.66) * (1.0 + 0.16 * strata);
     return mix(cliff, flat_ground, smoothstep(0.55, 0.85, normal.z));
@@ -56,8 +56,12 @@ vec3 shade_ground(Ground g) {
     vec2 detail = vec2(0.0);
     WHERE (cover > 0.0) detail = sand_ripples(g.place.xy, slope, g.pixel, dry) * cover * (1.0 - 0.5 * soaked);
     WHERE (cover < 1.0) {
-        float bump = 0.7 * F.domain.x;
-        detail += noise_slopes(g.place.xy / bump + g.place.z / bump * 0.4).yz * (0.14 * resolved(bump, g.pixel) * (1.0 - cover));
+        // Two turned octaves: value noise alone would show its grid.
+        float bump = 1.9 * F.domain.x, fine = 0.43 * F.domain.x;
+        vec2 p = mat2(0.80, 0.60, -0.60, 0.80) * g.place.xy, q = mat2(0.34, -0.94, 0.94, 0.34) * g.place.xy;
+        vec2 rough = noise_slopes(p / bump + g.place.z / bump * 0.4).yz * (0.07 * resolved(bump, g.pixel));
+        WHERE (resolved(fine, g.pixel) > 0.0) rough += noise_slopes(q / fine + g.place.z / fine * 0.4).yz * (0.05 * resolved(fine, g.pixel));
+        detail += rough * (1.0 - cover);
     }
     vec3 n = normalize(g.normal - vec3(detail * g.normal.z, 0.0));
 

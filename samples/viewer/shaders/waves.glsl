@@ -29,7 +29,7 @@ vec2 ripple_slopes(Carried c, float speed, float pixel) {
 
 // Share of the surface under bubbles: patches that the flow carries, broken up where foam is thin.
 float foam_cover(Carried c, float foam, float depth, float pixel) {
-    foam *= smoothstep(0.02, 0.15, depth / F.domain.x); // a film does not foam
+    foam *= smoothstep(0.08, 0.3, depth / F.domain.x); // a film does not foam
     float size = 1.1 * F.domain.x, cover = 0.0;
     WHERE (foam > 0.02) {
         float pattern = 0.0;
