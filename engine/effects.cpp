@@ -6,7 +6,7 @@ namespace wadi {
 
 namespace {
 
-constexpr std::array<Effect, 11> table = {{
+constexpr std::array<Effect, 12> table = {{
     {EFFECT_WATER, "water", 0, "water that flows over the ground"},
     {EFFECT_SAND, "sand", 0, "sand that flows, with Coulomb friction on the ground"},
     {EFFECT_MIXTURE, "mixture", EFFECT_WATER | EFFECT_SAND, "a second water layer inside the sand with its own velocity"},
@@ -18,6 +18,7 @@ constexpr std::array<Effect, 11> table = {{
     {EFFECT_RAIN, "rain", EFFECT_WATER, "rain and evaporation"},
     {EFFECT_OPEN_SIDES, "open_sides", 0, "sides with discharge, level or outflow"},
     {EFFECT_BED_FRICTION, "bed_friction", EFFECT_WATER, "Manning-like friction of pure water on its bed"},
+    {EFFECT_BED_SHEAR, "bed_shear", EFFECT_MIXTURE, "pure water drags the sand under it along: bed load"},
 }};
 
 bool ever_above_zero(const TimeSeries& series) {
@@ -74,6 +75,8 @@ Wanted wanted(const Effect& effect, std::uint32_t mask, const Settings& s, Conte
         const bool on = std::any_of(s.sides.begin(), s.sides.end(), [](const Side& side) { return side.kind != SideKind::wall; });
         return {on, on ? "a side is open" : "all sides are walls"};
     }
+    case EFFECT_BED_SHEAR:
+        return {m.bed_shear > 0, m.bed_shear > 0 ? "bed_shear is above 0" : "bed_shear is 0"};
     default:
         return {m.bed_friction > 0, m.bed_friction > 0 ? "bed_friction is above 0" : "bed_friction is 0"};
     }

@@ -75,6 +75,7 @@ void plan_water(Builder b) {
     std::vector<std::string> moved = {"water_velocity_x", "water_velocity_y"};
     if (b.has(EFFECT_MIXTURE)) moved.insert(moved.end(), {"mixed_velocity_x", "mixed_velocity_y"});
     b.run("integrate_water_velocity", moved);
+    if (b.has(EFFECT_BED_SHEAR)) b.run("compute_bed_load");
     if (b.has(EFFECT_COHESION)) b.run("compute_saturation");
 }
 

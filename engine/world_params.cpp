@@ -67,6 +67,7 @@ WorldParams derive_params(const Settings& s) {
 
     p.k = f(k);
     p.water_velocity_clamp = f(w.velocity_clamp / k);
+    p.shock_viscosity = f(w.shock_viscosity * k * std::sqrt(s.gravity));
     p.gravity_cap_base = w.gravity_cap > 0 ? f(w.gravity_cap) : gravity_cap_off;
     p.gravity_cap_floor = f(w.gravity_cap_least);
     p.inv_k2 = f(1 / (k * k));
@@ -75,6 +76,13 @@ WorldParams derive_params(const Settings& s) {
     p.rest_velocity = rest ? f(w.rest_velocity) : -1.0F;
     p.diffusion_number = f(std::min(m.diffusion_rate, 0.2 * dx * dx / dt) * dt / (dx * dx));
     p.bed_friction_dt = f(dt * m.bed_friction);
+    const double submerged = std::max(m.sand_density / m.water_density - 1, 0.05) * s.gravity; // (s - 1) g
+    p.bed_shear = f(m.bed_shear);
+    p.bed_shear_dt = f(dt * m.bed_shear);
+    p.bed_shear_threshold = f(0.047 * submerged * m.grain_size);
+    p.bed_load = submerged > 0 ? f(8 / submerged) : 0.0F;
+    p.bed_slope_number = f(2 / dx);
+    p.bed_slope_cap = f(0.2 * dx / dt);
     p.limiter = w.outflow_limiter ? 1.0F : 0.0F;
     p.inv_substeps = f(1.0 / w.substeps);
 
@@ -104,6 +112,11 @@ WorldParams derive_params(const Settings& s) {
     p.inv_yield_slope = slope > 0 ? f(1 / slope) : 0.0F;
     p.inv_bulk = lambda + shear > 0 ? f(1 / (lambda + shear)) : 0.0F;
     p.passive_pressure = w.passive_pressure > 0 ? f(w.passive_pressure * weight) : off;
+    // The explicit viscous stress is stable with the elastic one while nu dts/dx^2 <= 1/4 - c^2 dts^2/(2 dx^2).
+    const double wave = std::sqrt((lambda + 2 * shear) / m.sand_density) * ks;
+    const double viscous = std::min(w.bulk_viscosity * wave, std::max(0.0, 0.2 - 0.4 * wave * wave));
+    p.bulk_viscosity = f(viscous * m.sand_density / ks);
+    p.tip_pressure = f(0.5 / m.yield_friction);
     p.inv_friction_yield = f(1 / m.yield_friction);
     p.force_scale = f(ks / m.sand_density);
     p.gradient_clamp = w.gradient_clamp > 0 ? f(w.gradient_clamp) : off;

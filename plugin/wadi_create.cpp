@@ -45,6 +45,7 @@ LevelOverrides to_overrides(const wadi_level_overrides* o) {
     if (o->nx != 0 || o->ny != 0) overrides.size = {o->nx, o->ny};
     if (o->dt != 0) overrides.dt = o->dt;
     if (o->method != nullptr) overrides.method = o->method;
+    if (o->variant != nullptr) overrides.variant = o->variant;
     return overrides;
 }
 

@@ -15,5 +15,6 @@
 #define EFFECT_RAIN 256u        // rain and evaporation
 #define EFFECT_OPEN_SIDES 512u  // sides that are not walls
 #define EFFECT_BED_FRICTION 1024u // Manning-like friction of pure water on its bed
+#define EFFECT_BED_SHEAR 2048u // pure water drags the sand under it along
 
 #endif

@@ -68,6 +68,7 @@ struct WorldParams {
     // water step
     float k;                    // dt/dx [s/m]
     float water_velocity_clamp; // alpha dx/dt [m/s]
+    float shock_viscosity;      // c1 dt sqrt(g)/dx [1/sqrt(m)], NUMERICS 2.3; 0 = off
     float gravity_cap_base;     // 0.55 in NUMERICS 2.4b (dimensionless); 1e9 = no cap
     float gravity_cap_floor;    // 0.15 in NUMERICS 2.4b
     float inv_k2;               // 1/k^2 [m2/s2]
@@ -75,6 +76,12 @@ struct WorldParams {
     float rest_velocity;        // v_rest [m/s]; negative = rule off
     float diffusion_number;     // min(c_d, 0.2 dx^2/dt) dt/dx^2
     float bed_friction_dt;      // dt c of the Manning-like friction, c dimensionless [s]
+    float bed_shear;            // c of the shear stress rho_w c |u|^2 of pure water on sand
+    float bed_shear_dt;         // dt c: what the water loses by it [s]
+    float bed_shear_threshold;  // stress over rho_w below which sand stays [m2/s2]
+    float bed_load;             // 8/((rho_s/rho_w - 1) g) [s2/m]
+    float bed_slope_number;     // 2/dx: how the bed's slope turns bed load downhill [1/m]
+    float bed_slope_cap;        // keeps that stable: 0.2 dx/dt [m/s]
     float limiter;              // 1 = outflow limiter on, 0 = off
     float inv_substeps;         // 1/T
 
@@ -97,6 +104,8 @@ struct WorldParams {
     float inv_yield_slope;
     float inv_bulk;             // 1/(lambda + shear)
     float passive_pressure;     // K rho_s g [Pa/m]; 1e30 = compression uncapped
+    float bulk_viscosity;       // viscous stress per difference of face velocities [Pa s/m], NUMERICS 2.7
+    float tip_pressure;         // largest mean tension per cohesion: 1/(2 c_f)
     float inv_friction_yield;   // 1/c_f
     float force_scale;          // ks/rho_s
     float gradient_clamp;       // largest |dts grad v| entry (0.4)

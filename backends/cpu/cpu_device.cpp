@@ -213,7 +213,7 @@ Result<compute::Program> CpuDevice::compile(const compute::ProgramBuilder& build
         recorded->steps.push_back(std::move(step));
     }
     recorded->small = largest < small_pass;
-    recorded->next_row = std::make_unique<std::atomic<int>[]>(std::max<std::size_t>(1, recorded->steps.size()));
+    recorded->progress = std::make_unique<Progress[]>(std::max<std::size_t>(1, recorded->steps.size()));
     ++counters_.recordings;
     const compute::Program handle{next_program_++};
     programs_.emplace(handle.id, std::move(recorded));
@@ -279,48 +279,52 @@ void CpuDevice::device_thread() {
     }
 }
 
-void CpuDevice::run_share(Step& step, std::atomic<int>& next_row, const WorldParams& params, const StepInput& input, int thread) {
+void CpuDevice::run_rows(Step& step, const WorldParams& params, const StepInput& input, int first, int last) {
     if (step.block != nullptr) {
-        const int rows = step.range.j1 - step.range.j0;
-        for (;;) {
-            const int first = next_row.fetch_add(step.rows_per_grab, std::memory_order_relaxed);
-            if (first >= rows) return;
-            const int last = std::min(rows, first + step.rows_per_grab);
-            step.block(step.buffers.data(), step.sizes.data(), &params, &input, step.range.i0, step.range.i1,
-                       step.range.j0 + first, step.range.j0 + last);
-        }
-    }
-    if (thread != 0 || step.to == nullptr) return;
-    if (step.from != nullptr) {
+        step.block(step.buffers.data(), step.sizes.data(), &params, &input, step.range.i0, step.range.i1, step.range.j0 + first,
+                   step.range.j0 + last);
+    } else if (step.from != nullptr) {
         std::memcpy(step.to, step.from, step.bytes);
-    } else {
+    } else if (step.to != nullptr) {
         for (std::uint64_t at = 0; at < step.bytes; at += 4) std::memcpy(step.to + at, &step.word, 4);
     }
 }
 
+// A barrier waits for rows, not for threads: one that the system has put aside holds nothing up but the rows it has taken.
 void CpuDevice::execute(Recorded& program, const StepInput& input, std::vector<compute::Timing>& timings) {
-    for (std::size_t n = 0; n < program.steps.size(); ++n) program.next_row[n].store(0, std::memory_order_relaxed);
+    const std::size_t count = program.steps.size();
+    for (std::size_t n = 0; n < count; ++n) {
+        program.progress[n].next_row.store(0, std::memory_order_relaxed);
+        program.progress[n].rows.set(program.steps[n].rows());
+    }
     std::vector<std::chrono::steady_clock::time_point> stamps(program.timestamp_labels.size());
-    const bool alone = program.small || pool_.size() == 1;
-    const auto work = [&](int thread) {
-        for (std::size_t n = 0; n < program.steps.size(); ++n) {
+    const auto work = [&] {
+        std::size_t waited = 0; // all steps before this one are done
+        for (std::size_t n = 0; n < count; ++n) {
             auto& step = program.steps[n];
-            if (step.timestamp >= 0) {
-                // Taken while every thread waits: a thread that went on would do work that the stamp then misses.
-                const auto stamp = [&] { stamps[static_cast<std::size_t>(step.timestamp)] = std::chrono::steady_clock::now(); };
-                if (alone) {
-                    stamp();
+            auto& progress = program.progress[n];
+            // A stamp is a step of its own between two barriers: nobody works on what it would then miss.
+            const bool stamp = step.timestamp >= 0, behind_stamp = n > 0 && program.steps[n - 1].timestamp >= 0;
+            if (step.barrier_before || stamp || behind_stamp) {
+                for (; waited < n; ++waited) program.progress[waited].rows.wait();
+            }
+            const int rows = step.rows();
+            for (;;) {
+                const int first = progress.next_row.fetch_add(step.rows_per_grab, std::memory_order_relaxed);
+                if (first >= rows) break;
+                const int last = std::min(rows, first + step.rows_per_grab);
+                if (stamp) {
+                    stamps[static_cast<std::size_t>(step.timestamp)] = std::chrono::steady_clock::now();
                 } else {
-                    pool_.barrier(stamp);
+                    run_rows(step, program.params, input, first, last);
                 }
-            } else {
-                if (step.barrier_before && !alone) pool_.barrier();
-                run_share(step, program.next_row[n], program.params, input, thread);
+                progress.rows.finish(last - first);
             }
         }
+        for (; waited < count; ++waited) program.progress[waited].rows.wait();
     };
-    if (alone) {
-        work(0);
+    if (program.small || pool_.size() == 1) {
+        work();
     } else {
         pool_.run(work);
     }

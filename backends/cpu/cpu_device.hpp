@@ -56,13 +56,20 @@ class CpuDevice final : public compute::Device {
         std::uint32_t word = 0;
         bool barrier_before = false;
         int timestamp = -1;
+        /// Shares of the work that threads take: rows, or one.
+        int rows() const { return block != nullptr ? range.j1 - range.j0 : 1; }
+    };
+    /// How far one execution of a step has come.
+    struct Progress {
+        std::atomic<int> next_row{0}; // the first that nobody has taken yet
+        Remaining rows;
     };
     struct Recorded {
         WorldParams params{};
         std::vector<Step> steps;
         std::vector<std::string> timestamp_labels;
-        std::unique_ptr<std::atomic<int>[]> next_row; // per step, the first row nobody has taken yet
-        bool small = false;                           // not worth waking other threads for
+        std::unique_ptr<Progress[]> progress; // per step
+        bool small = false;                   // not worth waking other threads for
     };
     struct CpuPipeline {
         int stage;
@@ -81,7 +88,7 @@ class CpuDevice final : public compute::Device {
     void drain();
     void device_thread();
     void execute(Recorded& program, const StepInput& input, std::vector<compute::Timing>& timings);
-    static void run_share(Step& step, std::atomic<int>& next_row, const WorldParams& params, const StepInput& input, int thread);
+    static void run_rows(Step& step, const WorldParams& params, const StepInput& input, int first, int last);
 
     const InstructionSet& set_;
     ThreadPool pool_;

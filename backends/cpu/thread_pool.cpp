@@ -13,58 +13,62 @@ void pause() {
 #endif
 }
 
-void wait_while(std::atomic<int>& value, int old) {
+// Waits until done(value) and returns the value.
+template <class Number, class Done> Number wait_until(const std::atomic<Number>& value, Done done) {
     for (int n = 0; n < spins; ++n) {
-        if (value.load(std::memory_order_acquire) != old) return;
+        const Number now = value.load(std::memory_order_acquire);
+        if (done(now)) return now;
         pause();
     }
-    while (value.load(std::memory_order_acquire) == old) value.wait(old, std::memory_order_acquire);
+    for (;;) {
+        const Number now = value.load(std::memory_order_acquire);
+        if (done(now)) return now;
+        value.wait(now, std::memory_order_acquire);
+    }
 }
 
 } // namespace
 
-void Barrier::wait(const std::function<void()>& before_release) {
-    const int generation = generation_.load(std::memory_order_acquire);
-    if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == threads_) {
-        if (before_release) before_release();
-        arrived_.store(0, std::memory_order_relaxed);
-        generation_.fetch_add(1, std::memory_order_acq_rel);
-        generation_.notify_all();
-    } else {
-        wait_while(generation_, generation);
-    }
+void Remaining::wait() const {
+    wait_until(count_, [](int left) { return left == 0; });
 }
 
-ThreadPool::ThreadPool(int threads) : barrier_(threads) {
-    for (int t = 1; t < threads; ++t) workers_.emplace_back([this, t] { worker(t); });
+ThreadPool::ThreadPool(int threads) {
+    for (int t = 1; t < threads; ++t) workers_.emplace_back([this] { worker(); });
 }
 
 ThreadPool::~ThreadPool() {
     stop_.store(true);
-    generation_.fetch_add(1);
-    generation_.notify_all();
+    job_.fetch_add(one_generation);
+    job_.notify_all();
     for (auto& thread : workers_) thread.join();
 }
 
-void ThreadPool::run(const std::function<void(int)>& work) {
+void ThreadPool::run(const std::function<void()>& work) {
     work_ = &work;
-    running_.store(static_cast<int>(workers_.size()), std::memory_order_relaxed);
-    generation_.fetch_add(1, std::memory_order_acq_rel);
-    generation_.notify_all();
-    work(0);
-    for (int left = running_.load(std::memory_order_acquire); left != 0; left = running_.load(std::memory_order_acquire)) {
-        wait_while(running_, left);
-    }
+    job_.fetch_add(one_generation + open_bit, std::memory_order_acq_rel);
+    job_.notify_all();
+    work();
+    job_.fetch_sub(open_bit, std::memory_order_acq_rel);
+    wait_until(job_, [](std::uint64_t job) { return (job & inside) == 0; });
 }
 
-void ThreadPool::worker(int thread) {
-    int seen = 0;
-    for (;;) {
-        wait_while(generation_, seen);
-        ++seen;
-        if (stop_.load()) return;
-        (*work_)(thread);
-        if (running_.fetch_sub(1, std::memory_order_acq_rel) == 1) running_.notify_all();
+// False: the job that was seen is closed already, or the pool stops.
+bool ThreadPool::enter(std::uint64_t& seen) {
+    std::uint64_t job = wait_until(job_, [&](std::uint64_t now) { return now / one_generation != seen; });
+    seen = job / one_generation;
+    while ((job & open_bit) != 0 && job / one_generation == seen) {
+        if (job_.compare_exchange_weak(job, job + 1, std::memory_order_acq_rel)) return true;
+    }
+    return false;
+}
+
+void ThreadPool::worker() {
+    std::uint64_t seen = 0;
+    while (!stop_.load()) {
+        if (!enter(seen)) continue;
+        (*work_)();
+        if (((job_.fetch_sub(1, std::memory_order_acq_rel) - 1) & (inside | open_bit)) == 0) job_.notify_all();
     }
 }
 

@@ -1,24 +1,25 @@
-// Threads that run one function together and sleep in between. They spin only briefly at a barrier, so that another process
-// on the same cores costs little.
+// Threads that run one function together and sleep in between. Nothing ever waits for a thread that has not begun: on busy cores
+// the others do its share.
 #pragma once
 #include <atomic>
+#include <cstdint>
 #include <functional>
 #include <thread>
 #include <vector>
 
 namespace wadi::cpu {
 
-/// A barrier for a fixed number of threads; reusable.
-class Barrier {
+/// Work still to be done by somebody. Waiting spins only briefly, so that another process on the same cores costs little.
+class Remaining {
   public:
-    explicit Barrier(int threads) : threads_(threads) {}
-    /// The last thread to arrive calls `before_release`, if there is one, while the others still wait.
-    void wait(const std::function<void()>& before_release);
+    void set(int count) { count_.store(count, std::memory_order_relaxed); }
+    void finish(int count) {
+        if (count_.fetch_sub(count, std::memory_order_acq_rel) == count) count_.notify_all();
+    }
+    void wait() const;
 
   private:
-    const int threads_;
-    std::atomic<int> arrived_{0};
-    std::atomic<int> generation_{0};
+    std::atomic<int> count_{0};
 };
 
 class ThreadPool {
@@ -30,18 +31,21 @@ class ThreadPool {
     ThreadPool& operator=(const ThreadPool&) = delete;
 
     int size() const { return static_cast<int>(workers_.size()) + 1; }
-    /// Calls work(thread) on every thread, 0 being the caller; returns when all have finished.
-    void run(const std::function<void(int thread)>& work);
-    /// Inside work only: waits until all threads of the pool are here.
-    void barrier(const std::function<void()>& before_release = {}) { barrier_.wait(before_release); }
+    /// Calls work() on the caller and on every other thread that wakes before the caller's own call has returned; returns when
+    /// all of these calls have.
+    void run(const std::function<void()>& work);
 
   private:
-    void worker(int thread);
+    // The job as one number, so that entering and closing exclude each other: generation, open, threads inside.
+    static constexpr std::uint64_t open_bit = std::uint64_t{1} << 32;
+    static constexpr std::uint64_t one_generation = std::uint64_t{1} << 33;
+    static constexpr std::uint64_t inside = open_bit - 1;
 
-    Barrier barrier_;
-    const std::function<void(int)>* work_ = nullptr;
-    std::atomic<int> generation_{0};
-    std::atomic<int> running_{0};
+    void worker();
+    bool enter(std::uint64_t& seen);
+
+    const std::function<void()>* work_ = nullptr;
+    std::atomic<std::uint64_t> job_{0};
     std::atomic<bool> stop_{false};
     std::vector<std::thread> workers_;
 };

@@ -2,6 +2,7 @@
 #include "engine/image/map.hpp"
 #include "engine/level/frame.hpp"
 #include "engine/level/settings_reader.hpp"
+#include "engine/level/variants.hpp"
 #include <filesystem>
 #include <new>
 
@@ -67,7 +68,11 @@ Result<Level> parse(const std::string& text, const FileReader& files, const Leve
     if (!json) return json.status();
     Level level;
     Layers layers;
+    auto variants = take_variant(*json, overrides.variant);
+    if (!variants) return variants.status();
+    level.variants = std::move(*variants);
     if (Status status = read_root(*json, files, level, layers); !status) return status;
+    if (overrides.variant) level.name += ", " + *overrides.variant;
     if (Status status = validate(level.settings); !status) return error(Code::bad_file, status.message);
     auto frame = apply_overrides(overrides, level.settings);
     if (!frame) return frame.status();

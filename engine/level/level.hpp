@@ -16,16 +16,18 @@ struct Level {
     Settings settings;
     InitialFields fields;
     double duration = 10;              // [s] a recorder runs by default
+    std::vector<std::string> variants; // names that LevelOverrides::variant takes
     std::vector<std::string> warnings; // advice with numbers, not errors
 };
 
-/// What a caller may override before maps are sampled and shapes drawn.
+/// What a caller may choose or override before maps are sampled and shapes drawn.
 struct LevelOverrides {
     /// New grid size. Keeps the x extent and square cells: dx = extent/nx, maps and shapes stretch in y when the aspect
     /// changes, dt scales with dx unless given.
     std::optional<std::pair<int, int>> size;
-    std::optional<double> dt;          // [s]
-    std::optional<std::string> method; // name of a method preset
+    std::optional<double> dt;           // [s]
+    std::optional<std::string> method;  // name of a method preset
+    std::optional<std::string> variant; // one of the level's own, merged in before anything else
 };
 
 /// Reads a level file. Errors: not_found, bad_file (position or field, nearest known key, allowed range).

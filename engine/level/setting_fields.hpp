@@ -27,6 +27,8 @@ inline constexpr SettingField<Material, double> MATERIAL_FIELDS[] = {
     {"exchange_rate", &Material::exchange_rate, 0, 1e15},
     {"diffusion_rate", &Material::diffusion_rate, 0, 1e6},
     {"bed_friction", &Material::bed_friction, 0, 10},
+    {"bed_shear", &Material::bed_shear, 0, 10},
+    {"grain_size", &Material::grain_size, 1e-6, 1},
 };
 
 inline constexpr SettingField<Method, double> METHOD_FIELDS[] = {
@@ -38,6 +40,8 @@ inline constexpr SettingField<Method, double> METHOD_FIELDS[] = {
     {"gravity_cap_least", &Method::gravity_cap_least, 0, 1e6},
     {"sand_gravity_cap", &Method::sand_gravity_cap, 0, 1e6},
     {"elastic_cap", &Method::elastic_cap, 0, 1e6},
+    {"shock_viscosity", &Method::shock_viscosity, 0, 1},
+    {"bulk_viscosity", &Method::bulk_viscosity, 0, 1},
     {"rest_surface", &Method::rest_surface, 0, 1},
     {"rest_velocity", &Method::rest_velocity, 0, 100},
     {"passive_pressure", &Method::passive_pressure, 0, 1e6},

@@ -87,6 +87,7 @@ Result<Level> build(const std::string& map_path, const LevelOverrides& overrides
 } // namespace
 
 Result<Level> level_from_terrain(const std::string& map_path, const LevelOverrides& overrides) {
+    if (overrides.variant) return error(Code::bad_argument, "variant: a terrain map has none");
     try {
         return build(map_path, overrides);
     } catch (const std::bad_alloc&) {

@@ -13,11 +13,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string description_of(const fs::path& file) {
+LevelEntry read_entry(const std::string& name, const fs::path& file) {
+    LevelEntry entry{name, file, {}, {}};
     std::ifstream stream(file);
     const nlohmann::json json = nlohmann::json::parse(stream, nullptr, false, true);
-    if (!json.is_object() || !json.contains("description") || !json["description"].is_string()) return {};
-    return json["description"].get<std::string>();
+    if (!json.is_object()) return entry;
+    if (json.contains("description") && json["description"].is_string())
+        entry.description = json["description"].get<std::string>();
+    if (json.contains("variants") && json["variants"].is_object()) {
+        for (const auto& [variant, change] : json["variants"].items()) entry.variants.push_back(variant);
+    }
+    return entry;
 }
 
 /// Levenshtein distance, upper and lower case alike.
@@ -75,7 +81,7 @@ std::vector<LevelEntry> list_levels() {
             const fs::path file = entry.path() / "level.json";
             const std::string name = entry.path().filename().string();
             if (!fs::is_regular_file(file, error) || levels.contains(name)) continue;
-            levels[name] = {name, file, description_of(file)};
+            levels[name] = read_entry(name, file);
         }
     }
     std::vector<LevelEntry> list;

@@ -10,6 +10,7 @@ struct LevelEntry {
     std::string name;
     std::filesystem::path file;
     std::string description;
+    std::vector<std::string> variants;
 };
 
 /// Folders that are searched, in order: $WADI_LEVELS, the source tree's samples/levels, ../share/wadi/levels beside the

@@ -94,7 +94,10 @@ int print_backends() {
 }
 
 int print_levels() {
-    for (const LevelEntry& level : list_levels()) std::printf("%-18s %s\n", level.name.c_str(), level.description.c_str());
+    for (const LevelEntry& level : list_levels()) {
+        std::printf("%-18s %s\n", level.name.c_str(), level.description.c_str());
+        for (const std::string& variant : level.variants) std::printf("%-18s --variant %s\n", "", variant.c_str());
+    }
     return EXIT_DONE;
 }
 
@@ -121,6 +124,7 @@ int main_checked(int argc, char** argv) {
         ->capture_default_str();
     app.add_flag("--validate", options.validate, "switch the Vulkan validation layers on");
     app.add_option("--method", options.method, "method preset instead of the level's");
+    app.add_option("--variant", options.variant, "a variant of the level (--list-levels shows them)");
     app.add_option("--size", size, "grid NxM instead of the level's; keeps the x extent");
     app.add_option("--dt", options.dt, "water time step [s] instead of the level's")->check(CLI::Range(1e-7, 100.0));
     app.add_option("--seconds", options.seconds, "simulated time [s]; default: the level's duration")
@@ -165,6 +169,7 @@ int main_checked(int argc, char** argv) {
     } else {
         return fail("name a level or give --terrain MAP (--list-levels shows the levels, --help the options)");
     }
+    if (!options.variant.empty()) options.level_name += "_" + options.variant;
     if (options.out.empty()) options.out = (std::filesystem::path("out") / options.level_name).string();
     return run(options);
 }

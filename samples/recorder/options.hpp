@@ -36,6 +36,7 @@ struct Options {
     std::int32_t nx = 0, ny = 0; // 0 = the level's
     double dt = 0;               // [s], 0 = the level's
     std::string method;          // empty = the level's
+    std::string variant;         // empty = the level as it is
 
     double seconds = -1;    // simulated time, -1 = the level's duration
     double every = 0;       // between frames [s], 0 = a tenth of the recording

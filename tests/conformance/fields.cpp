@@ -34,9 +34,10 @@ template <class Real> const Field<Real>* cell_field(const Solver<Real>& s, const
 
 template <class Real> const Faces<Real>* face_field(const Solver<Real>& s, const std::string& layer) {
     const std::map<std::string, const Faces<Real>*> fields = {
-        {"water_velocity", &s.pure_velocity}, {"mixed_velocity", &s.mixed_velocity}, {"sand_velocity", &s.sand_velocity},
-        {"water_flux", &s.pure_flux},         {"mixed_flux", &s.mixed_flux},         {"sand_flux", &s.sand_flux},
-        {"pressure", &s.mixed_push},
+        {"water_velocity", &s.pure_velocity}, {"mixed_velocity", &s.mixed_velocity},
+        {"sand_velocity", &s.sand_velocity},  {"water_flux", &s.pure_flux},
+        {"mixed_flux", &s.mixed_flux},        {"sand_flux", &s.sand_flux},
+        {"pressure", &s.mixed_push},          {"bed_load", &s.bed_load},
     };
     const auto found = fields.find(layer);
     return found == fields.end() ? nullptr : found->second;

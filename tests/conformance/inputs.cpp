@@ -160,6 +160,8 @@ bool set_method(Method& method, const std::string& name) {
         method.saturation_smoothing = 1;
         method.substeps = 2;
         method.passive_pressure = 0.3;
+        method.bulk_viscosity = 0.5;
+        method.shock_viscosity = 0.25;
     } else {
         return false;
     }
@@ -266,6 +268,7 @@ Result<Scene> make_scene(const std::string& grid, const std::string& name, const
     s.material.cohesion_capillary = 1e4;
     s.material.exchange_rate = 3e4;
     s.material.bed_friction = 0.01;
+    s.material.bed_shear = 0.05;
     if (!set_method(s.method, method)) return error(Code::bad_argument, "method=" + method + ": no such choice");
     if (name == "deep") {
         make_deep(scene);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint32_t WET = EFFECT_WATER | EFFECT_SAND | EFFECT_MIXTURE | EFFECT_DIFFUSION | EFFECT_DRAG;
 constexpr std::uint32_t ELASTIC = EFFECT_ELASTOPLASTIC;
-constexpr std::uint32_t ALL = 2047;
+constexpr std::uint32_t ALL = 4095;
 
 CaseSpec spec_of(const char* name, const char* grid, std::uint32_t effects, const std::string& scene, const std::string& method,
                  int steps) {
@@ -48,6 +48,7 @@ std::vector<CaseSpec> list() {
     add("lake_at_rest", "33x17", EFFECT_WATER, "lake_at_rest", "default", 200);
     add("lake_at_rest", "65x33", WET, "lake_at_rest", "default", 200);
     add("lake_at_rest", "33x17", WET | ELASTIC | EFFECT_COHESION, "lake_at_rest", "default", 200);
+    add("lake_at_rest", "33x17", WET | EFFECT_BED_SHEAR, "lake_at_rest", "default", 200);
     add("lake_at_rest", "33x17", EFFECT_WATER | EFFECT_SAND | EFFECT_DRAG | EFFECT_BED_FRICTION, "lake_at_rest", "default", 200);
     add("static_pile", "33x17", EFFECT_SAND, "static_pile", "default", 200);
     add("static_pile", "65x33", EFFECT_SAND | ELASTIC, "static_pile", "default", 200);
@@ -55,6 +56,7 @@ std::vector<CaseSpec> list() {
     for (const char* symmetry : {"mirror_x", "mirror_y", "transpose"}) {
         add(symmetry, "33x17", EFFECT_WATER | EFFECT_OPEN_SIDES | EFFECT_BED_FRICTION, "islands", "default", 60);
         add(symmetry, "33x17", EFFECT_SAND | ELASTIC, "cliff", "default", 60);
+        add(symmetry, "33x17", WET | EFFECT_BED_SHEAR, "islands", "default", 60);
         add(symmetry, "33x17", ALL, "random", "default", 60);
         add(symmetry, "65x3", ALL, "random", "plain", 30);
     }

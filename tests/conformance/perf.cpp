@@ -17,7 +17,7 @@ namespace {
 using compute::Device;
 using compute::ProgramBuilder;
 
-constexpr std::uint32_t ALL = 2047;
+constexpr std::uint32_t ALL = 2047; // without bed load, which the paper lacks
 constexpr int least_size = 128;
 constexpr double wake_up_ms = 700, warm_up_ms = 150;  // busy ahead of the first row, and of each
 constexpr int burst = 4;                              // submissions in flight while the host is timed: below every backend's ring

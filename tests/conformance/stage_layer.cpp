@@ -94,7 +94,11 @@ std::vector<CaseSpec> list() {
                                   method = methods[(turn + 2 * stage) % methods.size()];
                 // A lake without a quantum is nothing but rounding: no reference says what it should be.
                 const bool rounding_only = scene == "lake" && (method == "plain" || method == "bare");
-                add(grids[(turn + stage) % grids.size()], scene, rounding_only ? "tapered" : method);
+                // In a film of many cells some stress is smaller than what one bit of the stretch makes.
+                const char* const grid = grids[(turn + stage) % grids.size()];
+                const bool unresolved =
+                    scene == "thin_film" && grid == std::string("257x130") && (mask & EFFECT_ELASTOPLASTIC) != 0;
+                add(grid, scene, rounding_only || unresolved ? "tapered" : method);
             }
         }
         if (stages[stage].name == "apply_sources") {

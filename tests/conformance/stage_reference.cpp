@@ -28,6 +28,7 @@ constexpr Step<Real> steps[] = {
     {"account_sides", nullptr, EFFECT_OPEN_SIDES},
     {"integrate_water_height", &Solver<Real>::integrate_water_height, EFFECT_WATER},
     {"integrate_water_velocity", &Solver<Real>::integrate_water_velocity, EFFECT_WATER},
+    {"compute_bed_load", &Solver<Real>::compute_bed_load, EFFECT_BED_SHEAR},
     {"compute_saturation", &Solver<Real>::compute_saturation, EFFECT_COHESION},
     {"open_sand_sides", &Solver<Real>::update_open_sand_sides, EFFECT_OPEN_SIDES | EFFECT_SAND},
     {"limit_sand_outflow", &Solver<Real>::limit_sand_outflow, EFFECT_SAND},

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::uint32_t WET = EFFECT_WATER | EFFECT_SAND | EFFECT_MIXTURE | EFFECT_DIFFUSION | EFFECT_DRAG;
 constexpr std::uint32_t ELASTIC = EFFECT_ELASTOPLASTIC;
-constexpr std::uint32_t ALL = 2047;
+constexpr std::uint32_t ALL = 4095;
 
 struct Row {
     const char* grid;
@@ -46,6 +46,7 @@ constexpr Row against_reference[] = {
     {"33x17", WET, "slope", "default", 3},
     {"65x3", WET, "dam_break", "coarse", 3},
     {"33x17", WET | ELASTIC | EFFECT_COHESION, "slope", "default", 2},
+    {"33x17", WET | EFFECT_BED_SHEAR, "dam_break", "default", 2},
     {"33x17", WET | ELASTIC | EFFECT_COHESION, "flat", "plain", 2},
     {"257x130", WET | ELASTIC | EFFECT_COHESION, "dam_break", "default", 2},
     {"33x17", WET | ELASTIC | EFFECT_COHESION, "deep", "default", 2},

@@ -36,6 +36,10 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
     P.phi3 = static_cast<Real>(material.saturation[2]);
     P.exchange = has(EFFECT_DRAG) ? static_cast<Real>(material.exchange_rate) : Real(0);
     P.bed_friction = has(EFFECT_BED_FRICTION) ? static_cast<Real>(material.bed_friction) : Real(0);
+    P.bed_shear = has(EFFECT_BED_SHEAR) ? static_cast<Real>(material.bed_shear) : Real(0);
+    const double submerged = std::max(material.sand_density / material.water_density - 1, 0.05) * world.gravity;
+    P.bed_threshold = static_cast<Real>(0.047 * submerged * material.grain_size);
+    P.bed_rate = static_cast<Real>(submerged > 0 ? 8 / submerged : 0);
     P.eps = static_cast<Real>(method.dry_threshold);
     P.largest_height = static_cast<Real>(method.largest_height);
     const double quantum = method.quantum < 0 ? std::exp2(std::ceil(std::log2(method.largest_height)) - 24) : method.quantum;
@@ -48,6 +52,7 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
     P.rest_velocity = static_cast<Real>(method.rest_velocity);
     P.passive_pressure = static_cast<Real>(method.passive_pressure);
     P.gradient_clamp = static_cast<Real>(method.gradient_clamp);
+    P.shock_viscosity = static_cast<Real>(method.shock_viscosity);
     P.cohesion_cap = static_cast<Real>(method.cohesion_cap);
     P.taper = static_cast<Real>(method.stress_taper);
     P.substeps = method.substeps;
@@ -63,7 +68,7 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
     Vxx.assign(nx * ny, Real(1));
     Vyy.assign(nx * ny, Real(1));
     for (Faces<Real>* faces : {&sand_velocity, &pure_velocity, &mixed_velocity, &diffusion_flux, &pure_flux, &mixed_flux,
-                               &sand_flux, &mixed_push, &ghost_water}) {
+                               &sand_flux, &bed_load, &mixed_push, &ghost_water}) {
         faces->x.assign((nx + 1) * ny, Real(0));
         faces->y.assign(nx * (ny + 1), Real(0));
     }
@@ -90,6 +95,11 @@ template <class Real> void Solver<Real>::set_time_step(double dt) {
         P.lambda *= factor;
         P.shear *= factor;
     }
+    const Real beta = static_cast<Real>(settings.method.bulk_viscosity);
+    const Real wave = std::sqrt((P.lambda + Real(2) * P.shear) / P.rho_s); // speed of pressure waves in sand
+    const Real courant = wave * P.k_sand;
+    const Real number = std::min(beta * courant, std::max(Real(0), Real(0.2) - Real(0.4) * courant * courant));
+    P.viscosity = number * P.rho_s * P.dx * P.dx / P.substep;
 }
 
 template <class Real> void Solver<Real>::load(const InitialFields& fields) {
@@ -153,6 +163,7 @@ template <class Real> template <class Other> void Solver<Real>::copy_from(const 
     faces(&A::pure_flux, &B::pure_flux);
     faces(&A::mixed_flux, &B::mixed_flux);
     faces(&A::sand_flux, &B::sand_flux);
+    faces(&A::bed_load, &B::bed_load);
     faces(&A::mixed_push, &B::mixed_push);
     faces(&A::ghost_water, &B::ghost_water);
     water_added = other.water_added;
@@ -176,6 +187,7 @@ template <class Real> void Solver<Real>::step() {
         integrate_water_height();
         integrate_water_velocity();
     }
+    if (has(EFFECT_BED_SHEAR)) compute_bed_load();
     if (has(EFFECT_COHESION)) compute_saturation();
     for (int substep = 0; has(EFFECT_SAND) && substep < P.substeps; ++substep) {
         update_open_sand_sides();

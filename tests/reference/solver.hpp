@@ -23,6 +23,8 @@ template <class Real> struct Constants {
     Real exchange{};                  // c_e [kg/(m3 s)], 0 without the drag effect
     Real diffusion{};                 // min(c_d, 0.2 dx2/dt) [m2/s]
     Real bed_friction{};              // Manning-like, 0 without its effect
+    Real bed_shear{};                 // c, 0 without its effect
+    Real bed_threshold{}, bed_rate{}; // [m2/s2], [s2/m]
     Real lambda{}, shear{};           // Lame constants [Pa], capped (2.7)
     Real eps{};                       // dry threshold [m]
     Real quantum{}, largest_height{}; // [m]; quantum 0 = plain arithmetic
@@ -31,7 +33,9 @@ template <class Real> struct Constants {
     Real gravity_cap{}, gravity_cap_least{}, sand_gravity_cap{};
     Real rest_surface{}, rest_velocity{}; // [m], [m/s]
     Real passive_pressure{}, gradient_clamp{}, cohesion_cap{};
-    Real taper{}; // h_el [m]
+    Real shock_viscosity{}; // c1 of 2.3
+    Real viscosity{};       // bulk viscosity of sand [Pa s], bounded for stability (2.7)
+    Real taper{};           // h_el [m]
     int substeps{};
     int smoothing{}; // radius of the saturation's low-pass [cells]
     bool limiter{};
@@ -54,23 +58,25 @@ template <class Real> class Solver {
     // Stages, in the order in which step() calls them.
     void apply_sources();
     void apply_rain();
-    void update_open_sides();            // 2.9, water
-    void split_water();                  // mixed = min(W, hs), pure = W - mixed
-    void diffuse_mixed_water();          // 2.1 -> diffusion_flux
-    void limit_water_outflow();          // 2.2 -> pure_scale, mixed_scale
-    void compute_water_flux();           // 2.2 -> pure_flux, mixed_flux
-    void integrate_water_height();       // 2.2 -> water, pure_predicted, mixed_predicted, pure, mixed
-    void integrate_water_velocity();     // 2.3, 2.4 -> pure_velocity, mixed_velocity, mixed_push
-    void compute_saturation();           // 2.7 -> saturation
-    void update_open_sand_sides();       // 2.9, sand: in every substep
-    void limit_sand_outflow();           // 2.2 -> sand_scale
-    void compute_sand_flux();            // 2.2 -> sand_flux
-    void integrate_sand_height();        // 2.5 -> sand, sand_before, pure, mixed, mixed_before
-    void evolve_deformation_gradient();  // 2.5, 2.6 -> Vxx, Vxy, Vyy
-    void project_deformation_gradient(); // 2.7 -> Vxx, Vxy, Vyy, sxx, sxy, syy
-    void integrate_sand_velocity();      // 2.3, 2.7, rule 2.4c -> sand_velocity
-    void compute_momentum_exchange();    // 2.4a after the sand height, then mixed_push on mixed_velocity
-    void apply_friction();               // 2.8 -> sand_velocity, mixed_velocity (pure_velocity in the single-layer mask)
+    void update_open_sides();                    // 2.9, water
+    void split_water();                          // mixed = min(W, hs), pure = W - mixed
+    void diffuse_mixed_water();                  // 2.1 -> diffusion_flux
+    void limit_water_outflow();                  // 2.2 -> pure_scale, mixed_scale
+    void compute_water_flux();                   // 2.2 -> pure_flux, mixed_flux
+    void integrate_water_height();               // 2.2 -> water, pure_predicted, mixed_predicted, pure, mixed
+    void damp_shocks(const Faces<Real>& before); // 2.3
+    void integrate_water_velocity();             // 2.3, 2.4 -> pure_velocity, mixed_velocity, mixed_push
+    void compute_bed_load();                     // 2.11 -> bed_load
+    void compute_saturation();                   // 2.7 -> saturation
+    void update_open_sand_sides();               // 2.9, sand: in every substep
+    void limit_sand_outflow();                   // 2.2 -> sand_scale
+    void compute_sand_flux();                    // 2.2 -> sand_flux
+    void integrate_sand_height();                // 2.5 -> sand, sand_before, pure, mixed, mixed_before
+    void evolve_deformation_gradient();          // 2.5, 2.6 -> Vxx, Vxy, Vyy
+    void project_deformation_gradient();         // 2.7 -> Vxx, Vxy, Vyy, sxx, sxy, syy
+    void integrate_sand_velocity();              // 2.3, 2.7, rule 2.4c -> sand_velocity
+    void compute_momentum_exchange();            // 2.4a after the sand height, then mixed_push on mixed_velocity
+    void apply_friction();                       // 2.8 -> sand_velocity, mixed_velocity (pure_velocity in the single-layer mask)
 
     bool has(std::uint32_t effect) const { return (effects & effect) != 0; }
     Axis axis(bool is_y) const { return {is_y, settings.grid.nx, settings.grid.ny}; }
@@ -92,6 +98,7 @@ template <class Real> class Solver {
     Field<Real> pure_scale, mixed_scale, sand_scale;
     Faces<Real> diffusion_flux; // q_D [m2/s]
     Faces<Real> pure_flux, mixed_flux, sand_flux;
+    Faces<Real> bed_load;                  // [m2/s]
     Faces<Real> mixed_push;                // d_f, pressure's change of um per sand substep [m/s]
     Field<Real> saturation;                // phibar
     Field<Real> sand_before, mixed_before; // hs^n and min(W, hs^n)

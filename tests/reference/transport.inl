@@ -28,6 +28,7 @@ template <class Real> Real Solver<Real>::raw_flux(Layer layer, const Axis& ax, i
     const Real u = velocity.along(ax)[face];
     Real q = std::max(u, Real(0)) * h_left + std::min(u, Real(0)) * h_right;
     if (layer == Layer::mixed && has(EFFECT_DIFFUSION)) q += diffusion_flux.along(ax)[face];
+    if (layer == Layer::sand && has(EFFECT_BED_SHEAR)) q += bed_load.along(ax)[face];
     return q;
 }
 

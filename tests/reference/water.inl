@@ -83,6 +83,8 @@ template <class Real> void Solver<Real>::water_face(const Axis& ax, int a, int b
     if (blocked(pure[L], pure[R], eta_L, eta_R, P.eps)) uw = Real(0);
     const Real depth = mean(pure[L], pure[R]);
     if (has(EFFECT_BED_FRICTION) && depth > Real(0)) uw /= Real(1) + P.dt * P.bed_friction * std::abs(uw) / depth;
+    if (has(EFFECT_BED_SHEAR) && depth > Real(0) && mean(sand[L], sand[R]) > P.eps)
+        uw /= Real(1) + P.dt * P.bed_shear * std::abs(uw) / depth;
     uw = clamped(uw, P.clamp);
 
     if (!has(EFFECT_MIXTURE)) return;
@@ -96,13 +98,52 @@ template <class Real> void Solver<Real>::water_face(const Axis& ax, int a, int b
     um = clamped(um, P.clamp);
 }
 
+/// 2.3: viscosity along each axis in cells that are compressed along it.
+template <class Real> void Solver<Real>::damp_shocks(const Faces<Real>& before) {
+    for_inner_faces([&](const Axis& ax, int a, int b) {
+        const Field<Real>& u = before.along(ax);
+        const auto viscous = [&](int cell) {
+            const Real growth = u[ax.face(cell + 1, b)] - u[ax.face(cell, b)];
+            const Real depth = pure_predicted[ax.cell(cell, b)];
+            const Real number = std::min(P.shock_viscosity * P.k * std::sqrt(P.gravity * depth), Real(0.12));
+            return growth < Real(0) ? number * growth * depth : Real(0);
+        };
+        const Real depth = mean(pure_predicted[ax.cell(a - 1, b)], pure_predicted[ax.cell(a, b)]);
+        if (depth > P.eps) pure_velocity.along(ax)[ax.face(a, b)] += (viscous(a) - viscous(a - 1)) / depth;
+    });
+}
+
 template <class Real> void Solver<Real>::integrate_water_velocity() {
+    const Faces<Real> before = pure_velocity;
     advect_velocity(pure_predicted, pure_flux, pure_velocity);
+    damp_shocks(before);
     if (has(EFFECT_MIXTURE)) {
         advect_velocity(mixed_predicted, mixed_flux, mixed_velocity);
         exchange_split(mixed_predicted, pure_predicted, mixed);
     }
     for_inner_faces([&](const Axis& ax, int a, int b) { water_face(ax, a, b); });
+}
+
+/// 2.11: sand that pure water drags along its bed.
+template <class Real> void Solver<Real>::compute_bed_load() {
+    for_inner_faces([&](const Axis& ax, int a, int b) {
+        const std::size_t L = ax.cell(a - 1, b);
+        const std::size_t R = ax.cell(a, b);
+        Real& q = bed_load.along(ax)[ax.face(a, b)];
+        q = Real(0);
+        if (water[L] - sand[L] <= P.eps || water[R] - sand[R] <= P.eps) return;
+        const Real u = pure_velocity.along(ax)[ax.face(a, b)];
+        const Field<Real>& cross = pure_velocity.across(ax);
+        const Real v =
+            ((cross[ax.cross(a - 1, b)] + cross[ax.cross(a - 1, b + 1)]) + (cross[ax.cross(a, b)] + cross[ax.cross(a, b + 1)])) /
+            Real(4);
+        const Real speed = std::sqrt(u * u + v * v);
+        const Real excess = std::max(P.bed_shear * speed * speed - P.bed_threshold, Real(0));
+        const Real moved = P.bed_rate * std::pow(excess, Real(1.5));
+        const Real rise = (terrain[R] + sand[R]) - (terrain[L] + sand[L]);
+        if (speed > Real(0)) q = moved * u / speed;
+        q -= std::min(Real(2) / P.dx * moved, Real(0.2) / P.k) * rise;
+    });
 }
 
 /// 2.7: low-passed saturation. Offsets are summed in classes that mirroring and transposing leave unchanged.

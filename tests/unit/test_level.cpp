@@ -267,6 +267,42 @@ TEST_CASE("level: size override keeps the x extent and stretches y") {
     CHECK(must(parse(rest, "", overrides)).settings.dt == 0.02);
 }
 
+TEST_CASE("level: variants are merged in by name") {
+    const std::string rest = R"("material": {"friction": 0.4, "young_modulus": 1e5}, "sand": [{"shape": "plane", "height": 1}],
+        "variants": {"slippery": {"material": {"friction": 0.1}}, "bare": {"sand": [], "material": null}})";
+    const Level plain = must(parse(rest));
+    CHECK(plain.variants == std::vector<std::string>{"bare", "slippery"});
+    CHECK(plain.settings.material.friction == 0.4);
+    LevelOverrides overrides;
+    overrides.variant = "slippery";
+    const Level slippery = must(parse(rest, "", overrides));
+    CHECK(slippery.settings.material.friction == 0.1);
+    CHECK(slippery.settings.material.young_modulus == 1e5);
+    CHECK(slippery.fields.sand == plain.fields.sand);
+    CHECK(slippery.name == plain.name + ", slippery");
+    overrides.variant = "bare";
+    const Level bare = must(parse(rest, "", overrides));
+    CHECK(bare.fields.sand.empty());
+    CHECK(bare.settings.material.friction == Material{}.friction);
+}
+
+TEST_CASE("level: wrong variants") {
+    const auto with = [](const std::string& rest, const char* variant) {
+        LevelOverrides overrides;
+        if (variant != nullptr) overrides.variant = variant;
+        const auto level = parse(rest, "", overrides);
+        CHECK_FALSE(level);
+        return message(level);
+    };
+    const std::string two = R"("variants": {"slippery": {"material": {"friction": -1}}, "bare": {"sand": []}})";
+    CHECK(says(with(two, "slipery"), "variant: \"slipery\" is not known, did you mean \"slippery\"?"));
+    CHECK(says(with("", "bare"), "the level has no variants"));
+    CHECK(says(with(two, "slippery"), "material.friction"));
+    CHECK(says(with(R"("variants": [])", nullptr), "variants: want an object"));
+    CHECK(says(with(R"("variants": {"a": 3})", nullptr), "variants.a: want an object, found 3"));
+    CHECK(says(with(R"("variants": {"a": {"name": "b"}})", nullptr), "variants.a.name: a variant cannot change it"));
+}
+
 TEST_CASE("level: wrong overrides") {
     const auto with = [](const LevelOverrides& overrides) {
         const auto level = parse("", "", overrides);

@@ -40,11 +40,21 @@ std::string warnings(const std::string& rest, double dt = 0.009) {
 const char* const LOW_PILE = R"("sand": [{"shape": "cylinder", "center": [2, 1.5], "radius": 1, "height": 0.5}],
     "water": [{"shape": "plane", "wet": 0.25}], "material": {"young_modulus": 8e4, "cohesion_wet": 5e3, "cohesion_capillary": 5e3}, "gravity": 9.81)";
 
+/// Of the levels that ship.
+std::vector<std::string> names() {
+    std::vector<std::string> found;
+    for (const auto& entry : std::filesystem::directory_iterator(samples())) {
+        if (std::filesystem::exists(entry.path() / "level.json")) found.push_back(entry.path().filename().string());
+    }
+    CHECK(found.size() >= 3);
+    return found;
+}
+
 void collect_keys(const Json& value, std::set<std::string>& keys) {
     if (value.is_object())
         for (const auto& [key, child] : value.items()) {
             keys.insert(key);
-            collect_keys(child, keys);
+            if (key != "variants") collect_keys(child, keys);
         }
     if (value.is_array())
         for (const Json& child : value) collect_keys(child, keys);
@@ -196,13 +206,22 @@ TEST_CASE("shipped levels: piles and canyon load without a warning, dam_break wi
     CHECK(cured->warnings.empty());
 }
 
-TEST_CASE("shipped levels: other sizes load") {
-    for (const auto& [nx, ny] : {std::pair{64, 64}, std::pair{97, 33}, std::pair{512, 512}}) {
+TEST_CASE("shipped levels: every level and variant loads, at other sizes too") {
+    for (const std::string& name : names()) {
+        const std::string path = (samples() / name / "level.json").string();
+        const auto level = load_level(path, {});
+        REQUIRE_MESSAGE(level, name << ": " << message(level));
         LevelOverrides overrides;
-        overrides.size = {nx, ny};
-        for (const char* name : {"dam_break", "piles", "canyon"}) {
-            const auto level = load_level((samples() / name / "level.json").string(), overrides);
-            CHECK_MESSAGE(level, name << ": " << message(level));
+        for (const std::string& variant : level->variants) {
+            overrides.variant = variant;
+            const auto changed = load_level(path, overrides);
+            CHECK_MESSAGE(changed, name << ", " << variant << ": " << message(changed));
+        }
+        overrides.variant.reset();
+        for (const auto& [nx, ny] : {std::pair{64, 64}, std::pair{97, 33}, std::pair{512, 512}}) {
+            overrides.size = {nx, ny};
+            const auto sized = load_level(path, overrides);
+            CHECK_MESSAGE(sized, name << ": " << message(sized));
         }
     }
 }
@@ -247,13 +266,17 @@ TEST_CASE("shipped levels: the canyon's dams close it, and its reaches lie one b
 TEST_CASE("shipped levels: every key is in the schema, and the schema has every setting with its range and default") {
     const Json schema = read_json(samples() / "level.schema.json");
     REQUIRE(schema.is_object());
-    std::set<std::string> names;
-    collect_properties(schema, names);
-    for (const char* name : {"dam_break", "piles", "canyon"}) {
+    std::set<std::string> known;
+    collect_properties(schema, known);
+    for (const std::string& name : names()) {
         std::set<std::string> keys;
-        collect_keys(read_json(samples() / name / "level.json"), keys);
+        const Json level = read_json(samples() / name / "level.json");
+        collect_keys(level, keys);
+        if (level.contains("variants")) {
+            for (const Json& variant : level["variants"]) collect_keys(variant, keys);
+        }
         CHECK(keys.size() > 10);
-        for (const std::string& key : keys) CHECK_MESSAGE(names.count(key) == 1, name << ": " << key);
+        for (const std::string& key : keys) CHECK_MESSAGE(known.count(key) == 1, name << ": " << key);
     }
     const Json& properties = schema["properties"];
     check_against_schema(properties["material"]["properties"], MATERIAL_FIELDS, Material{});

@@ -28,7 +28,7 @@ bool runs(const StepPlan& plan, const char* stage) {
            std::any_of(plan.substep_passes.begin(), plan.substep_passes.end(), is);
 }
 
-constexpr std::uint32_t everything = 2047;
+constexpr std::uint32_t everything = 4095;
 
 } // namespace
 

@@ -31,6 +31,8 @@ struct Material {
     std::array<double, 3> saturation = {0.2, 0.25, 0.33}; // phi1 < phi2 < phi3, 0 ... 1
     double exchange_rate = 1e5;   // c_e [kg/(m3 s)], 0 ... 1e15: momentum exchange between mixed water and sand
     double diffusion_rate = 0.01; // c_d [m2/s], 0 ... 1e6
+    double bed_shear = 0;         // c of the stress rho_w c |u|^2 of pure water on sand, 0 ... 10; 0 = off
+    double grain_size = 1e-3;     // [m], 1e-6 ... 1: how much stress bed load needs
     double bed_friction = 0;      // c of u/(1 + dt c |u|/h) for pure water, dimensionless, 0 ... 10; 0 = off
 };
 
@@ -47,6 +49,8 @@ struct Method {
     double gravity_cap_least = 0.15;
     double sand_gravity_cap = 0.25; // NUMERICS 2.7; 0 = off
     double elastic_cap = 0.2;       // lambda + 2 mu <= elastic_cap rho_s dx^2/dts^2; 0 = off
+    double shock_viscosity = 0;     // c1 of NUMERICS 2.3, damps the ripples behind a bore; 0 = off
+    double bulk_viscosity = 0;      // beta of NUMERICS 2.7, damps elastic waves; 0 = off
     double rest_surface = 1e-5;     // eta_rest [m]; 0 with rest_velocity 0 = off
     double rest_velocity = 1e-3;    // v_rest [m/s]
     double passive_pressure = 1;    // K of the compression cap, NUMERICS 2.7; 0 = off
