@@ -7,8 +7,9 @@
 namespace viewer {
 
 App::App(const Gpu& gpu, const Options& options, GLFWwindow* window, uint32_t width, uint32_t height)
-    : renderer(gpu, width, height, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT), gui(gpu, renderer, window), session(gpu, renderer, options),
-      script(options.script.empty() ? Script() : Script(options.script)), shows_panel_(options.panel) {}
+    : renderer(gpu, width, height, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT), gui(gpu, renderer, window),
+      session(gpu, renderer, options), script(options.script.empty() ? Script() : Script(options.script)),
+      shows_panel_(options.panel) {}
 
 void App::resize(uint32_t width, uint32_t height) {
     renderer.resize(width, height);

@@ -15,13 +15,13 @@ constexpr float STEEPEST = 1.553f; // just short of straight down, where the ima
 struct Preset {
     const char* name;
     float yaw_degrees, pitch_degrees;
-    float share;        // of the block that fills the picture
-    float east, north;  // target within the block, 0 ... 1
+    float share;       // of the block that fills the picture
+    float east, north; // target within the block, 0 ... 1
 };
 // Yaw 0 looks north.
 const Preset presets[] = {
     {"overview", -30, -38, 1.0f, 0.5f, 0.5f}, {"opposite", 150, -38, 1.0f, 0.5f, 0.5f}, {"top", 0, -89, 1.0f, 0.5f, 0.5f},
-    {"close", -15, -42, 0.45f, 0.5f, 0.55f},    {"low", -30, -14, 0.6f, 0.5f, 0.5f},
+    {"close", -15, -42, 0.45f, 0.5f, 0.55f},  {"low", -30, -14, 0.6f, 0.5f, 0.5f},
 };
 
 /// Moves the eye until the share of the block round the target fills the picture.
@@ -34,9 +34,11 @@ void fit(Camera& camera, const Block& block, float share, float aspect) {
         glm::vec2 low{1e9f}, high{-1e9f};
         for (int corner = 0; corner < 8; ++corner) {
             const glm::vec3 half = 0.5f * share * (block.high - block.low);
-            const glm::vec3 place = middle + half * glm::vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1) - camera.eye();
+            const glm::vec3 place =
+                middle + half * glm::vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1) - camera.eye();
             const float depth = std::max(glm::dot(place, camera.forward()), 1e-3f);
-            const glm::vec2 seen{glm::dot(place, camera.right()) / (depth * tan_right), glm::dot(place, camera.up()) / (depth * tan_up)};
+            const glm::vec2 seen{glm::dot(place, camera.right()) / (depth * tan_right),
+                                 glm::dot(place, camera.up()) / (depth * tan_up)};
             low = glm::min(low, seen);
             high = glm::max(high, seen);
         }
@@ -49,9 +51,7 @@ void fit(Camera& camera, const Block& block, float share, float aspect) {
 
 } // namespace
 
-glm::vec3 Camera::forward() const {
-    return {std::sin(yaw) * std::cos(pitch), std::cos(yaw) * std::cos(pitch), std::sin(pitch)};
-}
+glm::vec3 Camera::forward() const { return {std::sin(yaw) * std::cos(pitch), std::cos(yaw) * std::cos(pitch), std::sin(pitch)}; }
 glm::vec3 Camera::right() const { return {std::cos(yaw), -std::sin(yaw), 0}; }
 glm::vec3 Camera::up() const { return glm::cross(right(), forward()); }
 

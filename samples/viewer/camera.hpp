@@ -7,11 +7,11 @@
 namespace viewer {
 
 struct Camera {
-    glm::vec3 target{0};  // [m]
-    float yaw = 0;        // direction of view, from north to east [radians]
-    float pitch = -0.6f;  // below the horizon is negative [radians]
-    float distance = 10;  // from target to eye [m]
-    float field = 0.70f;  // angle of view, upright [radians]
+    glm::vec3 target{0}; // [m]
+    float yaw = 0;       // direction of view, from north to east [radians]
+    float pitch = -0.6f; // below the horizon is negative [radians]
+    float distance = 10; // from target to eye [m]
+    float field = 0.70f; // angle of view, upright [radians]
 
     glm::vec3 forward() const;
     glm::vec3 right() const;
@@ -22,7 +22,7 @@ struct Camera {
     void look(float yaw_change, float pitch_change); // turns the head: the eye stays
     void pan(float along_right, float along_up);     // in units of the distance
     void zoom(float factor);
-    void fly(glm::vec3 right_forward_up);            // moves eye and target [m]
+    void fly(glm::vec3 right_forward_up); // moves eye and target [m]
 };
 
 /// The block that is looked at, from corner to corner [m].

@@ -15,8 +15,10 @@ void move_camera(Session& session, double seconds, bool over_panel) {
     if (!over_panel) {
         const bool turns = ImGui::IsMouseDown(ImGuiMouseButton_Right) ||
                            (session.tool == Tool::look && ImGui::IsMouseDown(ImGuiMouseButton_Left));
-        if (turns && io.KeyShift) camera.look(TURN * io.MouseDelta.x, -TURN * io.MouseDelta.y);
-        else if (turns) camera.orbit(TURN * io.MouseDelta.x, -TURN * io.MouseDelta.y);
+        if (turns && io.KeyShift)
+            camera.look(TURN * io.MouseDelta.x, -TURN * io.MouseDelta.y);
+        else if (turns)
+            camera.orbit(TURN * io.MouseDelta.x, -TURN * io.MouseDelta.y);
         if (ImGui::IsMouseDown(ImGuiMouseButton_Middle)) {
             const float share = 2 * std::tan(0.5f * camera.field) / io.DisplaySize.y;
             camera.pan(-share * io.MouseDelta.x, share * io.MouseDelta.y);
@@ -52,15 +54,17 @@ void handle_input(Session& session, double seconds) {
     move_camera(session, seconds, io.WantCaptureMouse);
     try {
         if (!io.WantTextInput) press_keys(session);
-        const bool inside = ImGui::IsMousePosValid() && io.MousePos.x >= 0 && io.MousePos.y >= 0 && io.MousePos.x < io.DisplaySize.x &&
-                            io.MousePos.y < io.DisplaySize.y;
+        const bool inside = ImGui::IsMousePosValid() && io.MousePos.x >= 0 && io.MousePos.y >= 0 &&
+                            io.MousePos.x < io.DisplaySize.x && io.MousePos.y < io.DisplaySize.y;
         if (inside && !io.WantCaptureMouse) {
             session.point(static_cast<uint32_t>(io.MousePos.x), static_cast<uint32_t>(io.MousePos.y),
                           ImGui::IsMouseDown(ImGuiMouseButton_Left));
         } else {
             session.point_away();
         }
-    } catch (const std::exception& error) { session.message = error.what(); }
+    } catch (const std::exception& error) {
+        session.message = error.what();
+    }
 }
 
 } // namespace viewer

@@ -39,7 +39,8 @@ VkInstance make_instance(const GpuChoice& choice) {
     VkInstance instance = VK_NULL_HANDLE;
     const VkResult made = vkCreateInstance(&info, nullptr, &instance);
     if (made == VK_ERROR_LAYER_NOT_PRESENT)
-        throw std::runtime_error("--validate needs the package vulkan-validationlayers: VK_LAYER_KHRONOS_validation is not present");
+        throw std::runtime_error(
+            "--validate needs the package vulkan-validationlayers: VK_LAYER_KHRONOS_validation is not present");
     check(made, "vkCreateInstance");
     return instance;
 }
@@ -63,10 +64,14 @@ VkPhysicalDevice choose(VkInstance instance, int index) {
         VkPhysicalDeviceProperties properties;
         vkGetPhysicalDeviceProperties(device, &properties);
         switch (properties.deviceType) {
-        case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return 3;
-        case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return 2;
-        case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return 1;
-        default: return 0;
+        case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+            return 3;
+        case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+            return 2;
+        case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+            return 1;
+        default:
+            return 0;
         }
     };
     VkPhysicalDevice best = devices[0];
@@ -80,7 +85,8 @@ bool has_extension(VkPhysicalDevice device, const char* name) {
     uint32_t count = 0;
     check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr), "vkEnumerateDeviceExtensionProperties");
     std::vector<VkExtensionProperties> extensions(count);
-    check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data()), "vkEnumerateDeviceExtensionProperties");
+    check(vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data()),
+          "vkEnumerateDeviceExtensionProperties");
     for (const VkExtensionProperties& extension : extensions) {
         if (std::strcmp(extension.extensionName, name) == 0) return true;
     }
@@ -128,7 +134,8 @@ Gpu::Gpu(const GpuChoice& choice) {
     std::vector<VkQueueFamilyProperties> families(count);
     vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
     family = count;
-    for (const VkQueueFlags wanted : {VkQueueFlags{VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT}, VkQueueFlags{VK_QUEUE_COMPUTE_BIT}}) {
+    for (const VkQueueFlags wanted :
+         {VkQueueFlags{VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT}, VkQueueFlags{VK_QUEUE_COMPUTE_BIT}}) {
         for (uint32_t n = 0; n < count && family == count; ++n) {
             if ((families[n].queueFlags & wanted) == wanted) family = n;
         }
@@ -136,7 +143,8 @@ Gpu::Gpu(const GpuChoice& choice) {
     if (family == count) throw std::runtime_error(name + " has no queue that computes");
     graphics = (families[family].queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0;
     if (choice.graphics && !graphics)
-        throw std::runtime_error(name + " has no queue that draws and computes, which window and panel need; --offscreen without --panel works");
+        throw std::runtime_error(
+            name + " has no queue that draws and computes, which window and panel need; --offscreen without --panel works");
     if (families[family].timestampValidBits > 0) nanoseconds_per_tick = static_cast<double>(properties.limits.timestampPeriod);
 
     std::vector<const char*> extensions;
@@ -219,9 +227,9 @@ Buffer::Buffer(const Gpu& gpu, VkDeviceSize size, VkBufferUsageFlags usage, bool
     vkGetBufferMemoryRequirements(device_, handle, &needs);
     VkMemoryAllocateInfo allocate{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO};
     allocate.allocationSize = needs.size;
-    allocate.memoryTypeIndex =
-        gpu.memory_type(needs.memoryTypeBits, for_host ? VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT
-                                                       : VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
+    allocate.memoryTypeIndex = gpu.memory_type(needs.memoryTypeBits, for_host ? VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT |
+                                                                                    VK_MEMORY_PROPERTY_HOST_COHERENT_BIT
+                                                                              : VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT);
     check(vkAllocateMemory(device_, &allocate, nullptr, &memory_), "vkAllocateMemory");
     check(vkBindBufferMemory(device_, handle, memory_, 0), "vkBindBufferMemory");
     if (for_host) check(vkMapMemory(device_, memory_, 0, VK_WHOLE_SIZE, 0, &mapped), "vkMapMemory");
@@ -271,8 +279,8 @@ Image::Image(const Gpu& gpu, uint32_t across, uint32_t down, VkFormat format, Vk
         barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
         barrier.image = handle;
         barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, 0, 0, nullptr, 0, nullptr, 1,
-                             &barrier);
+        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, 0, 0, nullptr, 0,
+                             nullptr, 1, &barrier);
     });
 }
 

@@ -1,7 +1,7 @@
 #include "gui.hpp"
+#include <imgui.h>
 #include <imgui_impl_glfw.h>
 #include <imgui_impl_vulkan.h>
-#include <imgui.h>
 
 namespace viewer {
 namespace {

@@ -32,14 +32,15 @@ LevelSettings::LevelSettings(const std::filesystem::path& level_file) {
     const Json given = level.value("material", Json::object());
     for (const auto& [key, property] : schema["properties"]["material"]["properties"].items()) {
         if (property.value("type", "") != "number") continue;
-        materials.push_back({key, property.value("description", ""), property.value("minimum", 0.0f), property.value("maximum", 0.0f),
-                             given.value(key, property.value("default", 0.0f))});
+        materials.push_back({key, property.value("description", ""), property.value("minimum", 0.0f),
+                             property.value("maximum", 0.0f), given.value(key, property.value("default", 0.0f))});
     }
     const Json forced = level.value("effects", Json::object());
     for (const auto& entry : schema["properties"]["effects"]["properties"].items()) {
         const std::string force = forced.value(entry.key(), "auto");
         const auto* found = std::find(std::begin(effect_forces), std::end(effect_forces), force);
-        effects.push_back({entry.key(), found == std::end(effect_forces) ? 0 : static_cast<int>(found - std::begin(effect_forces))});
+        effects.push_back(
+            {entry.key(), found == std::end(effect_forces) ? 0 : static_cast<int>(found - std::begin(effect_forces))});
     }
 }
 

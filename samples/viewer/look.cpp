@@ -38,10 +38,10 @@ const Quality& quality_preset(const std::string& name) {
 }
 
 const std::vector<View>& views() {
-    static const std::vector<View> list = {{"picture", "", 0, 1},        {"depth", "m", 0, 5},     {"speed", "m/s", 0, 6},
-                                           {"saturation", "", 0, 0.5f},  {"froude", "", 0, 2},     {"sand", "m", 0, 4},
-                                           {"sand-speed", "m/s", 0, 3},  {"foam", "", 0, 1},       {"height", "m", 0, 20},
-                                           {"sky", "", 0, 1},            {"slope", "", 0, 1.5f}};
+    static const std::vector<View> list = {{"picture", "", 0, 1},       {"depth", "m", 0, 5},  {"speed", "m/s", 0, 6},
+                                           {"saturation", "", 0, 0.5f}, {"froude", "", 0, 2},  {"sand", "m", 0, 4},
+                                           {"sand-speed", "m/s", 0, 3}, {"foam", "", 0, 1},    {"height", "m", 0, 20},
+                                           {"sky", "", 0, 1},           {"slope", "", 0, 1.5f}};
     return list;
 }
 
@@ -60,7 +60,8 @@ FrameParams frame_params(const Picture& picture, const Grid& grid, int width, in
     const Camera& camera = picture.camera;
     const Look& look = picture.look;
     const Quality& quality = picture.quality;
-    const float tan_up = std::tan(0.5f * camera.field), tan_right = tan_up * static_cast<float>(width) / static_cast<float>(height);
+    const float tan_up = std::tan(0.5f * camera.field),
+                tan_right = tan_up * static_cast<float>(width) / static_cast<float>(height);
     const float azimuth = glm::radians(look.sun_azimuth), elevation = glm::radians(look.sun_elevation);
     const glm::vec3 sun{std::sin(azimuth) * std::cos(elevation), std::cos(azimuth) * std::cos(elevation), std::sin(elevation)};
     const glm::vec2 extent = grid.extent();

@@ -10,13 +10,13 @@ namespace viewer {
 
 struct Quality {
     std::string name;
-    int samples;           // per pixel
-    int primary_steps;     // most steps of a ray from the eye
-    int reflection_steps;  // 0 = water mirrors the sky only
+    int samples;          // per pixel
+    int primary_steps;    // most steps of a ray from the eye
+    int reflection_steps; // 0 = water mirrors the sky only
     int refraction_steps;
-    int sky_sectors;       // directions in which the horizon is sought for sky light
+    int sky_sectors; // directions in which the horizon is sought for sky light
     bool glitter;
-    bool smooth_edges;     // where there is one sample
+    bool smooth_edges; // where there is one sample
 };
 const std::vector<Quality>& quality_presets();
 /// Throws std::runtime_error naming the presets.
@@ -29,7 +29,7 @@ struct Look {
     float sun_softness = 0.05f; // half width of the penumbra, a difference of slopes
     float exposure = 0.72f;
     float ambient = 1.25f;
-    float clarity = 2.5f;       // depth at which a third of green light is left [m]
+    float clarity = 2.5f; // depth at which a third of green light is left [m]
     float ripples = 1.0f;
     float glitter = 1.2f;
     float rim = 0.5f;
@@ -72,8 +72,8 @@ struct Picture {
 /// The grid that is drawn.
 struct Grid {
     int nx = 1, ny = 1;
-    float dx = 1;  // [m]
-    Block block;   // low.z: where the block is cut off below
+    float dx = 1; // [m]
+    Block block;  // low.z: where the block is cut off below
     glm::vec2 extent() const { return {static_cast<float>(nx) * dx, static_cast<float>(ny) * dx}; }
 };
 

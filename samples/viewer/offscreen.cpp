@@ -23,10 +23,10 @@ int run_offscreen(const Options& options) {
         Simulation simulation(gpu, options.simulation);
         for (const std::string& line : take_log()) std::fprintf(stderr, "%s\n", line.c_str());
         Renderer renderer(gpu, options.width, options.height);
-        std::printf("level      %s, %d x %d cells of %g m, dt %g s\n", options.level_name.c_str(), simulation.info.nx, simulation.info.ny,
-                    simulation.info.dx, simulation.info.dt);
-        std::printf("simulated  %s: %s\ndrawn      %s, %u x %u, quality %s\n", simulation.info.backend, simulation.info.device_name,
-                    gpu.name.c_str(), options.width, options.height, options.quality.c_str());
+        std::printf("level      %s, %d x %d cells of %g m, dt %g s\n", options.level_name.c_str(), simulation.info.nx,
+                    simulation.info.ny, simulation.info.dx, simulation.info.dt);
+        std::printf("simulated  %s: %s\ndrawn      %s, %u x %u, quality %s\n", simulation.info.backend,
+                    simulation.info.device_name, gpu.name.c_str(), options.width, options.height, options.quality.c_str());
 
         Picture picture;
         picture.camera = camera_preset(options.camera, simulation.grid.block,
@@ -73,8 +73,8 @@ int run_offscreen(const Options& options) {
         }
         const double counted = static_cast<double>(options.frames > 1 ? options.frames - 1 : 1);
         std::printf("time       %.3f s simulated\n", simulation.frame.time);
-        std::printf("frame      %.2f ms (wall), %.2f ms of processor time; simulation %.2f ms (wall, %.3g s of it each)\n", drawn / counted,
-                    processor / counted, simulated / counted, options.every);
+        std::printf("frame      %.2f ms (wall), %.2f ms of processor time; simulation %.2f ms (wall, %.3g s of it each)\n",
+                    drawn / counted, processor / counted, simulated / counted, options.every);
         std::printf("passes     grid %.2f, see %.2f, shade %.2f, finish %.2f ms on the device\n", device.grid / counted,
                     device.see / counted, device.shade / counted, device.finish / counted);
         std::printf("pictures   %llu in %s\n", static_cast<unsigned long long>(options.frames), options.out.string().c_str());

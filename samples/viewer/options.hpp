@@ -21,7 +21,7 @@ struct Options {
     // offscreen
     bool offscreen = false;
     uint64_t frames = 1;
-    double start = 0;      // [s]
+    double start = 0;        // [s]
     double every = 1.0 / 30; // [s]
     std::filesystem::path out;
     bool video = false;

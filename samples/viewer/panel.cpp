@@ -48,7 +48,9 @@ void Panel::draw(Session& session, double frame_seconds) {
         if (ImGui::CollapsingHeader("Materials and effects")) level_changes(session);
         if (ImGui::CollapsingHeader("Ledger")) ledger(session, frame_seconds);
         if (ImGui::CollapsingHeader("Back in time")) time_travel(session);
-    } catch (const std::exception& error) { session.message = error.what(); }
+    } catch (const std::exception& error) {
+        session.message = error.what();
+    }
     if (ImGui::CollapsingHeader("Keys")) ImGui::TextWrapped("%s", controls_help);
     if (!session.message.empty()) {
         ImGui::Separator();
@@ -74,14 +76,17 @@ void Panel::simulation(Session& session) {
         session.open(levels[static_cast<std::size_t>(level)].name, choice);
     }
     static const char* const backends[] = {"auto", "cpu", "vulkan", "cuda"};
-    int backend = static_cast<int>(std::find(std::begin(backends), std::end(backends), session.choice().backend) - std::begin(backends));
-    if (choose("backend", [](int n) { return backends[n]; }, 4, backend)) {
+    int backend =
+        static_cast<int>(std::find(std::begin(backends), std::end(backends), session.choice().backend) - std::begin(backends));
+    if (choose(
+            "backend", [](int n) { return backends[n]; }, 4, backend)) {
         SimulationChoice choice = session.choice();
         choice.backend = backends[backend];
         session.open(session.level_name, choice);
     }
     const wadi_world_info& info = session.simulation().info;
-    ImGui::TextWrapped("%d x %d cells of %g m, dt %g s\n%s: %s", info.nx, info.ny, info.dx, info.dt, info.backend, info.device_name);
+    ImGui::TextWrapped("%d x %d cells of %g m, dt %g s\n%s: %s", info.nx, info.ny, info.dx, info.dt, info.backend,
+                       info.device_name);
     ImGui::Text("t = %.2f s, step %" PRIu64, session.simulation().frame.time, session.simulation().frame.total_steps);
     ImGui::Checkbox("pause", &session.paused);
     ImGui::SameLine();
@@ -96,12 +101,14 @@ void Panel::simulation(Session& session) {
 
 void Panel::tools(Session& session) {
     int tool = static_cast<int>(session.tool);
-    if (choose("tool", [](int n) { return tool_names[n]; }, static_cast<int>(std::size(tool_names)), tool)) session.tool = static_cast<Tool>(tool);
+    if (choose(
+            "tool", [](int n) { return tool_names[n]; }, static_cast<int>(std::size(tool_names)), tool))
+        session.tool = static_cast<Tool>(tool);
     const glm::vec2 extent = session.simulation().grid.extent();
     const float longest = std::max(extent.x, extent.y), dx = session.simulation().grid.dx;
     ImGui::SliderFloat("radius [m]", &session.brush_radius, dx, 0.2f * longest, "%.2f", ImGuiSliderFlags_Logarithmic);
-    ImGui::SliderFloat(session.tool == Tool::push ? "strength" : "strength [m/s]", &session.brush_strength, 0.01f, 0.1f * longest, "%.2f",
-                       ImGuiSliderFlags_Logarithmic);
+    ImGui::SliderFloat(session.tool == Tool::push ? "strength" : "strength [m/s]", &session.brush_strength, 0.01f, 0.1f * longest,
+                       "%.2f", ImGuiSliderFlags_Logarithmic);
     for (std::size_t n = 0; n < session.sources.size(); ++n) {
         PlacedSource& source = session.sources[n];
         ImGui::PushID(static_cast<int>(n));
@@ -133,7 +140,9 @@ void Panel::quality(Session& session) {
     for (std::size_t n = 0; n < presets.size(); ++n) {
         if (presets[n].name == picture.quality.name) preset = static_cast<int>(n);
     }
-    if (choose("quality", [&](int n) { return presets[static_cast<std::size_t>(n)].name.c_str(); }, static_cast<int>(presets.size()), preset))
+    if (choose(
+            "quality", [&](int n) { return presets[static_cast<std::size_t>(n)].name.c_str(); }, static_cast<int>(presets.size()),
+            preset))
         picture.quality = presets[static_cast<std::size_t>(preset)];
     ImGui::SliderInt("samples", &picture.quality.samples, 1, 16);
     ImGui::SliderInt("reflection steps", &picture.quality.reflection_steps, 0, 256);
@@ -141,16 +150,22 @@ void Panel::quality(Session& session) {
     ImGui::Checkbox("glitter", &picture.quality.glitter);
     const std::vector<std::string>& cameras = camera_presets();
     int camera = -1;
-    if (choose("camera", [&](int n) { return cameras[static_cast<std::size_t>(n)].c_str(); }, static_cast<int>(cameras.size()), camera))
-        picture.camera = camera_preset(cameras[static_cast<std::size_t>(camera)], session.simulation().grid.block,
-                                       static_cast<float>(session.renderer.width()) / static_cast<float>(session.renderer.height()));
-    if (choose("view", [](int n) { return views()[static_cast<std::size_t>(n)].name; }, static_cast<int>(views().size()), picture.view)) {
+    if (choose(
+            "camera", [&](int n) { return cameras[static_cast<std::size_t>(n)].c_str(); }, static_cast<int>(cameras.size()),
+            camera))
+        picture.camera =
+            camera_preset(cameras[static_cast<std::size_t>(camera)], session.simulation().grid.block,
+                          static_cast<float>(session.renderer.width()) / static_cast<float>(session.renderer.height()));
+    if (choose(
+            "view", [](int n) { return views()[static_cast<std::size_t>(n)].name; }, static_cast<int>(views().size()),
+            picture.view)) {
         picture.low = views()[static_cast<std::size_t>(picture.view)].low;
         picture.high = views()[static_cast<std::size_t>(picture.view)].high;
     }
     if (picture.view != 0) {
         const View& view = views()[static_cast<std::size_t>(picture.view)];
-        ImGui::DragFloatRange2(view.unit[0] == 0 ? "range" : view.unit, &picture.low, &picture.high, 0.01f * (view.high - view.low));
+        ImGui::DragFloatRange2(view.unit[0] == 0 ? "range" : view.unit, &picture.low, &picture.high,
+                               0.01f * (view.high - view.low));
         if (picture.high <= picture.low) picture.high = picture.low + 1e-3f;
     }
     ImGui::Checkbox("arrows", &picture.arrows);
@@ -201,14 +216,17 @@ void Panel::level_changes(Session& session) {
         const float most = wide ? std::min(material.most, 10 * std::max(material.value, 1.0f)) : material.most;
         ImGui::SliderFloat(material.key.c_str(), &material.value, material.least, most, "%.4g", ImGuiSliderFlags_AlwaysClamp);
         if (ImGui::IsItemHovered())
-            ImGui::SetTooltip("%s; %g ... %g", material.description.c_str(), static_cast<double>(material.least), static_cast<double>(material.most));
+            ImGui::SetTooltip("%s; %g ... %g", material.description.c_str(), static_cast<double>(material.least),
+                              static_cast<double>(material.most));
     }
     uint32_t count = 0;
     check(wadi_world_get_effects(session.simulation().world, nullptr, &count), "effects");
     std::vector<wadi_effect_info> effects(count);
     check(wadi_world_get_effects(session.simulation().world, effects.data(), &count), "effects");
     for (EffectSetting& effect : settings.effects) {
-        choose(effect.name.c_str(), [](int n) { return effect_forces[n]; }, static_cast<int>(std::size(effect_forces)), effect.force);
+        choose(
+            effect.name.c_str(), [](int n) { return effect_forces[n]; }, static_cast<int>(std::size(effect_forces)),
+            effect.force);
         for (const wadi_effect_info& now : effects) {
             if (effect.name != now.name) continue;
             ImGui::SameLine();
@@ -232,7 +250,8 @@ void Panel::ledger(Session& session, double seconds) {
     ImGui::Text("now    %12.3f  %12.3f", stats_.sand_volume, stats_.water_volume);
     ImGui::Text("drift  %10" PRId64 " q  %10" PRId64 " q", stats_.sand_drift_quanta, stats_.water_drift_quanta);
     ImGui::Text("speed  %8.2f m/s  %8.2f m/s", stats_.largest_sand_speed, stats_.largest_water_speed);
-    ImGui::Text("clamped %" PRIu64 ", capped %" PRIu64 ", limited %" PRIu64, stats_.clamped_faces, stats_.capped_faces, stats_.limited_cells);
+    ImGui::Text("clamped %" PRIu64 ", capped %" PRIu64 ", limited %" PRIu64, stats_.clamped_faces, stats_.capped_faces,
+                stats_.limited_cells);
     ImGui::Text("hash %016" PRIx64, stats_.hash);
 }
 
@@ -276,7 +295,8 @@ void Panel::profile(const Session& session) {
     high += 0.1f * std::max(high - low, 0.1f);
     const glm::vec4& ends = session.picture.section.ends;
     const float length = std::hypot(ends.z - ends.x, ends.w - ends.y);
-    ImGui::Text("%.1f m along, elevation %.2f ... %.2f m", static_cast<double>(length), static_cast<double>(low), static_cast<double>(high));
+    ImGui::Text("%.1f m along, elevation %.2f ... %.2f m", static_cast<double>(length), static_cast<double>(low),
+                static_cast<double>(high));
     const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->Flags &= ~ImDrawListFlags_AntiAliasedFill; // soft edges would leave seams between the columns

@@ -15,8 +15,7 @@ constexpr uint32_t GROUP = 8; // local size of the passes
 constexpr std::array<uint32_t, 7> sampled_bindings = {1, 2, 3, 4, 5, 6, 25};
 constexpr uint32_t first_source = 7, first_storage = 14, storage_count = 11, summit_storage = 26;
 
-template <std::size_t N>
-VkPipeline make_pipeline(const Gpu& gpu, VkPipelineLayout layout, const uint32_t (&words)[N]) {
+template <std::size_t N> VkPipeline make_pipeline(const Gpu& gpu, VkPipelineLayout layout, const uint32_t (&words)[N]) {
     VkShaderModuleCreateInfo module_info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
     module_info.codeSize = sizeof(words);
     module_info.pCode = words;
@@ -116,7 +115,8 @@ void Renderer::make_layouts() {
 void Renderer::resize(uint32_t width, uint32_t height) {
     wait();
     drawn_ = false;
-    seen_ = Image(gpu_, width, height, VK_FORMAT_R32G32B32A32_SFLOAT, VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
+    seen_ =
+        Image(gpu_, width, height, VK_FORMAT_R32G32B32A32_SFLOAT, VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
     colour_ = Image(gpu_, width, height, VK_FORMAT_R16G16B16A16_SFLOAT, VK_IMAGE_USAGE_STORAGE_BIT);
     picture_ = Image(gpu_, width, height, VK_FORMAT_R8G8B8A8_UNORM,
                      VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | usage_);
@@ -143,8 +143,9 @@ void Renderer::make_grid_images(const Grid& grid) {
     vkGetPhysicalDeviceProperties(gpu_.physical, &properties);
     const uint32_t most = properties.limits.maxImageDimension2D;
     if (base_width_ > most || base_height_ + base_height_ / 2 > most)
-        throw std::runtime_error("grid: " + std::to_string(nx_) + " x " + std::to_string(ny_) + " cells need pictures larger than the " +
-                                 std::to_string(most) + " pixels that " + gpu_.name + " allows");
+        throw std::runtime_error("grid: " + std::to_string(nx_) + " x " + std::to_string(ny_) +
+                                 " cells need pictures larger than the " + std::to_string(most) + " pixels that " + gpu_.name +
+                                 " allows");
     pyramid_ = Image(gpu_, base_width_, base_height_ + base_height_ / 2, VK_FORMAT_R32_SFLOAT, usage);
     summit_ = Image(gpu_, 1, 1, VK_FORMAT_R32_SFLOAT, usage);
     make_descriptor_set();
@@ -181,11 +182,10 @@ void Renderer::make_descriptor_set() {
                                                 light_.view,   pyramid_.view, summit_.view};
     for (std::size_t n = 0; n < sampled.size(); ++n)
         write_image(sampled_bindings[n], VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, sampled[n]);
-    const std::array<VkImageView, storage_count> storage = {
-        heights_.view, matter_.view, flow_.view,   slopes_.view, pyramid_.view, light_.view,
-        seen_.view,    seen_.view,   colour_.view, colour_.view, picture_.view};
-    for (uint32_t n = 0; n < storage_count; ++n)
-        write_image(first_storage + n, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, storage[n]);
+    const std::array<VkImageView, storage_count> storage = {heights_.view, matter_.view, flow_.view,   slopes_.view,
+                                                            pyramid_.view, light_.view,  seen_.view,   seen_.view,
+                                                            colour_.view,  colour_.view, picture_.view};
+    for (uint32_t n = 0; n < storage_count; ++n) write_image(first_storage + n, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, storage[n]);
     write_image(summit_storage, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, summit_.view);
     const VkDescriptorBufferInfo buffer{params_.handle, 0, sizeof(FrameParams)};
     VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
@@ -219,7 +219,9 @@ void Renderer::wait() {
     check(vkGetQueryPoolResults(gpu_.device, marks_, 0, MARKS, sizeof(ticks), ticks.data(), sizeof(uint64_t),
                                 VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
           "vkGetQueryPoolResults");
-    const auto between = [&](std::size_t n) { return static_cast<double>(ticks[n + 1] - ticks[n]) * gpu_.nanoseconds_per_tick * 1e-6; };
+    const auto between = [&](std::size_t n) {
+        return static_cast<double>(ticks[n + 1] - ticks[n]) * gpu_.nanoseconds_per_tick * 1e-6;
+    };
     times_ = {between(0), between(1), between(2), between(3), between(4)};
 }
 
@@ -227,8 +229,8 @@ void Renderer::barrier() const {
     VkMemoryBarrier memory{VK_STRUCTURE_TYPE_MEMORY_BARRIER};
     memory.srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT;
     memory.dstAccessMask = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
-    vkCmdPipelineBarrier(commands_, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0, 1, &memory, 0, nullptr,
-                         0, nullptr);
+    vkCmdPipelineBarrier(commands_, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0, 1, &memory, 0,
+                         nullptr, 0, nullptr);
 }
 
 void Renderer::mark(uint32_t n) const {
@@ -244,8 +246,8 @@ void Renderer::dispatch(VkPipeline pipeline, uint32_t across, uint32_t down, uin
     barrier();
 }
 
-void Renderer::draw(const Picture& what, const Grid& grid, const Sources& sources, bool foreign_memory, const Submission& submission,
-                    const std::function<void(VkCommandBuffer)>& after) {
+void Renderer::draw(const Picture& what, const Grid& grid, const Sources& sources, bool foreign_memory,
+                    const Submission& submission, const std::function<void(VkCommandBuffer)>& after) {
     wait();
     if (grid.nx != nx_ || grid.ny != ny_) make_grid_images(grid);
     bind_sources(sources);
@@ -300,8 +302,8 @@ void Renderer::draw(const Picture& what, const Grid& grid, const Sources& source
     VkMemoryBarrier drawn{VK_STRUCTURE_TYPE_MEMORY_BARRIER};
     drawn.srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT;
     drawn.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
-    vkCmdPipelineBarrier(commands_, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 1, &drawn, 0, nullptr, 0,
-                         nullptr);
+    vkCmdPipelineBarrier(commands_, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 1, &drawn, 0,
+                         nullptr, 0, nullptr);
     if (after) after(commands_);
     mark(5);
     check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");

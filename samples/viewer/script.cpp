@@ -11,10 +11,10 @@ namespace {
 
 /// Commands and how many words follow.
 const std::map<std::string, std::size_t> commands = {
-    {"pointer", 2}, {"press", 1},  {"release", 1},    {"wheel", 1},  {"key", 1},    {"tool", 1},     {"radius", 1},
-    {"strength", 1}, {"speed", 1}, {"pause", 0},      {"resume", 0}, {"step", 0},   {"restart", 0},  {"screenshot", 0},
-    {"record", 1},  {"view", 1},   {"quality", 1},    {"arrows", 0}, {"section", 4}, {"backend", 1}, {"level", 2},
-    {"keep", 2},    {"back", 1},   {"determinism", 1}, {"print", 0}, {"resize", 2}, {"minimise", 0}, {"restore", 0},
+    {"pointer", 2},  {"press", 1}, {"release", 1},     {"wheel", 1},  {"key", 1},     {"tool", 1},     {"radius", 1},
+    {"strength", 1}, {"speed", 1}, {"pause", 0},       {"resume", 0}, {"step", 0},    {"restart", 0},  {"screenshot", 0},
+    {"record", 1},   {"view", 1},  {"quality", 1},     {"arrows", 0}, {"section", 4}, {"backend", 1},  {"level", 2},
+    {"keep", 2},     {"back", 1},  {"determinism", 1}, {"print", 0},  {"resize", 2},  {"minimise", 0}, {"restore", 0},
 };
 
 std::size_t button_number(const std::string& name) {
@@ -28,8 +28,8 @@ void print_state(Session& session) {
     wadi_world_stats stats = wadi_default_world_stats();
     check(wadi_world_get_stats(session.simulation().world, &stats), "statistics");
     std::printf("state step %llu sand %.6f water %.6f sand_in %.6f water_in %.6f kept %zu hash %016llx\n",
-                static_cast<unsigned long long>(stats.steps), stats.sand_volume, stats.water_volume, stats.sand_in, stats.water_in,
-                session.rollback_steps().size(), static_cast<unsigned long long>(stats.hash));
+                static_cast<unsigned long long>(stats.steps), stats.sand_volume, stats.water_volume, stats.sand_in,
+                stats.water_in, session.rollback_steps().size(), static_cast<unsigned long long>(stats.hash));
     std::fflush(stdout);
 }
 

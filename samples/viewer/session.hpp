@@ -10,7 +10,7 @@
 namespace viewer {
 
 enum class Tool { look, add_sand, take_sand, add_water, take_water, raise, lower, push, spring, section };
-inline constexpr const char* tool_names[] = {"look",  "add sand",      "take sand", "add water",    "take water",
+inline constexpr const char* tool_names[] = {"look",  "add sand",     "take sand", "add water",    "take water",
                                              "raise", "lower ground", "push",      "place source", "section"};
 
 /// A source placed by hand: an edit of each update.
@@ -32,7 +32,7 @@ class Session {
 
     /// Replaces the world; keeps the old one and throws where the new one cannot be made.
     void open(const std::string& level_name, const SimulationChoice& choice);
-    void restart();            // the same level as at its start, with changed settings
+    void restart(); // the same level as at its start, with changed settings
     Simulation& simulation() { return *simulation_; }
     const SimulationChoice& choice() const { return choice_; }
 
@@ -53,7 +53,7 @@ class Session {
     std::vector<wadi_stage_timing> stage_timings() const;
 
     void screenshot() { screenshot_due_ = true; } // of the next frame
-    void set_recording(bool on); // pictures of equal simulated time, then an MP4
+    void set_recording(bool on);                  // pictures of equal simulated time, then an MP4
 
     std::string level_name;
     Picture picture;

@@ -176,8 +176,8 @@ bool Simulation::stage() {
         check(result, "fetching an output");
         const std::size_t row_bytes = static_cast<std::size_t>(info.nx) * static_cast<std::size_t>(floats[n]) * sizeof(float);
         for (std::size_t j = 0; j < static_cast<std::size_t>(info.ny); ++j) {
-            std::memcpy(static_cast<char*>(staging_[n].mapped) + j * row_bytes, reinterpret_cast<const char*>(data) + j * row_pitch,
-                        row_bytes);
+            std::memcpy(static_cast<char*>(staging_[n].mapped) + j * row_bytes,
+                        reinterpret_cast<const char*>(data) + j * row_pitch, row_bytes);
         }
         staged_step_ = step;
     }
@@ -194,7 +194,8 @@ const Sources& Simulation::sources(bool whole) {
     }
     for (std::size_t n = 0; n < outputs.size(); ++n) {
         wadi_output_view view = wadi_default_output_view();
-        wadi_result result = floats[n] == 1 ? wadi_world_get_view(world, outputs[n], WADI_OUTPUT_INTERPOLATED, &view) : WADI_NOT_READY;
+        wadi_result result =
+            floats[n] == 1 ? wadi_world_get_view(world, outputs[n], WADI_OUTPUT_INTERPOLATED, &view) : WADI_NOT_READY;
         if (result == WADI_NOT_READY) result = wadi_world_get_view(world, outputs[n], WADI_OUTPUT_CURRENT, &view);
         check(result, "viewing an output");
         sources_[n] = {reinterpret_cast<VkBuffer>(view.handle), static_cast<int>(view.offset / sizeof(float)),

@@ -52,7 +52,8 @@ class Simulation {
     void update(uint64_t nanoseconds);
     /// Whole steps beside the clock; outputs follow with the next update.
     void step(uint32_t steps);
-    /// Outputs of the newest update. `whole`: waits until the host has those of the last step (CPU backend; the others never wait).
+    /// Outputs of the newest update. `whole`: waits until the host has those of the last step (CPU backend; the others never
+    /// wait).
     const Sources& sources(bool whole);
 
     /// For the next picture. CUDA's work and the viewer's are ordered by a timeline semaphore; the other backends share the

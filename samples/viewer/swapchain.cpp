@@ -6,7 +6,8 @@ namespace viewer {
 
 Swapchain::Swapchain(const Gpu& gpu, VkSurfaceKHR surface) : gpu_(gpu), surface_(surface) {
     VkBool32 presents = VK_FALSE;
-    check(vkGetPhysicalDeviceSurfaceSupportKHR(gpu_.physical, gpu_.family, surface_, &presents), "vkGetPhysicalDeviceSurfaceSupportKHR");
+    check(vkGetPhysicalDeviceSurfaceSupportKHR(gpu_.physical, gpu_.family, surface_, &presents),
+          "vkGetPhysicalDeviceSurfaceSupportKHR");
     if (presents == VK_FALSE) throw std::runtime_error(gpu_.name + " cannot present to this window");
     const VkSemaphoreCreateInfo info{VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO};
     check(vkCreateSemaphore(gpu_.device, &info, nullptr, &available_), "vkCreateSemaphore");
@@ -28,7 +29,8 @@ void Swapchain::destroy_semaphores() {
 void Swapchain::make(uint32_t width, uint32_t height) {
     vkDeviceWaitIdle(gpu_.device);
     VkSurfaceCapabilitiesKHR capabilities;
-    check(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(gpu_.physical, surface_, &capabilities), "vkGetPhysicalDeviceSurfaceCapabilitiesKHR");
+    check(vkGetPhysicalDeviceSurfaceCapabilitiesKHR(gpu_.physical, surface_, &capabilities),
+          "vkGetPhysicalDeviceSurfaceCapabilitiesKHR");
     extent_ = capabilities.currentExtent.width != UINT32_MAX
                   ? capabilities.currentExtent
                   : VkExtent2D{std::clamp(width, capabilities.minImageExtent.width, capabilities.maxImageExtent.width),
@@ -37,7 +39,8 @@ void Swapchain::make(uint32_t width, uint32_t height) {
     uint32_t count = 0;
     check(vkGetPhysicalDeviceSurfaceFormatsKHR(gpu_.physical, surface_, &count, nullptr), "vkGetPhysicalDeviceSurfaceFormatsKHR");
     std::vector<VkSurfaceFormatKHR> formats(count);
-    check(vkGetPhysicalDeviceSurfaceFormatsKHR(gpu_.physical, surface_, &count, formats.data()), "vkGetPhysicalDeviceSurfaceFormatsKHR");
+    check(vkGetPhysicalDeviceSurfaceFormatsKHR(gpu_.physical, surface_, &count, formats.data()),
+          "vkGetPhysicalDeviceSurfaceFormatsKHR");
     // Pictures are encoded already: a format that encodes once more is the last choice.
     VkSurfaceFormatKHR format = formats.at(0);
     for (const VkSurfaceFormatKHR& candidate : formats) {
@@ -109,19 +112,20 @@ void Swapchain::copy_from(const Image& picture, VkCommandBuffer commands) const 
     barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
     barrier.image = images_[image_];
     barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, nullptr, 0, nullptr, 1, &barrier);
+    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, nullptr, 0, nullptr, 1,
+                         &barrier);
     VkImageBlit blit{};
     blit.srcSubresource = blit.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
     blit.srcOffsets[1] = {static_cast<int32_t>(picture.width), static_cast<int32_t>(picture.height), 1};
     blit.dstOffsets[1] = {static_cast<int32_t>(extent_.width), static_cast<int32_t>(extent_.height), 1};
-    vkCmdBlitImage(commands, picture.handle, VK_IMAGE_LAYOUT_GENERAL, images_[image_], VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &blit,
-                   VK_FILTER_LINEAR);
+    vkCmdBlitImage(commands, picture.handle, VK_IMAGE_LAYOUT_GENERAL, images_[image_], VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1,
+                   &blit, VK_FILTER_LINEAR);
     barrier.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
     barrier.dstAccessMask = 0;
     barrier.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
     barrier.newLayout = VK_IMAGE_LAYOUT_PRESENT_SRC_KHR;
-    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, 0, 0, nullptr, 0, nullptr, 1,
-                         &barrier);
+    vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT, 0, 0, nullptr, 0,
+                         nullptr, 1, &barrier);
 }
 
 void Swapchain::present() {
@@ -134,8 +138,10 @@ void Swapchain::present() {
     info.pImageIndices = &image_;
     const VkResult result = vkQueuePresentKHR(gpu_.queue, &info);
     acquired_ = false;
-    if (result == VK_ERROR_OUT_OF_DATE_KHR || result == VK_SUBOPTIMAL_KHR) stale_ = true;
-    else check(result, "vkQueuePresentKHR");
+    if (result == VK_ERROR_OUT_OF_DATE_KHR || result == VK_SUBOPTIMAL_KHR)
+        stale_ = true;
+    else
+        check(result, "vkQueuePresentKHR");
 }
 
 } // namespace viewer

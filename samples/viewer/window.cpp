@@ -30,12 +30,16 @@ int run_window(const Options& options) {
     const Glfw glfw;
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
     const std::string title = "Wadi: " + options.level_name;
-    const Window window(glfwCreateWindow(static_cast<int>(options.width), static_cast<int>(options.height), title.c_str(), nullptr, nullptr),
-                        glfwDestroyWindow);
+    const Window window(
+        glfwCreateWindow(static_cast<int>(options.width), static_cast<int>(options.height), title.c_str(), nullptr, nullptr),
+        glfwDestroyWindow);
     if (!window) throw std::runtime_error("the window could not be made; --offscreen needs none");
     uint32_t count = 0;
     const char** required = glfwGetRequiredInstanceExtensions(&count);
-    const Gpu gpu({.device = options.gpu, .validate = options.validate, .graphics = true, .instance_extensions = {required, required + count},
+    const Gpu gpu({.device = options.gpu,
+                   .validate = options.validate,
+                   .graphics = true,
+                   .instance_extensions = {required, required + count},
                    .swapchain = true});
     {
         VkSurfaceKHR surface = VK_NULL_HANDLE;
@@ -54,7 +58,8 @@ int run_window(const Options& options) {
                 last = std::chrono::steady_clock::now();
                 continue;
             }
-            if (!minimised && (static_cast<uint32_t>(width) != app.renderer.width() || static_cast<uint32_t>(height) != app.renderer.height()))
+            if (!minimised &&
+                (static_cast<uint32_t>(width) != app.renderer.width() || static_cast<uint32_t>(height) != app.renderer.height()))
                 app.resize(static_cast<uint32_t>(width), static_cast<uint32_t>(height));
             // The last picture is done before an image is asked for: its semaphores are free again.
             app.renderer.wait();
@@ -63,7 +68,8 @@ int run_window(const Options& options) {
             const double seconds = scripted ? options.every : std::chrono::duration<double>(now - last).count();
             last = now;
             const uint64_t frame = app.frames();
-            app.frame(seconds, swapchain.submission(), [&](VkCommandBuffer commands) { swapchain.copy_from(app.renderer.picture(), commands); });
+            app.frame(seconds, swapchain.submission(),
+                      [&](VkCommandBuffer commands) { swapchain.copy_from(app.renderer.picture(), commands); });
             swapchain.present();
             for (const Script::Line& line : app.script.lines(frame, "resize"))
                 glfwSetWindowSize(window.get(), std::stoi(line.words[0]), std::stoi(line.words[1]));
