@@ -87,9 +87,11 @@ vec3 shade_ground(Ground g) {
     seen += sun * (0.10 * dry * pow(along, 24.0));
     // A film of water on soaked sand reflects like water.
     float sheen = soaked * cover * (1.0 - g.drowned);
-    float fresnel = 0.02 + 0.98 * pow(1.0 - clamp(dot(n, g.to_eye), 0.0, 1.0), 5.0);
-    seen = mix(seen, sky_in(reflect(-g.to_eye, n)), sheen * 0.6 * fresnel * g.sky);
-    seen += sun * (sheen * 0.35 * pow(along, 90.0));
+    WHERE (sheen > 0.0) {
+        float fresnel = 0.02 + 0.98 * pow(1.0 - clamp(dot(n, g.to_eye), 0.0, 1.0), 5.0);
+        seen = mix(seen, sky_in(reflect(-g.to_eye, n)), sheen * 0.6 * fresnel * g.sky);
+        seen += sun * (sheen * 0.35 * pow(along, 90.0));
+    }
     WHERE (F.sand_dry.w > 0.0 && dry > 0.0)
         seen += sun * (F.sand_dry.w * dry * lambert * glitter_on(g.place, g.normal, halfway, g.pixel));
     return seen;

@@ -64,7 +64,7 @@ void main() {
     bool wall = kind == KIND_SOLID_WALL || kind == KIND_WATER_WALL;
     vec2 uv = texture_of(place.xy);
     vec3 to_wall = vec3(0.0);
-    if (wall) {
+    WHERE (wall) {
         vec2 to_low = abs(place.xy), to_high = abs(place.xy - F.domain.yz);
         float nearest = min(min(to_low.x, to_low.y), min(to_high.x, to_high.y));
         to_wall = to_low.x == nearest ? vec3(-1, 0, 0) : to_low.y == nearest ? vec3(0, -1, 0) : to_high.x == nearest ? vec3(1, 0, 0) : vec3(0, 1, 0);
@@ -130,10 +130,10 @@ void main() {
             else mirror_colour = light_back;
         }
     }
-    if (kind == KIND_SKY) colour = sky_in(along) + sun_disc(along);
+    WHERE (kind == KIND_SKY) colour = sky_in(along) + sun_disc(along);
     WHERE (kind == KIND_PLINTH) colour = shade_plinth(place, along);
     WHERE (kind == KIND_SOLID_WALL) colour = shade_wall(place, to_wall, pixel_size);
-    if (water) {
+    WHERE (water) {
         if (lost) colour = ambient_on(vec3(0.0, 0.0, 1.0), 1.0) * 0.5;
         vec3 through = exp(-F.water.rgb * path);
         vec3 lights = F.sunlight.rgb * (0.75 * lit.x * F.sun.z) + ambient_on(vec3(0.0, 0.0, 1.0), lit.y);

@@ -30,12 +30,16 @@ vec2 ripple_slopes(Carried c, float speed, float pixel) {
 // Share of the surface under bubbles: patches that the flow carries, broken up where foam is thin.
 float foam_cover(Carried c, float foam, float depth, float pixel) {
     foam *= smoothstep(0.08, 0.3, depth / F.domain.x); // a film does not foam
-    float size = 1.1 * F.domain.x, cover = 0.0;
+    float size = 1.4 * F.domain.x, cover = 0.0;
     WHERE (foam > 0.02) {
         float pattern = 0.0;
-        for (int n = 0; n < 2; ++n)
-            pattern += c.weight[n] * (noise_slopes(c.back[n] / size).x + 0.7 * resolved(0.31 * size, pixel) * noise_slopes(c.back[n] / (0.31 * size)).x);
+        for (int n = 0; n < 2; ++n) { // turned octaves: value noise alone would show its grid
+            vec2 p = mat2(0.80, 0.60, -0.60, 0.80) * c.back[n], q = mat2(0.34, -0.94, 0.94, 0.34) * c.back[n];
+            pattern += c.weight[n] * noise_slopes(p / size).x;
+            WHERE (resolved(0.31 * size, pixel) > 0.0)
+                pattern += c.weight[n] * 0.7 * resolved(0.31 * size, pixel) * noise_slopes(q / (0.31 * size)).x;
+        }
         cover = foam * smoothstep(0.6 - 0.6 * foam, 1.7 - 0.6 * foam, 0.6 + 0.4 * pattern);
     }
-    return 0.8 * cover;
+    return 0.7 * cover;
 }
