@@ -86,6 +86,12 @@ std::uint64_t level_digest(const Settings& s) {
     }
     series(s.rain);
     series(s.evaporation);
+    for (const auto& [edit, time, every, until, move] : s.edits) {
+        for (const double value :
+             {double(edit.kind), double(edit.layer), double(edit.capsule), edit.x0, edit.y0, edit.x1, edit.y1, edit.radius,
+              edit.softness, edit.amount, edit.strength, edit.velocity_x, edit.velocity_y, time, every, until, move[0], move[1]})
+            add(value);
+    }
     return sum.value();
 }
 

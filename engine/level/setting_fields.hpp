@@ -63,6 +63,9 @@ inline constexpr double RAIN_MOST = 1;                  // rain and evaporation 
 inline constexpr double RATE_MOST = 1e4;                // of a source [m/s]
 inline constexpr double SPEED_MOST = 1e4;               // set by a source or as an initial velocity [m/s]
 inline constexpr double DISCHARGE_MOST = 1e9;           // through a side [m3/s]
+inline constexpr std::size_t EDITS_MOST = 1000;         // of a level
+inline constexpr double EDIT_TIME_MOST = 1e9;           // of a level's edit [s]
+inline constexpr double EDIT_EVERY_LEAST = 1e-3;        // [s]
 inline constexpr double SATURATION_GAP = 1e-3;          // least distance of 0, phi1, phi2 and phi3
 
 /// Names as level files write them; sides are indexed by SideName.

@@ -2,7 +2,7 @@
 """Makes the gallery: a contact sheet of six pictures for every level and variant, preview.png and preview_VARIANT.png beside the level,
 and the list of them in samples/levels/README.md.
 
-usage: samples/levels/gallery.py RECORDER [--backend auto] [LEVEL ...]
+usage: samples/levels/gallery.py RECORDER [LEVEL ...] [--backend auto]
 """
 import argparse
 import json

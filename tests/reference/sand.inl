@@ -123,7 +123,7 @@ template <class Real> void Solver<Real>::apply_friction() {
         Real& um = partner.along(ax)[f];
         if (hs_bar <= P.eps / Real(2)) {
             us = Real(0);
-            um = clamped(um, P.clamp);
+            um = drag && two_layers && hm_bar <= Real(0) ? Real(0) : clamped(um, P.clamp);
             return;
         }
         // Per bed area: inertia of the partner layer and of the sand, and the drag impulse per velocity difference.
@@ -139,7 +139,10 @@ template <class Real> void Solver<Real>::apply_friction() {
         const Real g_f = sand_gravity(std::max(sand[L], sand[R]));
         const Real N = P.friction * g_f * P.substep * std::max(Real(1) - P.rho_w * r, Real(0));
         us = size > Real(0) ? std::max(Real(1) - N / size, Real(0)) * p / (Real(1) + kappa) : Real(0);
-        if (drag && inertia + kd > Real(0)) um = (inertia * um_old.along(ax)[f] + kd * us) / (inertia + kd);
+        if (drag && two_layers && hm_bar <= Real(0))
+            um = Real(0);
+        else if (drag && inertia + kd > Real(0))
+            um = (inertia * um_old.along(ax)[f] + kd * us) / (inertia + kd);
         us = clamped(us, P.clamp_sand);
         um = clamped(um, P.clamp);
     });

@@ -2,6 +2,7 @@
 // loader fills it from JSON, hosts fill it by hand. validate() checks every field and names field and range.
 #pragma once
 #include "engine/compute/status.hpp"
+#include "engine/include/wadi/edit.hpp"
 #include <array>
 #include <cstdint>
 #include <string>
@@ -106,6 +107,7 @@ struct Settings {
     std::vector<Source> sources;                        // at most MAX_SOURCES (32)
     TimeSeries rain;                                    // [m/s]
     TimeSeries evaporation;                             // [m/s]
+    std::vector<ScriptedEdit> edits;                    // at most 1000; the world queues them itself
     std::vector<std::pair<std::string, Force>> effects; // names of engine/effects.cpp
 };
 
