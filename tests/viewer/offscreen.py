@@ -10,7 +10,7 @@ from pictures import alike, black_pixels, blue, difference, pixels, read_png, sa
 
 IMAGES = Path(__file__).parent / "images"
 # Level and time [s]: early enough for a slow machine.
-SCENES = {"canyon": 6.0, "castle": 2.0, "dam_break": 3.0, "flush": 1.5, "letters": 0.5, "piles": 0.5, "spring": 0.5}
+SCENES = {"beach": 1.0, "canyon": 6.0, "castle": 2.0, "dam_break": 3.0, "flush": 1.5, "letters": 0.5, "piles": 0.5, "seepage": 1.0, "spring": 0.5, "wadi": 1.0}
 
 
 class Viewer:
