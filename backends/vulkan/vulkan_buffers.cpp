@@ -4,7 +4,7 @@
 namespace wadi::vulkan {
 
 Status Buffers::open() {
-    auto memory = allocate(c_, 4096, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, Place::device, "null");
+    auto memory = allocate(c_, null_slices * null_slice_bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, Place::device, "null");
     if (!memory) return memory.status();
     null_ = std::move(*memory);
     return transfers_.zero(null_);

@@ -19,8 +19,11 @@ class Buffers {
     void destroy(compute::Buffer buffer);
     /// Null for a handle that is not alive.
     const Memory* find(compute::Buffer buffer) const;
-    /// Bound where a condition is off; 4 KiB that no stage touches.
-    const Memory& null_buffer() const { return null_; }
+    /// Bound where a condition is off; no stage touches it. The validation layers do not know that: what they take for a write
+    /// of one set and a read of the next must not meet, so each set of a program has a slice of its own.
+    VkDescriptorBufferInfo null_slice(std::uint64_t set) const {
+        return {null_.buffer, (set % null_slices) * null_slice_bytes, null_slice_bytes};
+    }
 
     /// Empty unless made for the host.
     std::span<std::byte> mapped(compute::Buffer buffer) const;
@@ -29,6 +32,9 @@ class Buffers {
     Status read(compute::Buffer buffer, std::uint64_t offset, std::span<std::byte> bytes);
 
   private:
+    static constexpr std::uint64_t null_slice_bytes = 256; // the largest minStorageBufferOffsetAlignment that is allowed
+    static constexpr std::uint64_t null_slices = 256;      // more than the sets of the longest program
+
     Result<const Memory*> find_range(compute::Buffer buffer, std::uint64_t offset, std::uint64_t bytes, const char* verb) const;
 
     Context& c_;

@@ -103,13 +103,14 @@ class Planner {
         info.pPoolSizes = sizes;
         const VkResult r = c_.vk.vkCreateDescriptorPool(c_.device, &info, nullptr, &plan_.descriptors);
         if (Status s = c_.check(r, "vkCreateDescriptorPool", builder_.label()); !s) return s;
+        std::uint64_t written = 0;
         for (auto& [key, set] : sets_) {
-            if (Status s = write_set(key, set); !s) return s;
+            if (Status s = write_set(key, set, p_.buffers.null_slice(written++)); !s) return s;
         }
         return ok_status();
     }
 
-    Status write_set(const SetKey& key, VkDescriptorSet& set) {
+    Status write_set(const SetKey& key, VkDescriptorSet& set, const VkDescriptorBufferInfo& absent) {
         auto info = vk_struct<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
         info.descriptorPool = plan_.descriptors;
         info.descriptorSetCount = 1;
@@ -121,8 +122,8 @@ class Planner {
         buffers[input_binding] = {p_.submissions.input_buffer(), 0, sizeof(StepInput)};
         for (std::size_t slot = 0; slot < key.second.size(); ++slot) {
             const Memory* memory = p_.buffers.find({key.second[slot]});
-            buffers[first_slot_binding + slot] = {(memory != nullptr ? *memory : p_.buffers.null_buffer()).buffer, 0,
-                                                  VK_WHOLE_SIZE};
+            buffers[first_slot_binding + slot] =
+                memory != nullptr ? VkDescriptorBufferInfo{memory->buffer, 0, VK_WHOLE_SIZE} : absent;
         }
         std::vector<VkWriteDescriptorSet> writes(buffers.size());
         for (std::uint32_t b = 0; b < writes.size(); ++b) {

@@ -229,7 +229,6 @@ int Recording::run() {
     report_.level = options_.level_name;
     report_.info = info;
     report_.warnings = world_.warnings();
-    for (const std::string& warning : report_.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
     std::printf("%s: %d x %d cells of %g m, %.6g s in %llu steps, on %s: %s\n", options_.level_name.c_str(), info.nx, info.ny,
                 info.dx, seconds_, static_cast<unsigned long long>(steps_), info.backend, info.device_name);
     std::fflush(stdout);

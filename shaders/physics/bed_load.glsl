@@ -8,7 +8,7 @@
 // Volume per width and time through a face: `along` is the face's own velocity, `across` the other component, `rise` the bed's
 // step to the high cell, slope_number 2/dx, slope_cap what keeps the bed's own diffusion stable [m/s].
 FN float bed_load(float along, float across, float rise, float shear, float threshold, float rate, float slope_number, float slope_cap) {
-    float speed2 = along * along + across * across;
+    float speed2 = square(along) + square(across);
     float excess = wmax(shear * speed2 - threshold, 0.0f);
     float moved = rate * (excess * wsqrt(excess));
     float downhill = wmin(moved * slope_number, slope_cap) * rise;

@@ -23,7 +23,7 @@ FN float drag_coupling_single(float water_height, float mixed_height, float sand
 // Sand's velocity after drag and stick or slip. px, py: sand momentum per mass with the water's share, us + kappa um;
 // slip: mu g dts max(0, 1 - rho_w h_m/(rho_s h_s)).
 FN float stick_or_slip(float along, float across, float slip, float kappa) {
-    float size = wsqrt(along * along + across * across);
+    float size = wsqrt(square(along) + square(across));
     float keep = wmax(0.0f, 1.0f - divide_or_zero(slip, size));
     keep = size > 0.0f ? keep : 0.0f;
     return wdiv(keep * along, 1.0f + kappa);

@@ -10,6 +10,12 @@ FN float wclamp(float x, float low, float high) { return wmin(wmax(x, low), high
 // No denormal and no negative zero leaves a stage: some GPUs flush denormals and others keep them.
 FN float flush(float x) { return wabs(x) < 1.0e-20f ? 0.0f : x; }
 
+// x*x, 0 where it would come near the denormals: a root of it would be 0 on one GPU and x on another.
+FN float square(float x) {
+    float s = x * x;
+    return s < 1.0e-36f ? 0.0f : s;
+}
+
 // a/b where b may be zero: 0 there.
 FN float divide_or_zero(float a, float b) {
     float safe = b > 0.0f ? b : 1.0f;

@@ -94,12 +94,12 @@ FN float bounded_viscosity(float viscous, float mean, float least, float largest
 // c: cohesion [Pa]; cap: passive pressure K rho_s g hs [Pa].
 FN void project_stretch(REF(Stretch) v, REF(Stress) stress, float c, float cap, float bulk, float inv_bulk, float two_shear, float inv_two_shear,
                         float yield_slope, float inv_yield_slope, float inv_friction_yield) {
-    float bxx = 2.0f * v.xx + (v.xx * v.xx + v.xy * v.xy); // V V^T - I
-    float byy = 2.0f * v.yy + (v.yy * v.yy + v.xy * v.xy);
+    float bxx = 2.0f * v.xx + (square(v.xx) + square(v.xy)); // V V^T - I
+    float byy = 2.0f * v.yy + (square(v.yy) + square(v.xy));
     float bxy = 2.0f * v.xy + v.xy * (v.xx + v.yy);
     float m = 0.5f * (bxx + byy);
     float d = 0.5f * (bxx - byy);
-    float r = wsqrt(d * d + bxy * bxy);
+    float r = wsqrt(square(d) + square(bxy));
     float det = (1.0f + v.xx) * (1.0f + v.yy) - v.xy * v.xy;
     float e1 = half_log(m + r);
     float e2 = half_log(m - r);
@@ -118,7 +118,7 @@ FN void project_stretch(REF(Stretch) v, REF(Stress) stress, float c, float cap, 
     float y = yield_slope * tr - c;
     bool tip = y >= 0.0f;
     float limit = -y * inv_two_shear;
-    float size = wsqrt(2.0f * (dd * dd + dxy * dxy));
+    float size = wsqrt(2.0f * (square(dd) + square(dxy)));
     bool beyond = size > limit * slack;
     float shrink = beyond ? divide_or_zero(limit, size) : 1.0f;
     shrink = tip ? 0.0f : shrink;
@@ -133,7 +133,7 @@ FN void project_stretch(REF(Stretch) v, REF(Stress) stress, float c, float cap, 
 
     elastic = both(both(both(elastic, within), !tip), both(!broken, !beyond));
 
-    float hh = dd * dd + dxy * dxy;
+    float hh = square(dd) + square(dxy);
     float em = exp_minus_one(0.5f * tr);
     float e = 1.0f + em;
     float ch = cosh_minus_one(hh);

@@ -41,10 +41,11 @@ class Recorder:
         return self.run(LEVEL, "--backend", self.backend, "--size", "40x12", "--dt", "0.01", *arguments, code=code)
 
     def refuse(self, *arguments, says):
-        """A refused call writes one line on standard error, which says what is wrong, and leaves no file."""
+        """A refused call writes one line on standard error, which says what is wrong, and leaves no file. Where the level was read
+        before, its warnings and notes come first."""
         before = sorted(self.folder.rglob("*"))
         done = self.run(*arguments, code=BAD_INPUT)
-        lines = done.stderr.strip().splitlines()
+        lines = [line for line in done.stderr.strip().splitlines() if not line.startswith(("warning: ", "note: "))]
         assert len(lines) == 1, f"{arguments}: want one line, got {lines}"
         for word in says:
             assert word in lines[0], f"{arguments}: \"{word}\" is not in: {lines[0]}"
@@ -72,9 +73,11 @@ def read_npy(path):
 
 def test_lists(recorder):
     assert "cpu" in recorder.run("--list-backends").stdout
-    names = [line.split()[0] for line in recorder.run("--list-levels").stdout.splitlines()]
+    lines = recorder.run("--list-levels").stdout.splitlines()
+    names = [line.split()[0] for line in lines if not line.startswith(" ")]
     assert LEVEL in names, names
     assert names == sorted(names)
+    assert any("--variant" in line for line in lines), lines
     assert "--dump" in recorder.run("--help").stdout
 
 

@@ -173,8 +173,11 @@ TEST_CASE_TEMPLATE("reference: mass is exact with the quantum, heights and veloc
     Solver<Real> plain(set, WET_SAND | ELASTIC);
     random_scene(plain, 1);
     const double before = sum(plain.water);
-    for (int n = 0; n < 150; ++n) plain.step();
-    const double drift = std::abs(sum(plain.water) / before - 1);
+    double drift = 0; // the largest of all steps: at one of them the roundings may cancel
+    for (int n = 0; n < 150; ++n) {
+        plain.step();
+        drift = std::max(drift, std::abs(sum(plain.water) / before - 1));
+    }
     CHECK(drift > 0);
     CHECK(drift < 100 * static_cast<double>(std::numeric_limits<Real>::epsilon()));
     set.method.outflow_limiter = false;
