@@ -72,6 +72,9 @@ Status check_method(const Method& method) {
     if (method.gravity_cap > 0 && method.gravity_cap_least > method.gravity_cap)
         return refuse(outside_text("method.gravity_cap_least", method.gravity_cap_least, 0, method.gravity_cap) +
                       " (at most gravity_cap)");
+    if (method.velocity_transport == VelocityTransport::semi_lagrangian && method.velocity_clamp > SEMI_LAGRANGIAN_CLAMP_MOST)
+        return refuse(outside_text("method.velocity_clamp", method.velocity_clamp, 0.01, SEMI_LAGRANGIAN_CLAMP_MOST) +
+                      " (semi_lagrangian looks one cell back)");
     if (method.quantum < 0 && method.quantum > -1)
         return refuse("method.quantum: " + number_text(method.quantum) +
                       " is neither -1 (chosen), nor 0 (off), nor a positive height");
@@ -173,6 +176,11 @@ const std::vector<std::string>& effect_names() {
 
 const std::vector<std::string>& side_names() {
     static const std::vector<std::string> names = {"west", "east", "south", "north"};
+    return names;
+}
+
+const std::vector<std::string>& velocity_transport_names() {
+    static const std::vector<std::string> names = {"flux_form", "semi_lagrangian"};
     return names;
 }
 

@@ -40,6 +40,9 @@ void read_method(const Json& value, Method& method, Status& status) {
     reader.string("name", method.name);
     reader.boolean("outflow_limiter", method.outflow_limiter);
     read_fields(reader, method, METHOD_FIELDS);
+    int transport = static_cast<int>(method.velocity_transport);
+    reader.choice("velocity_transport", velocity_transport_names(), transport);
+    method.velocity_transport = static_cast<VelocityTransport>(transport);
     for (const auto& field : METHOD_COUNTS) reader.whole_number(field.name, method.*field.member, field.least, field.most);
     reader.finish();
 }

@@ -65,7 +65,7 @@ template <class Real> void Solver<Real>::add_stress_and_gravity() {
 }
 
 template <class Real> void Solver<Real>::integrate_sand_velocity() {
-    advect_velocity(sand, sand_flux, sand_velocity);
+    if (!has(EFFECT_SEMI_LAGRANGIAN)) advect_velocity(sand, sand_flux, sand_velocity);
     add_stress_and_gravity();
 }
 

@@ -99,9 +99,10 @@ template <class Real> void Solver<Real>::water_face(const Axis& ax, int a, int b
 }
 
 template <class Real> void Solver<Real>::integrate_water_velocity() {
-    advect_velocity(pure_predicted, pure_flux, pure_velocity);
+    const bool traced = has(EFFECT_SEMI_LAGRANGIAN);
+    if (!traced) advect_velocity(pure_predicted, pure_flux, pure_velocity);
     if (has(EFFECT_MIXTURE)) {
-        advect_velocity(mixed_predicted, mixed_flux, mixed_velocity);
+        if (!traced) advect_velocity(mixed_predicted, mixed_flux, mixed_velocity);
         exchange_split(mixed_predicted, pure_predicted, mixed);
     }
     for_inner_faces([&](const Axis& ax, int a, int b) { water_face(ax, a, b); });

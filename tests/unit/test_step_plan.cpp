@@ -13,6 +13,7 @@ namespace {
 std::vector<std::uint32_t> legal_masks() {
     std::uint32_t all = 0;
     for (const auto& effect : effect_table()) all |= effect.bit;
+    for (const auto& choice : choice_table()) all |= choice.bit;
     std::vector<std::uint32_t> masks;
     for (std::uint32_t mask = 1; mask <= all; ++mask) {
         if (is_legal(mask) && (mask & (EFFECT_WATER | EFFECT_SAND)) != 0) masks.push_back(mask);
@@ -138,6 +139,26 @@ TEST_CASE("an effect that is off has no pass and no buffer") {
             CHECK_MESSAGE(fewer_passes, effect.name << " off removes no pass");
         }
     }
+}
+
+TEST_CASE("semi-Lagrangian transport is passes of their own, after the heights and ahead of the forces") {
+    const auto order = [](const std::vector<PlanPass>& passes) {
+        std::string names;
+        for (const auto& pass : passes)
+            names += std::string(compute::stage_table()[static_cast<std::size_t>(pass.stage)].name) + " ";
+        return names;
+    };
+    const auto plan = make_step_plan(EFFECT_WATER | EFFECT_SAND | EFFECT_MIXTURE | EFFECT_SEMI_LAGRANGIAN, 3);
+    CHECK(order(plan.water_passes) == "update_water_boundary_types limit_water_outflow compute_water_flux integrate_water_height "
+                                      "extrapolate_velocity backtrace_water_velocity extrapolate_velocity "
+                                      "backtrace_water_velocity integrate_water_velocity ");
+    CHECK(order(plan.substep_passes) == "update_sand_boundary_types limit_sand_outflow compute_sand_flux integrate_sand_height "
+                                        "compute_momentum_exchange extrapolate_velocity backtrace_sand_velocity "
+                                        "integrate_sand_velocity apply_friction ");
+    auto scene = test::flat_scene(8, 8, 1, 0.01);
+    scene.fill(scene.fields.water, [](double, double) { return 1; });
+    scene.settings.method.velocity_transport = VelocityTransport::semi_lagrangian;
+    CHECK(effects_required(scene.settings, content_of(scene.fields))->mask == (EFFECT_WATER | EFFECT_SEMI_LAGRANGIAN));
 }
 
 TEST_CASE("effects follow from the scene, with a reason, and a level may force them") {

@@ -36,6 +36,9 @@ struct Material {
     double bed_friction = 0;      // c of u/(1 + dt c |u|/h) for pure water, dimensionless, 0 ... 10; 0 = off
 };
 
+/// How velocities move with the flow (NUMERICS 2.3): by the mass fluxes, or traced back along the velocity as the paper does.
+enum class VelocityTransport : std::uint8_t { flux_form, semi_lagrangian };
+
 /// How water and sand are stepped. Every guard is off at a neutral value, so that any one can be studied alone.
 struct Method {
     std::string name = "robust";
@@ -56,6 +59,7 @@ struct Method {
     double cohesion_cap = 0.9;      // c <= 2 c_f cohesion_cap rho_s g hs; 0 = off
     double stress_taper = 0;        // h_el [m]: stress fades in between h_el and 2 h_el; 0 = off
     int saturation_smoothing = 2;   // radius in cells of the low-pass before the cohesion lookup: 0, 1, 2
+    VelocityTransport velocity_transport = VelocityTransport::flux_form; // semi_lagrangian: velocity_clamp at most 1
 };
 
 /// A value over time: linear between samples, constant outside. One sample = constant.
