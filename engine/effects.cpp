@@ -21,10 +21,16 @@ constexpr std::array<Effect, 12> table = {{
     {EFFECT_BED_SHEAR, "bed_shear", EFFECT_MIXTURE, "pure water drags the sand under it along: bed load"},
 }};
 
-constexpr std::array<Choice, 1> choices = {{
+constexpr std::array<Choice, 3> choices = {{
     {EFFECT_SEMI_LAGRANGIAN, "semi_lagrangian", 0,
      [](const Method& m) { return m.velocity_transport == VelocityTransport::semi_lagrangian; },
      [](Method& m) { m.velocity_transport = VelocityTransport::semi_lagrangian; }},
+    {EFFECT_WHOLE_STRAIN, "whole_strain", EFFECT_ELASTOPLASTIC,
+     [](const Method& m) { return m.strain_transport != StrainTransport::left_stretch; },
+     [](Method& m) { m.strain_transport = StrainTransport::polar; }},
+    {EFFECT_DIRECT_STRAIN, "direct_strain", EFFECT_WHOLE_STRAIN,
+     [](const Method& m) { return m.strain_transport == StrainTransport::direct; },
+     [](Method& m) { m.strain_transport = StrainTransport::direct; }},
 }};
 
 bool ever_above_zero(const TimeSeries& series) {
@@ -106,7 +112,7 @@ bool is_legal(std::uint32_t mask) {
     return std::all_of(table.begin(), table.end(),
                        [&](const Effect& e) { return (mask & e.bit) == 0 || (mask & e.needs) == e.needs; }) &&
            std::all_of(choices.begin(), choices.end(),
-                       [&](const Choice& c) { return (mask & c.bit) == 0 || (mask & c.excludes) == 0; });
+                       [&](const Choice& c) { return (mask & c.bit) == 0 || (mask & c.needs) == c.needs; });
 }
 
 Result<EffectChoice> effects_required(const Settings& settings, Content content) {
@@ -137,7 +143,7 @@ Result<EffectChoice> effects_required(const Settings& settings, Content content)
         choice.reasons.push_back(want.reason);
     }
     for (const auto& made : choices)
-        if (made.chosen(settings.method)) choice.mask |= made.bit;
+        if (made.chosen(settings.method) && (choice.mask & made.needs) == made.needs) choice.mask |= made.bit;
     return choice;
 }
 

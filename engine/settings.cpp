@@ -184,6 +184,11 @@ const std::vector<std::string>& velocity_transport_names() {
     return names;
 }
 
+const std::vector<std::string>& strain_transport_names() {
+    static const std::vector<std::string> names = {"left_stretch", "polar", "direct"};
+    return names;
+}
+
 double height_quantum(const Method& method) {
     if (method.quantum >= 0) return method.quantum;
     return std::exp2(std::ceil(std::log2(method.largest_height)) - 24);

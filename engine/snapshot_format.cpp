@@ -68,7 +68,8 @@ std::uint64_t level_digest(const Settings& s) {
                                w.cohesion_cap,
                                w.stress_taper,
                                double(w.saturation_smoothing),
-                               double(w.velocity_transport)})
+                               double(w.velocity_transport),
+                               double(w.strain_transport)})
         add(value);
     for (const auto& side : s.sides) {
         add(static_cast<double>(side.kind));

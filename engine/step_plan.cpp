@@ -14,8 +14,9 @@ bool is_next(const std::string& name) { return name.ends_with(next_suffix); }
 std::string base_name(const std::string& name) { return is_next(name) ? name.substr(0, name.size() - next_suffix.size()) : name; }
 
 const std::set<std::string> state_fields = {
-    "terrain",         "sand_height",     "water_height",     "stretch_xx",       "stretch_xy",       "stretch_yy",
-    "sand_velocity_x", "sand_velocity_y", "water_velocity_x", "water_velocity_y", "mixed_velocity_x", "mixed_velocity_y",
+    "terrain",          "sand_height",      "water_height",    "stretch_xx",       "stretch_xy",
+    "stretch_yy",       "sand_velocity_x",  "sand_velocity_y", "water_velocity_x", "water_velocity_y",
+    "mixed_velocity_x", "mixed_velocity_y", "rotation",
 };
 
 FieldRole role_of(const std::string& name) {
@@ -102,7 +103,10 @@ void plan_sand(Builder b) {
         b.run("account_sides", {}, {{"flux_x", "sand_flux_x"}, {"flux_y", "sand_flux_y"}, {"side_ledger", "sand_side_ledger"}});
     }
     b.run("integrate_sand_height");
-    if (b.has(EFFECT_ELASTOPLASTIC)) b.run("evolve_deformation_gradient", {"stretch_xx", "stretch_xy", "stretch_yy"});
+    if (b.has(EFFECT_WHOLE_STRAIN))
+        b.run("advect_deformation_gradient", {"stretch_xx", "stretch_xy", "stretch_yy", "rotation"});
+    else if (b.has(EFFECT_ELASTOPLASTIC))
+        b.run("evolve_deformation_gradient", {"stretch_xx", "stretch_xy", "stretch_yy"});
     // Touches only the water's velocities, which the sand's velocity stage does not read: here both sand heights are at hand.
     if (b.has(EFFECT_MIXTURE)) b.run("compute_momentum_exchange");
 }
@@ -113,6 +117,7 @@ void plan_sand_forces(Builder b) {
     if (b.has(EFFECT_ELASTOPLASTIC)) b.run("project_deformation_gradient");
     if (b.has(EFFECT_SEMI_LAGRANGIAN)) plan_backtrace(b, "sand", "backtrace_sand_velocity");
     b.run("integrate_sand_velocity", {"sand_velocity_x", "sand_velocity_y"});
+    if (b.has(EFFECT_WHOLE_STRAIN)) b.run("stretch_deformation_gradient");
     std::vector<std::string> moved = {"sand_velocity_x", "sand_velocity_y"};
     Names drag;
     if (b.has(EFFECT_DRAG)) {

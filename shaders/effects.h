@@ -20,5 +20,7 @@
 
 // Choices of method: bits of the same mask, from settings.method and never from content (choice_table in engine/effects.cpp).
 #define EFFECT_SEMI_LAGRANGIAN 4096u // velocities are traced back instead of moved by the mass fluxes
+#define EFFECT_WHOLE_STRAIN 8192u // sand keeps F with its rotation, and F follows the velocity ahead of friction
+#define EFFECT_DIRECT_STRAIN 16384u // F is moved as it is, not as angle and stretch
 
 #endif

@@ -71,5 +71,6 @@ const std::vector<std::string>& method_names();
 const std::vector<std::string>& effect_names();
 const std::vector<std::string>& side_names();
 const std::vector<std::string>& velocity_transport_names();
+const std::vector<std::string>& strain_transport_names();
 
 } // namespace wadi

@@ -14,6 +14,13 @@ void read_fields(ObjectReader& reader, Owner& owner, const SettingField<Owner, d
     for (const auto& field : fields) reader.number(field.name, owner.*field.member, field.least, field.most);
 }
 
+template <class Enum>
+void read_choice(ObjectReader& reader, const char* key, const std::vector<std::string>& names, Enum& value) {
+    int index = static_cast<int>(value);
+    reader.choice(key, names, index);
+    value = static_cast<Enum>(index);
+}
+
 void read_grid(const Json& value, Grid& grid, Status& status) {
     ObjectReader reader(value, "grid", status);
     for (const char* key : {"nx", "ny", "dx"}) reader.require(key);
@@ -40,9 +47,8 @@ void read_method(const Json& value, Method& method, Status& status) {
     reader.string("name", method.name);
     reader.boolean("outflow_limiter", method.outflow_limiter);
     read_fields(reader, method, METHOD_FIELDS);
-    int transport = static_cast<int>(method.velocity_transport);
-    reader.choice("velocity_transport", velocity_transport_names(), transport);
-    method.velocity_transport = static_cast<VelocityTransport>(transport);
+    read_choice(reader, "velocity_transport", velocity_transport_names(), method.velocity_transport);
+    read_choice(reader, "strain_transport", strain_transport_names(), method.strain_transport);
     for (const auto& field : METHOD_COUNTS) reader.whole_number(field.name, method.*field.member, field.least, field.most);
     reader.finish();
 }

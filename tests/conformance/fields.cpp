@@ -13,20 +13,11 @@ using reference::Solver;
 
 template <class Real> const Field<Real>* cell_field(const Solver<Real>& s, const std::string& base) {
     const std::map<std::string, const Field<Real>*> fields = {
-        {"terrain", &s.terrain},
-        {"sand_height", &s.sand},
-        {"water_height", &s.water},
-        {"stretch_xx", &s.Vxx},
-        {"stretch_xy", &s.Vxy},
-        {"stretch_yy", &s.Vyy},
-        {"water_scale", &s.pure_scale},
-        {"mixed_scale", &s.mixed_scale},
-        {"sand_scale", &s.sand_scale},
-        {"saturation", &s.saturation},
-        {"mixed_predicted", &s.mixed_predicted},
-        {"stress_xx", &s.sxx},
-        {"stress_xy", &s.sxy},
-        {"stress_yy", &s.syy},
+        {"terrain", &s.terrain},       {"sand_height", &s.sand},       {"water_height", &s.water},
+        {"stretch_xx", &s.Vxx},        {"stretch_xy", &s.Vxy},         {"stretch_yy", &s.Vyy},
+        {"rotation", &s.rotation},     {"water_scale", &s.pure_scale}, {"mixed_scale", &s.mixed_scale},
+        {"sand_scale", &s.sand_scale}, {"saturation", &s.saturation},  {"mixed_predicted", &s.mixed_predicted},
+        {"stress_xx", &s.sxx},         {"stress_xy", &s.sxy},          {"stress_yy", &s.syy},
     };
     const auto found = fields.find(base);
     return found == fields.end() ? nullptr : found->second;
@@ -49,7 +40,8 @@ bool ends_with_axis(const std::string& base) { return base.ends_with("_x") || ba
 
 // The stages between the sand's transport and the flip of its height read both heights.
 bool reads_both_heights(const std::string& stage) {
-    return stage == "evolve_deformation_gradient" || stage == "compute_momentum_exchange";
+    return stage == "evolve_deformation_gradient" || stage == "advect_deformation_gradient" ||
+           stage == "compute_momentum_exchange";
 }
 
 bool mixed_flux_is_diffusion(const std::string& stage, bool after) {

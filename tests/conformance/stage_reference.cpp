@@ -13,6 +13,7 @@ template <class Real> struct Step {
     const char* stage;
     void (Solver<Real>::*run)();
     std::uint32_t needs;
+    std::uint32_t without = 0; // bits whose stages do its work instead
 };
 
 // In the order of the step plan. The splits of the water are the reference's own: the stages derive them where they read.
@@ -39,12 +40,14 @@ constexpr Step<Real> steps[] = {
     {"limit_sand_outflow", &Solver<Real>::limit_sand_outflow, EFFECT_SAND},
     {"compute_sand_flux", &Solver<Real>::compute_sand_flux, EFFECT_SAND},
     {"integrate_sand_height", &Solver<Real>::integrate_sand_height, EFFECT_SAND},
-    {"evolve_deformation_gradient", &Solver<Real>::evolve_deformation_gradient, EFFECT_ELASTOPLASTIC},
+    {"evolve_deformation_gradient", &Solver<Real>::evolve_deformation_gradient, EFFECT_ELASTOPLASTIC, EFFECT_WHOLE_STRAIN},
+    {"advect_deformation_gradient", &Solver<Real>::advect_deformation_gradient, EFFECT_WHOLE_STRAIN},
     {"compute_momentum_exchange", &Solver<Real>::compute_momentum_exchange, EFFECT_MIXTURE},
     {"project_deformation_gradient", &Solver<Real>::project_deformation_gradient, EFFECT_ELASTOPLASTIC},
     {"extrapolate_sand_velocity", &Solver<Real>::extrapolate_sand_velocity, EFFECT_SEMI_LAGRANGIAN | EFFECT_SAND},
     {"backtrace_sand_velocity", &Solver<Real>::backtrace_sand_velocity, EFFECT_SEMI_LAGRANGIAN | EFFECT_SAND},
     {"integrate_sand_velocity", &Solver<Real>::integrate_sand_velocity, EFFECT_SAND},
+    {"stretch_deformation_gradient", &Solver<Real>::stretch_deformation_gradient, EFFECT_WHOLE_STRAIN},
     {"apply_friction", &Solver<Real>::apply_friction, EFFECT_SAND},
 };
 
@@ -61,10 +64,12 @@ void settle_stretch(Solver<float>& s, bool rough) {
                 s.Vxx[c] += size * band_limited(21, i, j);
                 s.Vxy[c] += size * band_limited(22, i, j);
                 s.Vyy[c] += size * band_limited(23, i, j);
+                if (s.has(EFFECT_WHOLE_STRAIN)) s.rotation[c] += 20 * size * band_limited(24, i, j);
             }
             s.Vxx[c] = snap(s.Vxx[c]);
             s.Vxy[c] = snap(s.Vxy[c]);
             s.Vyy[c] = snap(s.Vyy[c]);
+            s.rotation[c] = snap(s.rotation[c]);
         }
     }
 }
@@ -146,12 +151,14 @@ Pilot make_pilot(const Scene& scene, const std::string& stage) {
     pilot.input = inputs.next(scene.pilot_steps);
     pilot.input.interpolation = 0.3F;
     pilot.input.point_count = stage == "sample_points" ? sampled_points : 0;
-    if (scene.rough_stretch) settle_stretch(s, true);
+    // A rotation that is rounding alone would prove nothing.
+    if (scene.rough_stretch || s.has(EFFECT_WHOLE_STRAIN)) settle_stretch(s, true);
     const bool in_step =
         std::any_of(std::begin(steps<float>), std::end(steps<float>), [&](const auto& step) { return stage == step.stage; });
     for (const auto& step : steps<float>) {
         if (!in_step || stage == step.stage) break;
-        if (step.run != nullptr && (scene.effects & step.needs) == step.needs) (s.*step.run)();
+        if (step.run != nullptr && (scene.effects & step.needs) == step.needs && (scene.effects & step.without) == 0)
+            (s.*step.run)();
     }
     settle_stretch(s, false);
     pilot.wide->copy_from(s);

@@ -63,7 +63,7 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
     const std::size_t nx = static_cast<std::size_t>(world.grid.nx);
     const std::size_t ny = static_cast<std::size_t>(world.grid.ny);
     for (Field<Real>* field : {&terrain, &sand, &water, &Vxy, &pure, &mixed, &pure_predicted, &mixed_predicted, &pure_scale,
-                               &mixed_scale, &sand_scale, &saturation, &sand_before, &mixed_before, &sxx, &sxy, &syy})
+                               &mixed_scale, &sand_scale, &saturation, &sand_before, &mixed_before, &sxx, &sxy, &syy, &rotation})
         field->assign(nx * ny, Real(0));
     Vxx.assign(nx * ny, Real(1));
     Vyy.assign(nx * ny, Real(1));
@@ -139,6 +139,7 @@ template <class Real> template <class Other> void Solver<Real>::copy_from(const 
     field(&A::Vxx, &B::Vxx);
     field(&A::Vxy, &B::Vxy);
     field(&A::Vyy, &B::Vyy);
+    field(&A::rotation, &B::rotation);
     field(&A::pure, &B::pure);
     field(&A::mixed, &B::mixed);
     field(&A::pure_predicted, &B::pure_predicted);
@@ -203,7 +204,7 @@ template <class Real> void Solver<Real>::step() {
         compute_sand_flux();
         integrate_sand_height();
         if (has(EFFECT_ELASTOPLASTIC)) {
-            evolve_deformation_gradient();
+            has(EFFECT_WHOLE_STRAIN) ? advect_deformation_gradient() : evolve_deformation_gradient();
             project_deformation_gradient();
         }
         if (traced) {
@@ -211,6 +212,7 @@ template <class Real> void Solver<Real>::step() {
             backtrace_sand_velocity();
         }
         integrate_sand_velocity();
+        if (has(EFFECT_WHOLE_STRAIN)) stretch_deformation_gradient();
         if (has(EFFECT_MIXTURE)) compute_momentum_exchange();
         apply_friction();
     }

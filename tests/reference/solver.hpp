@@ -79,6 +79,8 @@ template <class Real> class Solver {
     void extrapolate_sand_velocity();    // 2.12 -> extrapolated
     void backtrace_sand_velocity();      // 2.12 -> sand_velocity
     void integrate_sand_velocity();      // 2.3, 2.7, rule 2.4c -> sand_velocity
+    void advect_deformation_gradient();  // 2.13 -> Vxx, Vxy, Vyy, rotation
+    void stretch_deformation_gradient(); // 2.13, after the velocity -> Vxx, Vxy, Vyy, rotation
     void compute_momentum_exchange();    // 2.4a after the sand height, then mixed_push on mixed_velocity
     void apply_friction();               // 2.8 -> sand_velocity, mixed_velocity (pure_velocity in the single-layer mask)
 
@@ -92,8 +94,9 @@ template <class Real> class Solver {
     std::int64_t step_index = 0;
 
     // State (section 1). Velocities of walls are 0. Without mixture pure_velocity is the velocity of all water.
-    Field<Real> terrain, sand, water;                         // H, hs, W [m]
-    Field<Real> Vxx, Vxy, Vyy;                                // left stretch of the sand
+    Field<Real> terrain, sand, water; // H, hs, W [m]
+    Field<Real> Vxx, Vxy, Vyy;        // left stretch of the sand; 2.13: right stretch, or F's symmetric part
+    Field<Real> rotation;             // 2.13: angle, or (Fyx - Fxy)/2
     Faces<Real> sand_velocity, pure_velocity, mixed_velocity; // us, uw, um [m/s]
 
     // Intermediate fields. Fluxes are depths per step, k q [m].
@@ -138,6 +141,7 @@ template <class Real> class Solver {
     Real sand_gravity(Real deepest) const;
     void water_face(const Axis& axis, int a, int b);
     void advect_stretch();
+    std::array<Real, 4> velocity_gradient(const Field<Real>& depth, int i, int j) const; // substep * (xx, xy, yx, yy)
     void stretch_by_velocity_gradient(int i, int j);
     Real cohesion(std::size_t cell) const;
     void add_stress_and_gravity();

@@ -141,7 +141,7 @@ TEST_CASE("an effect that is off has no pass and no buffer") {
     }
 }
 
-TEST_CASE("semi-Lagrangian transport is passes of their own, after the heights and ahead of the forces") {
+TEST_CASE("choices of method are passes of their own at their place in the order") {
     const auto order = [](const std::vector<PlanPass>& passes) {
         std::string names;
         for (const auto& pass : passes)
@@ -155,8 +155,16 @@ TEST_CASE("semi-Lagrangian transport is passes of their own, after the heights a
     CHECK(order(plan.substep_passes) == "update_sand_boundary_types limit_sand_outflow compute_sand_flux integrate_sand_height "
                                         "compute_momentum_exchange extrapolate_velocity backtrace_sand_velocity "
                                         "integrate_sand_velocity apply_friction ");
+    const auto strain = make_step_plan(EFFECT_SAND | EFFECT_ELASTOPLASTIC | EFFECT_WHOLE_STRAIN, 3);
+    CHECK(order(strain.substep_passes) ==
+          "limit_sand_outflow compute_sand_flux integrate_sand_height advect_deformation_gradient "
+          "project_deformation_gradient integrate_sand_velocity stretch_deformation_gradient "
+          "apply_friction ");
+    CHECK(strain.find("rotation") != nullptr);
+    CHECK(make_step_plan(EFFECT_SAND | EFFECT_ELASTOPLASTIC, 3).find("rotation") == nullptr);
     auto scene = test::flat_scene(8, 8, 1, 0.01);
     scene.fill(scene.fields.water, [](double, double) { return 1; });
+    scene.settings.method.strain_transport = StrainTransport::direct; // no sand: nothing to act on
     scene.settings.method.velocity_transport = VelocityTransport::semi_lagrangian;
     CHECK(effects_required(scene.settings, content_of(scene.fields))->mask == (EFFECT_WATER | EFFECT_SEMI_LAGRANGIAN));
 }

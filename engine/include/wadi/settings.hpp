@@ -39,6 +39,10 @@ struct Material {
 /// How velocities move with the flow (NUMERICS 2.3): by the mass fluxes, or traced back along the velocity as the paper does.
 enum class VelocityTransport : std::uint8_t { flux_form, semi_lagrangian };
 
+/// What moves with the sand of its deformation gradient F (NUMERICS 2.5, 2.13): the left stretch V (F = V R), the angle of R and
+/// the right stretch P apart (F = R P, the paper's choice), or F as it is.
+enum class StrainTransport : std::uint8_t { left_stretch, polar, direct };
+
 /// How water and sand are stepped. Every guard is off at a neutral value, so that any one can be studied alone.
 struct Method {
     std::string name = "robust";
@@ -60,6 +64,7 @@ struct Method {
     double stress_taper = 0;        // h_el [m]: stress fades in between h_el and 2 h_el; 0 = off
     int saturation_smoothing = 2;   // radius in cells of the low-pass before the cohesion lookup: 0, 1, 2
     VelocityTransport velocity_transport = VelocityTransport::flux_form; // semi_lagrangian: velocity_clamp at most 1
+    StrainTransport strain_transport = StrainTransport::left_stretch;
 };
 
 /// A value over time: linear between samples, constant outside. One sample = constant.
