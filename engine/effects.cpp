@@ -21,7 +21,7 @@ constexpr std::array<Effect, 12> table = {{
     {EFFECT_BED_SHEAR, "bed_shear", EFFECT_MIXTURE, "pure water drags the sand under it along: bed load"},
 }};
 
-constexpr std::array<Choice, 3> choices = {{
+constexpr std::array<Choice, 5> choices = {{
     {EFFECT_SEMI_LAGRANGIAN, "semi_lagrangian", 0,
      [](const Method& m) { return m.velocity_transport == VelocityTransport::semi_lagrangian; },
      [](Method& m) { m.velocity_transport = VelocityTransport::semi_lagrangian; }},
@@ -31,6 +31,11 @@ constexpr std::array<Choice, 3> choices = {{
     {EFFECT_DIRECT_STRAIN, "direct_strain", EFFECT_WHOLE_STRAIN,
      [](const Method& m) { return m.strain_transport == StrainTransport::direct; },
      [](Method& m) { m.strain_transport = StrainTransport::direct; }},
+    {EFFECT_EXPLICIT_DRAG, "explicit_drag", EFFECT_DRAG,
+     [](const Method& m) { return m.drag_friction == DragFriction::sequence; },
+     [](Method& m) { m.drag_friction = DragFriction::sequence; }},
+    {EFFECT_LAPLACE_DIFFUSION, "laplace_diffusion", EFFECT_DIFFUSION,
+     [](const Method& m) { return m.diffusion == Diffusion::laplacian; }, [](Method& m) { m.diffusion = Diffusion::laplacian; }},
 }};
 
 bool ever_above_zero(const TimeSeries& series) {

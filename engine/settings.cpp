@@ -189,6 +189,16 @@ const std::vector<std::string>& strain_transport_names() {
     return names;
 }
 
+const std::vector<std::string>& drag_friction_names() {
+    static const std::vector<std::string> names = {"joint", "sequence"};
+    return names;
+}
+
+const std::vector<std::string>& diffusion_names() {
+    static const std::vector<std::string> names = {"limited", "laplacian"};
+    return names;
+}
+
 double height_quantum(const Method& method) {
     if (method.quantum >= 0) return method.quantum;
     return std::exp2(std::ceil(std::log2(method.largest_height)) - 24);

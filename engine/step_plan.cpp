@@ -72,6 +72,8 @@ void plan_water(Builder b) {
     if (b.has(EFFECT_OPEN_SIDES)) b.run("open_sides");
     const bool traced = b.has(EFFECT_SEMI_LAGRANGIAN);
     if (traced) b.run("update_water_boundary_types");
+    // In flux form the diffusive flux carries its momentum; traced velocities need a pass for it.
+    if (traced && b.has(EFFECT_LAPLACE_DIFFUSION)) b.run("diffuse_mixed_velocity", {"mixed_velocity_x", "mixed_velocity_y"});
     if (b.has(EFFECT_DIFFUSION)) b.run("diffuse_mixed_water");
     b.run("limit_water_outflow");
     b.run("compute_water_flux");
@@ -125,6 +127,7 @@ void plan_sand_forces(Builder b) {
         drag = {{"drag_velocity_x", layer + "x"}, {"drag_velocity_y", layer + "y"}};
         moved.insert(moved.end(), {layer + "x", layer + "y"});
     }
+    if (b.has(EFFECT_EXPLICIT_DRAG)) b.run("apply_drag", {}, drag);
     b.run("apply_friction", moved, drag);
 }
 

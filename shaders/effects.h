@@ -22,5 +22,7 @@
 #define EFFECT_SEMI_LAGRANGIAN 4096u // velocities are traced back instead of moved by the mass fluxes
 #define EFFECT_WHOLE_STRAIN 8192u // sand keeps F with its rotation, and F follows the velocity ahead of friction
 #define EFFECT_DIRECT_STRAIN 16384u // F is moved as it is, not as angle and stretch
+#define EFFECT_EXPLICIT_DRAG 32768u // drag is an explicit step of its own ahead of friction
+#define EFFECT_LAPLACE_DIFFUSION 65536u // mixed water spreads by the Laplacian of its height
 
 #endif

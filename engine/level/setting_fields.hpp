@@ -72,5 +72,7 @@ const std::vector<std::string>& effect_names();
 const std::vector<std::string>& side_names();
 const std::vector<std::string>& velocity_transport_names();
 const std::vector<std::string>& strain_transport_names();
+const std::vector<std::string>& drag_friction_names();
+const std::vector<std::string>& diffusion_names();
 
 } // namespace wadi

@@ -49,6 +49,8 @@ void read_method(const Json& value, Method& method, Status& status) {
     read_fields(reader, method, METHOD_FIELDS);
     read_choice(reader, "velocity_transport", velocity_transport_names(), method.velocity_transport);
     read_choice(reader, "strain_transport", strain_transport_names(), method.strain_transport);
+    read_choice(reader, "drag_friction", drag_friction_names(), method.drag_friction);
+    read_choice(reader, "diffusion", diffusion_names(), method.diffusion);
     for (const auto& field : METHOD_COUNTS) reader.whole_number(field.name, method.*field.member, field.least, field.most);
     reader.finish();
 }

@@ -16,6 +16,7 @@ constexpr std::uint32_t WET = EFFECT_WATER | EFFECT_SAND | EFFECT_MIXTURE | EFFE
 constexpr std::uint32_t ELASTIC = EFFECT_ELASTOPLASTIC;
 constexpr std::uint32_t TRACED = EFFECT_SEMI_LAGRANGIAN;
 constexpr std::uint32_t POLAR = EFFECT_WHOLE_STRAIN, DIRECT = EFFECT_WHOLE_STRAIN | EFFECT_DIRECT_STRAIN;
+constexpr std::uint32_t PUBLISHED = TRACED | POLAR | EFFECT_EXPLICIT_DRAG | EFFECT_LAPLACE_DIFFUSION;
 constexpr std::uint32_t ALL = 4095;
 
 CaseSpec spec_of(const char* name, const char* grid, std::uint32_t effects, const std::string& scene, const std::string& method,
@@ -48,6 +49,7 @@ std::vector<CaseSpec> list() {
     add("bounds", "33x17", ALL | TRACED, "random", "default", 300);
     add("bounds", "33x17", ALL | TRACED | POLAR, "random", "default", 300);
     add("bounds", "33x17", ALL | DIRECT, "random", "default", 300);
+    add("bounds", "33x17", ALL | PUBLISHED, "random", "default", 300);
     for (int seed = 1; seed <= 8; ++seed)
         add("bounds", "24x20", ALL & ~EFFECT_SOURCES, "random", ("fuzz" + std::to_string(seed)).c_str(), 80);
     add("lake_at_rest", "33x17", EFFECT_WATER, "lake_at_rest", "default", 200);
@@ -68,6 +70,7 @@ std::vector<CaseSpec> list() {
         add(symmetry, "33x17", ALL | TRACED, "random", "default", 60);
         add(symmetry, "33x17", ALL | POLAR, "random", "default", 60);
         add(symmetry, "33x17", ALL | DIRECT, "random", "default", 60);
+        add(symmetry, "33x17", ALL | PUBLISHED, "random", "default", 60);
         add(symmetry, "65x3", ALL, "random", "plain", 30);
     }
     for (const char* variant : {"same_again", "same_without_replay", "same_with_full_barriers", "same_interleaved"})

@@ -24,6 +24,7 @@ constexpr Step<Real> steps[] = {
     {"open_sides", &Solver<Real>::update_open_sides, EFFECT_OPEN_SIDES | EFFECT_WATER},
     {"split_water", &Solver<Real>::split_water, 0},
     {"update_water_boundary_types", &Solver<Real>::update_water_boundary_types, EFFECT_SEMI_LAGRANGIAN | EFFECT_WATER},
+    {"diffuse_mixed_velocity", &Solver<Real>::diffuse_mixed_velocity, EFFECT_SEMI_LAGRANGIAN | EFFECT_LAPLACE_DIFFUSION},
     {"diffuse_mixed_water", &Solver<Real>::diffuse_mixed_water, EFFECT_DIFFUSION},
     {"limit_water_outflow", &Solver<Real>::limit_water_outflow, EFFECT_WATER},
     {"compute_water_flux", &Solver<Real>::compute_water_flux, EFFECT_WATER},
@@ -48,6 +49,7 @@ constexpr Step<Real> steps[] = {
     {"backtrace_sand_velocity", &Solver<Real>::backtrace_sand_velocity, EFFECT_SEMI_LAGRANGIAN | EFFECT_SAND},
     {"integrate_sand_velocity", &Solver<Real>::integrate_sand_velocity, EFFECT_SAND},
     {"stretch_deformation_gradient", &Solver<Real>::stretch_deformation_gradient, EFFECT_WHOLE_STRAIN},
+    {"apply_drag", &Solver<Real>::apply_drag, EFFECT_EXPLICIT_DRAG},
     {"apply_friction", &Solver<Real>::apply_friction, EFFECT_SAND},
 };
 
@@ -103,7 +105,8 @@ References::References(const Scene& scene)
 
 void References::run_stage(const std::string& stage) {
     const auto run = [&](auto& solver) {
-        if (stage == "diffuse_mixed_water" || stage == "limit_water_outflow") solver.split_water();
+        if (stage == "diffuse_mixed_velocity" || stage == "diffuse_mixed_water" || stage == "limit_water_outflow")
+            solver.split_water();
         run_reference_stage(solver, stage);
     };
     run(narrow);

@@ -102,10 +102,28 @@ template <class Real> void Solver<Real>::compute_momentum_exchange() {
     });
 }
 
+/// 2.14: explicit exchange of momentum on every inner face that holds wet sand.
+template <class Real> void Solver<Real>::apply_drag() {
+    const bool two_layers = has(EFFECT_MIXTURE);
+    Faces<Real>& partner = two_layers ? mixed_velocity : pure_velocity;
+    for_inner_faces([&](const Axis& ax, int a, int b) {
+        const std::size_t L = ax.cell(a - 1, b);
+        const std::size_t R = ax.cell(a, b);
+        const Real hs_bar = mean(sand[L], sand[R]);
+        const Real hm_bar = mean(mixed[L], mixed[R]);
+        if (hm_bar <= P.eps || hs_bar <= P.eps / Real(2)) return;
+        Real& us = sand_velocity.along(ax)[ax.face(a, b)];
+        Real& um = partner.along(ax)[ax.face(a, b)];
+        const Real impulse = P.substep * P.exchange * hm_bar * (us - um);
+        us -= impulse / (P.rho_s * hs_bar);
+        um += impulse / (P.rho_w * (two_layers ? hm_bar : mean(water[L], water[R])));
+    });
+}
+
 /// 2.8: implicit pair of drag and Coulomb friction, on every inner face from the velocities before it.
 template <class Real> void Solver<Real>::apply_friction() {
     const bool two_layers = has(EFFECT_MIXTURE);
-    const bool drag = has(EFFECT_DRAG);
+    const bool drag = has(EFFECT_DRAG) && !has(EFFECT_EXPLICIT_DRAG);
     Faces<Real>& partner = two_layers ? mixed_velocity : pure_velocity;
     const Faces<Real> us_old = sand_velocity;
     const Faces<Real> um_old = partner;

@@ -184,6 +184,7 @@ template <class Real> void Solver<Real>::step() {
     if (has(EFFECT_WATER)) {
         split_water();
         if (traced) update_water_boundary_types();
+        if (traced && has(EFFECT_LAPLACE_DIFFUSION)) diffuse_mixed_velocity();
         diffuse_mixed_water();
         limit_water_outflow();
         compute_water_flux();
@@ -214,6 +215,7 @@ template <class Real> void Solver<Real>::step() {
         integrate_sand_velocity();
         if (has(EFFECT_WHOLE_STRAIN)) stretch_deformation_gradient();
         if (has(EFFECT_MIXTURE)) compute_momentum_exchange();
+        if (has(EFFECT_EXPLICIT_DRAG)) apply_drag();
         apply_friction();
     }
     ++step_index;

@@ -59,6 +59,7 @@ template <class Real> class Solver {
     void update_open_sides();            // 2.9, water
     void split_water();                  // mixed = min(W, hs), pure = W - mixed
     void update_water_boundary_types();  // 2.12 -> pure_type, mixed_type
+    void diffuse_mixed_velocity();       // 2.15 -> mixed_velocity
     void diffuse_mixed_water();          // 2.1 -> diffusion_flux
     void limit_water_outflow();          // 2.2 -> pure_scale, mixed_scale
     void compute_water_flux();           // 2.2 -> pure_flux, mixed_flux
@@ -82,6 +83,7 @@ template <class Real> class Solver {
     void advect_deformation_gradient();  // 2.13 -> Vxx, Vxy, Vyy, rotation
     void stretch_deformation_gradient(); // 2.13, after the velocity -> Vxx, Vxy, Vyy, rotation
     void compute_momentum_exchange();    // 2.4a after the sand height, then mixed_push on mixed_velocity
+    void apply_drag();                   // 2.14 -> sand_velocity, mixed_velocity (pure_velocity in the single-layer mask)
     void apply_friction();               // 2.8 -> sand_velocity, mixed_velocity (pure_velocity in the single-layer mask)
 
     bool has(std::uint32_t effect) const { return (effects & effect) != 0; }

@@ -210,7 +210,8 @@ TEST_CASE("level: settings by name") {
     const Level level = must(parse(R"("gravity": 1.62, "duration": 3, "description": "d",
         "material": {"friction": 0.7, "saturation": [0.1, 0.2, 0.5], "bed_friction": 0.02},
         "method": {"name": "robust", "substeps": 2, "outflow_limiter": false, "quantum": 0, "saturation_smoothing": 1,
-                   "velocity_transport": "semi_lagrangian", "strain_transport": "polar"},
+                   "velocity_transport": "semi_lagrangian", "strain_transport": "polar",
+                   "drag_friction": "sequence", "diffusion": "laplacian"},
         "sides": {"east": {"kind": "level", "value": 2, "from": 1, "to": 3}, "north": {"kind": "outflow"}},
         "sources": [{"shape": "point", "center": [1, 2], "rate": -0.5, "material": "sand"},
                     {"shape": "box", "from": [1, 2], "to": [3, 4], "rate": [[0, 1], [2, 0]], "velocity": [0, -4]}],
@@ -225,6 +226,8 @@ TEST_CASE("level: settings by name") {
     CHECK(s.method.saturation_smoothing == 1);
     CHECK(s.method.velocity_transport == VelocityTransport::semi_lagrangian);
     CHECK(s.method.strain_transport == StrainTransport::polar);
+    CHECK(s.method.drag_friction == DragFriction::sequence);
+    CHECK(s.method.diffusion == Diffusion::laplacian);
     CHECK(s.sides[1].kind == SideKind::level);
     CHECK(s.sides[1].to == 3);
     CHECK(s.sides[1].value.at(5) == 2);

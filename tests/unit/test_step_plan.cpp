@@ -162,6 +162,9 @@ TEST_CASE("choices of method are passes of their own at their place in the order
           "apply_friction ");
     CHECK(strain.find("rotation") != nullptr);
     CHECK(make_step_plan(EFFECT_SAND | EFFECT_ELASTOPLASTIC, 3).find("rotation") == nullptr);
+    const auto drag = make_step_plan(EFFECT_WATER | EFFECT_SAND | EFFECT_DRAG | EFFECT_EXPLICIT_DRAG, 3);
+    CHECK(order(drag.substep_passes) == "limit_sand_outflow compute_sand_flux integrate_sand_height integrate_sand_velocity "
+                                        "apply_drag apply_friction ");
     auto scene = test::flat_scene(8, 8, 1, 0.01);
     scene.fill(scene.fields.water, [](double, double) { return 1; });
     scene.settings.method.strain_transport = StrainTransport::direct; // no sand: nothing to act on

@@ -43,6 +43,12 @@ enum class VelocityTransport : std::uint8_t { flux_form, semi_lagrangian };
 /// the right stretch P apart (F = R P, the paper's choice), or F as it is.
 enum class StrainTransport : std::uint8_t { left_stretch, polar, direct };
 
+/// Drag and friction (NUMERICS 2.8, 2.14): one implicit solve, or explicit drag and then friction, as the paper has it.
+enum class DragFriction : std::uint8_t { joint, sequence };
+
+/// Diffusion of mixed water (NUMERICS 2.1, 2.15): a limited flux, zero in a lake at rest, or the Laplacian of the paper.
+enum class Diffusion : std::uint8_t { limited, laplacian };
+
 /// How water and sand are stepped. Every guard is off at a neutral value, so that any one can be studied alone.
 struct Method {
     std::string name = "robust";
@@ -65,6 +71,8 @@ struct Method {
     int saturation_smoothing = 2;   // radius in cells of the low-pass before the cohesion lookup: 0, 1, 2
     VelocityTransport velocity_transport = VelocityTransport::flux_form; // semi_lagrangian: velocity_clamp at most 1
     StrainTransport strain_transport = StrainTransport::left_stretch;
+    DragFriction drag_friction = DragFriction::joint;
+    Diffusion diffusion = Diffusion::limited;
 };
 
 /// A value over time: linear between samples, constant outside. One sample = constant.
