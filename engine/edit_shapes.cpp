@@ -20,7 +20,8 @@ class Ranges {
   public:
     explicit Ranges(const char* function, std::optional<std::size_t> edit = {}) : function_(function), edit_(edit) {}
     std::string path() const {
-        return std::string(function_) + (edit_ ? ": edits[" + std::to_string(*edit_) + "]." : std::string(": "));
+        const std::string function = *function_ == '\0' ? "" : std::string(function_) + ": ";
+        return function + (edit_ ? "edits[" + std::to_string(*edit_) + "]." : "");
     }
     void require(const char* name, double value, double least, double most) {
         if (status_ && !(value >= least && value <= most)) status_ = refuse(outside_text(path() + name, value, least, most));

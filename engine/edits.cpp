@@ -1,4 +1,5 @@
 #include "engine/edits.hpp"
+#include "engine/scripted_edits.hpp"
 #include <algorithm>
 
 namespace wadi {
@@ -60,42 +61,53 @@ Status Edits::make_room(std::uint64_t pages) {
     return ok_status();
 }
 
-Status Edits::before_step() {
-    const auto due = static_cast<std::size_t>(
-        std::find_if(waiting_.begin(), waiting_.end(), [&](const Edit& edit) { return edit.step > state_.steps; }) -
-        waiting_.begin());
-    if (due == 0) return ok_status();
-    if (auto status = promote(due); !status) return status;
-    if (auto status = make_room(1); !status) return status;
-    return submit(due);
+void Edits::forget() {
+    waiting_.clear();
+    due_.clear();
+    scripted_from_ = state_.steps;
 }
 
-Status Edits::promote(std::size_t due) {
+// Where this or the step's own submission fails, the step is asked for again: each edit is taken once, and stays due until it
+// was submitted.
+Status Edits::before_step() {
+    if (state_.steps >= scripted_from_) {
+        append_scripted_edits(state_.settings(), state_.steps, due_);
+        scripted_from_ = state_.steps + 1;
+    }
+    const auto later = std::find_if(waiting_.begin(), waiting_.end(), [&](const Edit& edit) { return edit.step > state_.steps; });
+    due_.insert(due_.end(), waiting_.begin(), later);
+    waiting_.erase(waiting_.begin(), later);
+    if (due_.empty()) return ok_status();
+    if (auto status = promote(); !status) return status;
+    if (auto status = make_room(1); !status) return status;
+    return submit();
+}
+
+Status Edits::promote() {
     Content content = state_.content;
     vec4 packed[EDIT_VECTORS];
-    for (std::size_t n = 0; n < due; ++n) {
-        if (!pack_edit(waiting_[n], stamps_, state_.settings().grid, packed)) continue;
-        const Content brought = content_brought(waiting_[n], stamps_);
+    for (const Edit& edit : due_) {
+        if (!pack_edit(edit, stamps_, state_.settings().grid, packed)) continue;
+        const Content brought = content_brought(edit, stamps_);
         content.sand |= brought.sand;
         content.water |= brought.water;
     }
     return content == state_.content ? ok_status() : stepper_.hold(content);
 }
 
-Status Edits::submit(std::size_t due) {
-    while (due > 0) {
+Status Edits::submit() {
+    while (!due_.empty()) {
         StepInput input{};
         input.step = static_cast<int>(state_.steps);
         std::size_t taken = 0;
-        for (; taken < due && input.edit_count < MAX_EDITS; ++taken) {
+        for (; taken < due_.size() && input.edit_count < MAX_EDITS; ++taken) {
             vec4* to = input.edit + EDIT_VECTORS * input.edit_count;
-            if (pack_edit(waiting_[taken], stamps_, state_.settings().grid, to)) ++input.edit_count;
+            if (pack_edit(due_[taken], stamps_, state_.settings().grid, to)) ++input.edit_count;
         }
         if (input.edit_count > 0) {
             if (auto ticket = program_.submit(input); !ticket) return ticket.status();
         }
-        waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(taken));
-        due -= taken;
+        due_.erase(due_.begin(), due_.begin() + static_cast<std::ptrdiff_t>(taken));
     }
     return ok_status();
 }

@@ -1,26 +1,15 @@
 // Edits of a running world: brushes, stamps and bodies that push. They wait for their step and run on the device ahead of it.
 #pragma once
+#include "engine/include/wadi/edit.hpp"
 #include "engine/state_program.hpp"
 #include "engine/stepper.hpp"
 #include <span>
 
 namespace wadi {
 
-enum class EditKind : std::uint8_t { brush = EDIT_BRUSH, stamp = EDIT_STAMP, push = EDIT_PUSH };
-enum class EditLayer : std::uint8_t { terrain = LAYER_TERRAIN, sand = LAYER_SAND, water = LAYER_WATER };
-
-/// See wadi_edit in the plugin's header for meaning, units and ranges.
-struct Edit {
-    EditKind kind = EditKind::brush;
-    EditLayer layer = EditLayer::terrain; // of brush and stamp
-    bool capsule = false;                 // brush and push: from (x0, y0) to (x1, y1) instead of a disc round (x0, y0)
-    std::uint64_t step = 0;               // 0 = the next one
-    double x0 = 0, y0 = 0, x1 = 0, y1 = 0;
-    double radius = 0, softness = 0;
-    double amount = 0; // [m]; of a stamp: metres per unit of the image
-    double strength = 0, velocity_x = 0, velocity_y = 0;
-    std::uint32_t stamp = 0;
-};
+static_assert(int(EditKind::brush) == EDIT_BRUSH && int(EditKind::stamp) == EDIT_STAMP && int(EditKind::push) == EDIT_PUSH);
+static_assert(int(EditLayer::terrain) == LAYER_TERRAIN && int(EditLayer::sand) == LAYER_SAND &&
+              int(EditLayer::water) == LAYER_WATER);
 
 constexpr int STAMP_MOST = 4096; // pixels per side
 
@@ -46,32 +35,35 @@ class Edits {
     Status check(const char* function, std::span<const Edit> edits, std::span<const Stamp> stamps) const;
     /// Queues a checked edit, with its step set, behind those of the same step.
     void schedule(const Edit& edit);
-    /// Drops what waits.
-    void forget() { waiting_.clear(); }
+    /// The world went to another step: drops what waits; the level's own edits are due again from there on.
+    void forget();
 
     /// Registers an image; its number counts up from 1. Allocates and may wait. Errors: bad_argument, out_of_memory.
     Result<std::uint32_t> create_stamp(int nx, int ny, std::span<const float> values);
     const std::vector<Stamp>& stamps() const { return stamps_; }
 
-    /// Submits what is due ahead of the next step, MAX_EDITS at a time; promotes the world where a material is new.
+    /// Submits what is due ahead of the next step, MAX_EDITS at a time, the level's own edits first; promotes the world where a
+    /// material is new.
     Status before_step();
 
   private:
-    Status promote(std::size_t due);
-    Status submit(std::size_t due);
+    Status promote();
+    Status submit();
     Status make_room(std::uint64_t pages);
     Status upload(const Stamp& stamp);
 
     WorldState& state_;
     Stepper& stepper_;
-    std::vector<Edit> waiting_; // by step; equal steps in the order of the calls
+    std::vector<Edit> waiting_;       // by step; equal steps in the order of the calls
+    std::vector<Edit> due_;           // taken for the next step and not submitted yet
+    std::uint64_t scripted_from_ = 0; // the first step for which the level's own edits were not taken
     std::vector<Stamp> stamps_;
     compute::Buffer images_;
     std::uint64_t pages_ = 0, pages_used_ = 0;
     StateProgram program_;
 };
 
-/// ok, or bad_argument; the message begins with "function: edits[index].".
+/// ok, or bad_argument; the message begins with "function: edits[index].", or "edits[index]." where function is empty.
 Status check_edit(const char* function, std::size_t index, const Edit& edit, const Settings& settings,
                   std::span<const Stamp> stamps, std::uint64_t next_step);
 /// What a checked edit may bring into the world.

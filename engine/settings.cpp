@@ -2,6 +2,7 @@
 #include "engine/effects.hpp"
 #include "engine/level/setting_fields.hpp"
 #include "engine/level/text.hpp"
+#include "engine/scripted_edits.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -227,6 +228,10 @@ Status validate(const Settings& settings) {
         if (Status status = check_source(settings, n); !status) return status;
     if (Status status = check_series("rain", settings.rain, 0, RAIN_MOST); !status) return status;
     if (Status status = check_series("evaporation", settings.evaporation, 0, RAIN_MOST); !status) return status;
+    if (settings.edits.size() > EDITS_MOST)
+        return refuse("edits: " + std::to_string(settings.edits.size()) + " are more than " + std::to_string(EDITS_MOST));
+    for (std::size_t n = 0; n < settings.edits.size(); ++n)
+        if (Status status = check_scripted_edit(settings, n); !status) return status;
     for (const auto& [name, force] : settings.effects) {
         const auto& names = effect_names();
         if (std::find(names.begin(), names.end(), name) == names.end())

@@ -61,6 +61,8 @@ std::uint64_t level_digest(const Settings& s) {
                                w.gravity_cap_least,
                                w.sand_gravity_cap,
                                w.elastic_cap,
+                               w.shock_viscosity,
+                               w.bulk_viscosity,
                                w.rest_surface,
                                w.rest_velocity,
                                w.passive_pressure,
@@ -88,6 +90,12 @@ std::uint64_t level_digest(const Settings& s) {
     }
     series(s.rain);
     series(s.evaporation);
+    for (const auto& [edit, time, every, until, move] : s.edits) {
+        for (const double value :
+             {double(edit.kind), double(edit.layer), double(edit.capsule), edit.x0, edit.y0, edit.x1, edit.y1, edit.radius,
+              edit.softness, edit.amount, edit.strength, edit.velocity_x, edit.velocity_y, time, every, until, move[0], move[1]})
+            add(value);
+    }
     return sum.value();
 }
 

@@ -67,6 +67,7 @@ WorldParams derive_params(const Settings& s) {
 
     p.k = f(k);
     p.water_velocity_clamp = f(w.velocity_clamp / k);
+    p.shock_viscosity = f(w.shock_viscosity * k * std::sqrt(s.gravity));
     p.gravity_cap_base = w.gravity_cap > 0 ? f(w.gravity_cap) : gravity_cap_off;
     p.gravity_cap_floor = f(w.gravity_cap_least);
     p.inv_k2 = f(1 / (k * k));
@@ -111,6 +112,11 @@ WorldParams derive_params(const Settings& s) {
     p.inv_yield_slope = slope > 0 ? f(1 / slope) : 0.0F;
     p.inv_bulk = lambda + shear > 0 ? f(1 / (lambda + shear)) : 0.0F;
     p.passive_pressure = w.passive_pressure > 0 ? f(w.passive_pressure * weight) : off;
+    // The explicit viscous stress is stable with the elastic one while nu dts/dx^2 <= 1/4 - c^2 dts^2/(2 dx^2).
+    const double wave = std::sqrt((lambda + 2 * shear) / m.sand_density) * ks;
+    const double viscous = std::min(w.bulk_viscosity * wave, std::max(0.0, 0.2 - 0.4 * wave * wave));
+    p.bulk_viscosity = f(viscous * m.sand_density / ks);
+    p.tip_pressure = f(0.5 / m.yield_friction);
     p.inv_friction_yield = f(1 / m.yield_friction);
     p.force_scale = f(ks / m.sand_density);
     p.gradient_clamp = w.gradient_clamp > 0 ? f(w.gradient_clamp) : off;

@@ -68,6 +68,7 @@ struct WorldParams {
     // water step
     float k;                    // dt/dx [s/m]
     float water_velocity_clamp; // alpha dx/dt [m/s]
+    float shock_viscosity;      // c1 dt sqrt(g)/dx [1/sqrt(m)], NUMERICS 2.3; 0 = off
     float gravity_cap_base;     // 0.55 in NUMERICS 2.4b (dimensionless); 1e9 = no cap
     float gravity_cap_floor;    // 0.15 in NUMERICS 2.4b
     float inv_k2;               // 1/k^2 [m2/s2]
@@ -103,6 +104,8 @@ struct WorldParams {
     float inv_yield_slope;
     float inv_bulk;             // 1/(lambda + shear)
     float passive_pressure;     // K rho_s g [Pa/m]; 1e30 = compression uncapped
+    float bulk_viscosity;       // viscous stress per difference of face velocities [Pa s/m], NUMERICS 2.7
+    float tip_pressure;         // largest mean tension per cohesion: 1/(2 c_f)
     float inv_friction_yield;   // 1/c_f
     float force_scale;          // ks/rho_s
     float gradient_clamp;       // largest |dts grad v| entry (0.4)

@@ -72,14 +72,15 @@ FileReader files_in(const std::string& folder) {
 Result<Map> read_map(const std::string& path, std::optional<std::pair<int, int>> size, const FileReader& files) {
     const std::string ending = lower_case_ending(path);
     const bool raw = ending == ".r16" || ending == ".raw";
-    if (!raw && ending != ".png" && ending != ".npy")
-        return error(Code::bad_file, path + ": maps end in .png, .r16, .raw or .npy");
+    if (!raw && ending != ".png" && ending != ".npy" && ending != ".asc")
+        return error(Code::bad_file, path + ": maps end in .png, .r16, .raw, .npy or .asc");
     if (!raw && size) return error(Code::bad_argument, path + ": only .r16 and .raw maps are given a size");
     // The largest map as float64, and some room for a header.
     const std::uint64_t limit = std::uint64_t{MAP_LIMIT} * MAP_LIMIT * 8 + 65536;
     auto bytes = files(path, limit);
     if (!bytes) return bytes.status();
     if (raw) return decode_r16(*bytes, path, size);
+    if (ending == ".asc") return decode_asc(*bytes, path);
     return ending == ".png" ? decode_png(*bytes, path) : decode_npy(*bytes, path);
 }
 

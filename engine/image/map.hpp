@@ -1,4 +1,4 @@
-// Height maps read from files: PNG, RAW r16 and NPY. Row 0 is the south side, as in every field of the engine.
+// Height maps read from files: PNG, RAW r16, NPY and Esri ASCII grids. Row 0 is the south side, as in every field of the engine.
 #pragma once
 #include "engine/compute/status.hpp"
 #include <cstdint>
@@ -16,7 +16,9 @@ inline constexpr int MAP_LIMIT = 16384;
 struct Map {
     int nx = 0;
     int ny = 0;
-    bool integer = false;      // values are grey 0 ... 1; otherwise as stored (NPY)
+    bool integer = false;      // values are grey 0 ... 1; otherwise as stored (NPY, ASC)
+    double cell_size = 0;      // as the file says (ASC) [m]; 0 where the format does not
+    std::int64_t filled = 0;   // cells of no known height (ASC), which took that of the nearest known one
     std::vector<float> values; // row-major nx * ny, row 0 in the south
 };
 
@@ -26,7 +28,7 @@ using FileReader = std::function<Result<std::vector<std::uint8_t>>(const std::st
 /// Files on disk, relative to a folder.
 FileReader files_in(const std::string& folder);
 
-/// Reads a map by the ending of its name: .png, .r16 (or .raw) and .npy. `size` (nx, ny) is what an r16 file holds, square
+/// Reads a map by the ending of its name: .png, .r16 (or .raw), .npy and .asc. `size` (nx, ny) is what an r16 file holds, square
 /// when absent; for the other formats it must be absent. Errors: not_found, bad_file, bad_argument; the message names the
 /// file.
 Result<Map> read_map(const std::string& path, std::optional<std::pair<int, int>> size, const FileReader& files = files_in(""));
@@ -38,6 +40,9 @@ Result<Map> decode_png(const std::vector<std::uint8_t>& bytes, const std::string
 Result<Map> decode_r16(const std::vector<std::uint8_t>& bytes, const std::string& name, std::optional<std::pair<int, int>> size);
 /// NumPy format 1 and 2, little-endian float32 or float64, C order, shape (ny, nx). The file's first row is the south.
 Result<Map> decode_npy(const std::vector<std::uint8_t>& bytes, const std::string& name);
+
+/// Esri ASCII grid with square cells. The file's first row is the north.
+Result<Map> decode_asc(const std::vector<std::uint8_t>& bytes, const std::string& name);
 
 /// Bilinear samples at the cell centres of an nx * ny grid over the same rectangle; an exact copy when the sizes are equal.
 std::vector<float> resample(const Map& map, int nx, int ny);

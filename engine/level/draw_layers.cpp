@@ -32,7 +32,8 @@ double combined(double current, double value, Combine combine) {
 
 double rounded(double height, double quantum) { return quantum > 0 ? std::round(height / quantum) * quantum : height; }
 
-Result<std::vector<float>> load_heights(const Layer& layer, const Frame& frame, const FileReader& files) {
+Result<std::vector<float>> load_heights(const Layer& layer, const Frame& frame, const FileReader& files,
+                                        std::vector<std::string>& warnings) {
     const MapSource& source = *layer.map;
     auto map = read_map(source.file, source.size, files);
     if (!map) // a bad argument of ours is a bad field of the level's author
@@ -44,6 +45,7 @@ Result<std::vector<float>> load_heights(const Layer& layer, const Frame& frame, 
     if (map->integer && !source.grey_range && !source.scale_given)
         return error(Code::bad_file, layer.path + ": " + source.file + " holds grey values; give min and max, the heights of " +
                                          "black and white in metres");
+    if (map->filled > 0) warnings.push_back(filled_warning(*map, layer.path + ".file: " + source.file));
     std::vector<float> values = resample(*map, frame.nx, frame.ny);
     const double scale = source.grey_range ? source.max - source.min : source.scale;
     const double offset = source.grey_range ? source.min : source.offset;
@@ -68,13 +70,19 @@ Sample sample_layer(const Layer& layer, double relative, double ground, double s
     if (std::isinf(relative)) return {};
     if (layer.amount == Amount::wet) return {true, layer.top * sand};
     double value = layer.top + relative;
-    if (layer.amount == Amount::surface) value = std::max(value - ground, 0.0);
+    // Water counts from the terrain, inside the sand too; sand that stands above the surface stays as it is.
+    if (layer.amount == Amount::surface) value = value > ground ? value - ground + sand : 0.0;
     // Beyond the line where a sloping side meets the ground, the shape is over.
     if (has_sloping_sides(layer.shape) && relative < 0 && value <= 0) return {};
     return {true, value};
 }
 
 } // namespace
+
+std::string filled_warning(const Map& map, const std::string& path) {
+    return path + ": " + std::to_string(map.filled) + " of " + std::to_string(std::int64_t{map.nx} * map.ny) +
+           " cells hold NODATA_value; they take the height of the nearest cell that has one";
+}
 
 Result<std::vector<float>> draw_layers(const std::vector<Layer>& layers, LayerTarget target, const Frame& frame,
                                        const FileReader& files, const std::vector<float>& terrain, const std::vector<float>& sand,
@@ -83,7 +91,7 @@ Result<std::vector<float>> draw_layers(const std::vector<Layer>& layers, LayerTa
     for (const Layer& layer : layers) {
         std::vector<float> heights;
         if (layer.map) {
-            auto loaded = load_heights(layer, frame, files);
+            auto loaded = load_heights(layer, frame, files, warnings);
             if (!loaded) return loaded.status();
             heights = std::move(*loaded);
         }

@@ -32,6 +32,11 @@ void stretch(Settings& settings, double factor) {
         source.box[1] *= factor;
         source.box[3] *= factor;
     }
+    for (ScriptedEdit& script : settings.edits) {
+        script.edit.y0 *= factor;
+        script.edit.y1 *= factor;
+        script.move[1] *= factor;
+    }
 }
 
 } // namespace

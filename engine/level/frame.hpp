@@ -5,8 +5,8 @@
 
 namespace wadi {
 
-/// Changes grid, time step and method; moves sources and openings of sides with the stretch in y (discs keep their radius).
-/// The frame is the grid to draw on. Errors: bad_argument.
+/// Changes grid, time step and method; moves sources, edits and openings of sides with the stretch in y (discs and capsules keep
+/// their radius). The frame is the grid to draw on. Errors: bad_argument.
 Result<Frame> apply_overrides(const LevelOverrides& overrides, Settings& settings);
 
 } // namespace wadi

@@ -53,6 +53,9 @@ struct Layer {
     bool only_present = false; // only cells where the field is above zero
 };
 
+/// Advice for a map with cells of no known height, Map::filled.
+std::string filled_warning(const Map& map, const std::string& path);
+
 /// A region that starts with a velocity.
 struct VelocityRegion {
     std::string path;

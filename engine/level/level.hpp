@@ -38,9 +38,9 @@ Result<Level> parse_level(const std::string& text, const FileReader& files, cons
 /// The same with files on disk, relative to `folder`.
 Result<Level> parse_level(const std::string& text, const std::string& folder, const LevelOverrides& overrides);
 
-/// A level from a terrain map alone (PNG, r16, NPY): the map's size unless overridden, cell size 1 m. Integer maps are scaled
-/// so that their relief is 1/8 of the longer side, NPY heights are metres as stored. A water source stands at the highest
-/// ground and every side is an outflow.
+/// A level from a terrain map alone: the map's size unless overridden, cells of 1 m or the cellsize of an ASC map, dt and
+/// duration in proportion. Integer maps are scaled so that their relief is 1/8 of the longer side, NPY and ASC heights are
+/// metres as stored. A water source stands at the highest ground and every side is an outflow.
 Result<Level> level_from_terrain(const std::string& map_path, const LevelOverrides& overrides);
 
 /// Advice with numbers: waves slower than they should be for this dx and dt, cohesion too weak to hold a wall, columns near

@@ -40,6 +40,8 @@ inline constexpr SettingField<Method, double> METHOD_FIELDS[] = {
     {"gravity_cap_least", &Method::gravity_cap_least, 0, 1e6},
     {"sand_gravity_cap", &Method::sand_gravity_cap, 0, 1e6},
     {"elastic_cap", &Method::elastic_cap, 0, 1e6},
+    {"shock_viscosity", &Method::shock_viscosity, 0, 1},
+    {"bulk_viscosity", &Method::bulk_viscosity, 0, 1},
     {"rest_surface", &Method::rest_surface, 0, 1},
     {"rest_velocity", &Method::rest_velocity, 0, 100},
     {"passive_pressure", &Method::passive_pressure, 0, 1e6},
@@ -64,6 +66,9 @@ inline constexpr double RAIN_MOST = 1;                  // rain and evaporation 
 inline constexpr double RATE_MOST = 1e4;                // of a source [m/s]
 inline constexpr double SPEED_MOST = 1e4;               // set by a source or as an initial velocity [m/s]
 inline constexpr double DISCHARGE_MOST = 1e9;           // through a side [m3/s]
+inline constexpr std::size_t EDITS_MOST = 1000;         // of a level
+inline constexpr double EDIT_TIME_MOST = 1e9;           // of a level's edit [s]
+inline constexpr double EDIT_EVERY_LEAST = 1e-3;        // [s]
 inline constexpr double SATURATION_GAP = 1e-3;          // least distance of 0, phi1, phi2 and phi3
 
 /// Names as level files write them; sides are indexed by SideName.

@@ -138,6 +138,7 @@ void read_settings(ObjectReader& root, const FileReader& files, Settings& settin
     if (const Json* rain = root.find("rain")) settings.rain = read_series(*rain, "rain", files, status);
     if (const Json* evaporation = root.find("evaporation"))
         settings.evaporation = read_series(*evaporation, "evaporation", files, status);
+    if (const Json* edits = root.find("edits")) settings.edits = read_edits(*edits, status);
     if (const Json* effects = root.find("effects")) read_effects(*effects, settings, status);
 }
 

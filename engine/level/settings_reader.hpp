@@ -1,4 +1,4 @@
-// The settings of a level file: grid, time step, material, method, sides, sources, rain, effects.
+// The settings of a level file: grid, time step, material, method, sides, sources, rain, edits, effects.
 #pragma once
 #include "engine/image/map.hpp"
 #include "engine/include/wadi/settings.hpp"
@@ -10,6 +10,9 @@ namespace wadi {
 /// Reads every settings key of the root object. Ranges that validate() checks are left to it. Series files come from
 /// `files`. Errors go to the reader's status.
 void read_settings(ObjectReader& root, const FileReader& files, Settings& settings);
+
+/// The level's own edits.
+std::vector<ScriptedEdit> read_edits(const Json& value, Status& status);
 
 /// A number, a list of [time, value], or {"file": "series.csv"}.
 TimeSeries read_series(const Json& value, const std::string& path, const FileReader& files, Status& status);

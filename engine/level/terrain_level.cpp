@@ -1,7 +1,9 @@
 #include "engine/image/map.hpp"
 #include "engine/level/frame.hpp"
+#include "engine/level/layers.hpp"
 #include "engine/level/level.hpp"
 #include "engine/level/setting_fields.hpp"
+#include "engine/level/text.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -11,17 +13,18 @@
 namespace wadi {
 namespace {
 
-constexpr double CELL = 1;               // [m]
-constexpr double DT = 0.05;              // for 1 m cells: waves on 8 m of water keep their speed [s]
+constexpr double CELL = 1;               // where the map does not say [m]
+constexpr double DT = 0.05;              // per metre of cell size: waves on 8 m of water keep their speed [s]
 constexpr double RELIEF = 0.125;         // height_range of integer maps, as a share of the longer side
 constexpr double HEADROOM = 1.5;         // largest_height over the highest terrain
 constexpr double LEAST_HEADROOM = 8;     // [m]
 constexpr double SOURCE_SHARE = 0.03;    // radius of the spring, as a share of the shorter side
 constexpr double SOURCE_LEAST_CELLS = 2; // and at least this many cells
 constexpr double SOURCE_RATE = 0.1;      // [m/s]
-constexpr double DURATION = 60;          // [s]
+constexpr double DURATION = 60;          // per metre of cell size, so that large cells get as many steps [s]
+constexpr double DEGREES = 0.02;         // cells below this are in degrees rather than metres
 
-/// Integer maps: black = 0, white = the relief, whatever range of greys the map uses. NPY: as stored.
+/// Integer maps: black = 0, white = the relief, whatever range of greys the map uses. NPY and ASC: as stored.
 Status scale_heights(Map& map, const std::string& path) {
     const auto [low, high] = std::minmax_element(map.values.begin(), map.values.end());
     if (map.integer) {
@@ -57,13 +60,17 @@ Result<Level> build(const std::string& map_path, const LevelOverrides& overrides
     if (!map) return map.status();
     if (Status status = scale_heights(*map, map_path); !status) return status;
 
+    const double cell = map->cell_size > 0 ? map->cell_size : CELL;
+    if (!(cell >= DX_LEAST && cell <= DX_MOST))
+        return error(Code::bad_file, outside_text(map_path + ": cellsize", cell, DX_LEAST, DX_MOST) + " m");
+
     Level level;
     level.name = std::filesystem::path(map_path).stem().string();
     level.description = "Water springs from the highest place and leaves over the sides.";
-    level.duration = DURATION;
+    level.duration = DURATION * cell;
     Settings& settings = level.settings;
-    settings.grid = {map->nx, map->ny, CELL};
-    settings.dt = DT;
+    settings.grid = {map->nx, map->ny, cell};
+    settings.dt = DT * cell;
     const auto [low, high] = std::minmax_element(map->values.begin(), map->values.end());
     const double reach = std::max(static_cast<double>(*high), -static_cast<double>(*low));
     settings.method.largest_height = std::exp2(std::ceil(std::log2(std::max(reach * HEADROOM, reach + LEAST_HEADROOM))));
@@ -81,6 +88,10 @@ Result<Level> build(const std::string& map_path, const LevelOverrides& overrides
     if (Status status = validate(settings); !status) return status;
     if (Status status = validate(level.fields, settings); !status) return status;
     level.warnings = level_warnings(settings, level.fields);
+    if (map->filled > 0) level.warnings.push_back(filled_warning(*map, map_path));
+    if (cell < DEGREES)
+        level.warnings.push_back(map_path + ": a cellsize of " + number_text(cell) +
+                                 " looks like degrees; it is read as metres: project the map first");
     return level;
 }
 

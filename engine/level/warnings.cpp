@@ -218,6 +218,15 @@ bool covers_a_cell(const Source& source, const Grid& grid) {
     return square <= source.radius * source.radius;
 }
 
+/// Of discs that stay where they are; one that moves or a line meets cells somewhere.
+bool misses_every_cell(const ScriptedEdit& script, const Grid& grid) {
+    if (script.edit.capsule || script.move != std::array<double, 2>{0, 0}) return false;
+    Source disc;
+    disc.center = {script.edit.x0, script.edit.y0};
+    disc.radius = script.edit.radius;
+    return !covers_a_cell(disc, grid);
+}
+
 bool opens_a_cell(const Settings& settings, std::size_t index) {
     const Side& side = settings.sides[index];
     const bool along_y = index == static_cast<std::size_t>(SideName::west) || index == static_cast<std::size_t>(SideName::east);
@@ -237,6 +246,11 @@ std::vector<std::string> level_warnings(const Settings& settings, const InitialF
             warnings.push_back("sources[" + std::to_string(n) +
                                "]: covers no cell centre, so nothing flows; make it larger than dx, " +
                                number_text(settings.grid.dx) + " m, or use a point");
+    for (std::size_t n = 0; n < settings.edits.size(); ++n)
+        if (misses_every_cell(settings.edits[n], settings.grid))
+            warnings.push_back("edits[" + std::to_string(n) +
+                               "]: covers no cell centre, so nothing happens; make it larger than dx, " +
+                               number_text(settings.grid.dx) + " m, or move it into the grid");
     for (std::size_t n = 0; n < settings.sides.size(); ++n)
         if (settings.sides[n].kind != SideKind::wall && !opens_a_cell(settings, n))
             warnings.push_back("sides." + side_names()[n] +

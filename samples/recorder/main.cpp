@@ -115,7 +115,7 @@ int main_checked(int argc, char** argv) {
     CLI::App app("Records a Wadi level: shaded PNG frames, a contact sheet, fields as NPY, and a table of figures.",
                  "wadi-recorder");
     app.add_option("level", level, "level name (--list-levels), level file (.json) or level folder");
-    app.add_option("--terrain", terrain, "a terrain map (.png, .r16, .npy) instead of a level")->excludes("level");
+    app.add_option("--terrain", terrain, "a terrain map (.png, .r16, .npy, .asc) instead of a level")->excludes("level");
     app.add_option("--backend", options.backend, "auto, cpu, vulkan or cuda")->capture_default_str();
     app.add_option("--device", options.device, "device number within the backend (--list-backends); -1 = best")
         ->capture_default_str();
@@ -137,8 +137,13 @@ int main_checked(int argc, char** argv) {
     app.add_option("--dump", dumps, "FIELDS@TIMES, e.g. hs,W,us@1.5,3: writes FIELD_TIME.npy; repeatable")
         ->allow_extra_args(false);
     app.add_option("--summary", options.summary, "writes the figures as JSON to this file");
+    app.add_flag("--mp4", options.mp4, "also write the frames as recording.mp4 (H.264); needs the ffmpeg program");
+    app.add_option("--fps", options.frames_per_second, "frames per second of the MP4")
+        ->check(CLI::Range(1, 240))
+        ->needs("--mp4")
+        ->capture_default_str();
     app.add_flag("--profile", options.profile, "time every stage on the device");
-    app.add_flag("--no-frames", no_frames, "no pictures, for benchmarks");
+    app.add_flag("--no-frames", no_frames, "no pictures, for benchmarks")->excludes("--mp4");
     app.add_flag("--print-plan", options.print_plan, "print effects, passes and buffers, and exit");
     app.add_flag("--list-backends", list_backends, "list devices and exit");
     app.add_flag("--list-levels", only_list_levels, "list levels and exit");

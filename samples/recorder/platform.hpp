@@ -1,6 +1,8 @@
 // What differs between operating systems.
 #pragma once
 #include <filesystem>
+#include <string>
+#include <vector>
 
 namespace recorder {
 
@@ -9,6 +11,13 @@ bool error_stream_is_terminal();
 
 /// The running program's file; empty where the system does not tell.
 std::filesystem::path executable_path();
+
+/// The file that runs a program of this name, from the folders in PATH; empty where there is none.
+std::filesystem::path find_program(const std::string& name);
+
+/// Runs a program of PATH with its arguments, the name first, and waits for it: its exit code, or -1 where it could not be
+/// started or was ended.
+int run_program(const std::vector<std::string>& arguments);
 
 /// The first interrupt (Ctrl-C) only sets the flag, a second one ends the program.
 void catch_interrupt();

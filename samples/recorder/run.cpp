@@ -4,6 +4,7 @@
 #include "platform.hpp"
 #include "progress.hpp"
 #include "report.hpp"
+#include "video.hpp"
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -17,6 +18,7 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr double MOST_FRAMES = 100000;
+constexpr const char* VIDEO = "recording.mp4";
 constexpr double CHUNK_SECONDS = 0.5; // wall time between two looks at the clock and the interrupt flag
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
@@ -106,6 +108,7 @@ Failure Recording::prepare_folder() {
                               std::all_of(name.begin() + 6, name.begin() + 11, [](char c) { return c >= '0' && c <= '9'; });
         if (is_frame && fs::remove(entry.path(), error)) ++removed;
     }
+    fs::remove(out_ / VIDEO, error);
     if (removed > 0) std::printf("removed %d frames of an earlier recording from %s\n", removed, out_.string().c_str());
     return {};
 }
@@ -196,6 +199,9 @@ Failure Recording::finish() {
         const std::string error = write_file(out_ / "contact_sheet.png", encode_png(sheet));
         if (!error.empty()) return {EXIT_BAD_INPUT, error};
     }
+    if (options_.mp4 && report_.frames > 0) {
+        if (Failure failure = write_video(out_, options_.frames_per_second, out_ / VIDEO)) return failure;
+    }
     if (!options_.summary.empty()) {
         if (std::string error = write_file(options_.summary, format_summary(report_)); !error.empty())
             return {EXIT_BAD_INPUT, error};
@@ -204,6 +210,9 @@ Failure Recording::finish() {
 }
 
 int Recording::run() {
+    if (options_.mp4) {
+        if (Failure failure = check_video_program()) return complain(failure);
+    }
     if (Failure failure = world_.create(options_)) return complain(failure);
     if (options_.print_plan) {
         std::printf("%s", world_.describe_plan().c_str());
@@ -238,7 +247,8 @@ int Recording::run() {
 
     if (report_.stats.struct_size != 0) std::printf("\n%s", format_table(report_).c_str());
     if (report_.frames > 0) {
-        std::printf("%d frames and contact_sheet.png are in %s%s\n", report_.frames, out_.string().c_str(),
+        std::printf("%d frames%s and contact_sheet.png are in %s%s\n", report_.frames,
+                    options_.mp4 && !unwritten ? ", recording.mp4" : "", out_.string().c_str(),
                     report_.interrupted ? " (interrupted)" : "");
     }
     if (failure) return complain(failure);

@@ -166,6 +166,12 @@ FN float cohesion(float phi, float c0, float c1, float phi1, float phi2, float p
     return phi > phi3 ? 0.0f : c;
 }
 
+// Viscous stress that takes the mean stress no further than the yield surface does, so that what bears no tension does not
+// get any from moving.
+FN float bounded_viscosity(float viscous, float mean, float least, float largest) {
+    return wclamp(viscous, wmin(least - mean, 0.0f), wmax(largest - mean, 0.0f));
+}
+
 // Yield: Hencky strain of V, compression cap, Drucker-Prager cone with its tip, back to V and to the Cauchy stress.
 // c: cohesion [Pa]; cap: passive pressure K rho_s g hs [Pa].
 FN void project_stretch(REF(Stretch) v, REF(Stress) stress, float c, float cap, float bulk, float inv_bulk, float two_shear, float inv_two_shear,

@@ -14,6 +14,13 @@ FN float advect_velocity(float u, float u_west, float u_east, float u_south, flo
     return height > dry ? moved : u;
 }
 
+// Viscous flux of a cell that is compressed along one axis (NUMERICS 2.3, after von Neumann and Richtmyer 1950), 0 elsewhere: growth
+// is the difference of its two face velocities. 0.12 keeps the explicit step stable at a step of the depth.
+FN float shock_flux(float growth, float height, float viscosity) {
+    float number = wmin(viscosity * wsqrt(wmax(height, 0.0f)), 0.12f);
+    return growth < 0.0f ? number * growth * height : 0.0f;
+}
+
 // Momentum exchange between pure and mixed water when the boundary between them moves (paper 3.4.2; convex form,
 // NUMERICS 2.4a): gained_* = mixed height after the split less before, of the two cells of the face.
 FN void exchange_split(REF(float) pure, REF(float) mixed, float gained_low, float gained_high, float pure_height, float mixed_height, float dry) {

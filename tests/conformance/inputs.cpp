@@ -160,6 +160,8 @@ bool set_method(Method& method, const std::string& name) {
         method.saturation_smoothing = 1;
         method.substeps = 2;
         method.passive_pressure = 0.3;
+        method.bulk_viscosity = 0.5;
+        method.shock_viscosity = 0.25;
     } else {
         return false;
     }

@@ -61,6 +61,16 @@ class Run:
         field = self.field(name, time)
         return math.fsum(field[n] for n, _, _ in self.cells(box)) * self.dx * self.dx
 
+    def standing(self, time, least, box=None):
+        """Volume of the sand in cells that hold more than `least` metres of it [m3]: what is still a wall and not a film."""
+        sand = self.field("hs", time)
+        return math.fsum(sand[n] for n, _, _ in self.cells(box) if sand[n] > least) * self.dx * self.dx
+
+    def emerged(self, time, box=None):
+        """Volume of the sand in cells where it rises above the water [m3]."""
+        sand, water = self.field("hs", time), self.field("W", time)
+        return math.fsum(sand[n] for n, _, _ in self.cells(box) if sand[n] > water[n]) * self.dx * self.dx
+
     def largest(self, name, time, box=None):
         field = self.field(name, time)
         return max(field[n] for n, _, _ in self.cells(box))

@@ -4,6 +4,7 @@
 import argparse
 import json
 import os
+import shutil
 import signal
 import struct
 import subprocess
@@ -25,12 +26,14 @@ class Recorder:
         self.program = str(Path(program).resolve())
         self.backend = backend
         self.folder = folder
+        self.environment = dict(os.environ)
 
     def command(self, *arguments):
         return [self.program, *[str(a) for a in arguments]]
 
     def run(self, *arguments, code=OK):
-        done = subprocess.run(self.command(*arguments), cwd=self.folder, capture_output=True, text=True, timeout=300, check=False)
+        done = subprocess.run(self.command(*arguments), cwd=self.folder, capture_output=True, text=True, timeout=300, check=False,
+                              env=self.environment)
         assert done.returncode == code, f"{arguments}: exit code {done.returncode}, not {code}\n{done.stdout}\n{done.stderr}"
         return done
 
@@ -166,6 +169,62 @@ def test_summary(recorder):
     assert sum(stage["passes"] for stage in profiled["stages"]) == profiled["passes"]["per_step"], profiled["passes"]
 
 
+def boxes(data, start=0, end=None):
+    """The boxes of an MP4, or of a box's contents: kind, first byte and last byte + 1 of what is inside."""
+    end = len(data) if end is None else end
+    while start < end:
+        size, kind = struct.unpack(">I4s", data[start : start + 8])
+        assert size >= 8 and start + size <= end, (kind, size)
+        yield kind, start + 8, start + size
+        start += size
+
+
+def inside(data, *path):
+    start, end = 0, len(data)
+    for kind in path:
+        start, end = next((s, e) for k, s, e in boxes(data, start, end) if k == kind)
+    return data[start:end]
+
+
+def test_video_refusals(recorder):
+    recorder.refuse(LEVEL, "--mp4", "--no-frames", says=["--mp4"])
+    recorder.refuse(LEVEL, "--fps", 25, says=["--mp4"])
+    recorder.refuse(LEVEL, "--mp4", "--fps", 0, says=["--fps"])
+    recorder.environment["PATH"] = str(recorder.folder)
+    recorder.refuse(LEVEL, "--mp4", says=["--mp4", "ffmpeg", "Debian"])
+    if os.name != "posix":
+        return
+    failing = recorder.folder / "ffmpeg"
+    failing.write_text("#!/bin/sh\nexit 3\n", encoding="utf-8")
+    failing.chmod(0o755)
+    done = recorder.record("--seconds", "0", "--mp4", "--out", "video", code=BAD_INPUT)
+    assert "recording.mp4" in done.stderr and "code 3" in done.stderr, done.stderr
+    assert sorted(p.name for p in (recorder.folder / "video").iterdir()) == ["contact_sheet.png", "frame_00000.png"]
+
+
+def test_video(recorder):
+    if shutil.which("ffmpeg") is None:
+        return "SKIPPED: no program ffmpeg in PATH"
+    folder = recorder.folder / "50%d"  # a pattern of numbers, were it not taken as it is
+    done = recorder.run(LEVEL, "--backend", recorder.backend, "--size", "801x101", "--dt", "0.001", "--seconds", "0.005", "--every",
+                        "0.001", "--mp4", "--fps", 10, "--out", folder.name)
+    assert "6 frames, recording.mp4" in done.stdout, done.stdout
+    data = (folder / "recording.mp4").read_bytes()
+    kinds = [kind for kind, _, _ in boxes(data)]
+    assert kinds[0] == b"ftyp" and kinds.index(b"moov") < kinds.index(b"mdat"), kinds
+    tables = (b"moov", b"trak", b"mdia", b"minf", b"stbl")
+    sample = inside(data, *tables, b"stsd")[8:]
+    assert sample[4:8] == b"avc1", sample[:16]
+    width, height = png_size(folder / "frame_00000.png")
+    assert width % 2 == 1, "the case is about sizes that H.264 does not have"
+    assert struct.unpack(">HH", sample[32:36]) == (width + width % 2, height + height % 2), struct.unpack(">HH", sample[32:36])
+    assert struct.unpack(">I", inside(data, *tables, b"stsz")[8:12])[0] == 6
+    scale, duration = struct.unpack(">II", inside(data, b"moov", b"mvhd")[12:20])
+    assert abs(duration / scale - 0.6) < 0.01, (scale, duration)
+    recorder.record("--seconds", "0", "--out", folder.name)
+    assert not (folder / "recording.mp4").exists(), "the video of the earlier recording is left"
+
+
 def test_interrupt(recorder):
     arguments = recorder.command(LEVEL, "--backend", recorder.backend, "--size", "40x12", "--seconds", "100000", "--every", "1000")
     with subprocess.Popen(arguments + ["--out", "cut", "--summary", "cut.json"], cwd=recorder.folder, stdout=subprocess.PIPE,
@@ -189,13 +248,13 @@ def main():
     parser.add_argument("recorder")
     parser.add_argument("--backend", default="cpu")
     options = parser.parse_args()
-    tests = [test_lists, test_plan, test_refusals, test_frames, test_default_folder, test_dumps, test_summary]
+    tests = [test_lists, test_plan, test_refusals, test_frames, test_default_folder, test_dumps, test_summary, test_video_refusals, test_video]
     if os.name == "posix":
         tests.append(test_interrupt)
     for test in tests:
         with tempfile.TemporaryDirectory(prefix="wadi_recorder_") as folder:
-            test(Recorder(options.recorder, options.backend, Path(folder)))
-        print(f"{test.__name__}: OK")
+            skipped = test(Recorder(options.recorder, options.backend, Path(folder)))
+        print(f"{test.__name__}: {skipped or 'OK'}")
     return 0
 
 

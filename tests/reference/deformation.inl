@@ -166,6 +166,8 @@ template <class Real> Real Solver<Real>::cohesion(std::size_t cell) const {
 
 template <class Real> void Solver<Real>::project_deformation_gradient() {
     const Real lm = P.lambda + P.shear;
+    const Axis x = axis(false);
+    const Axis y_axis = axis(true);
     for (std::size_t c = 0; c < cells(); ++c) {
         sxx[c] = sxy[c] = syy[c] = Real(0);
         if (sand[c] <= P.eps) continue;
@@ -233,22 +235,41 @@ template <class Real> void Solver<Real>::project_deformation_gradient() {
         Vxx[c] = E * (std::cosh(hd) + shape * dd);
         Vyy[c] = E * (std::cosh(hd) - shape * dd);
         Vxy[c] = E * shape * dxy;
-        // Cauchy stress; it fades out in thin layers where the taper is on.
-        Real per_J = std::exp(-tr);
-        if (P.taper > Real(0)) per_J *= std::clamp(sand[c] / P.taper - Real(1), Real(0), Real(1));
+        // Cauchy stress.
+        const Real per_J = std::exp(-tr);
         sxx[c] = (lm * tr + Real(2) * P.shear * dd) * per_J;
         syy[c] = (lm * tr - Real(2) * P.shear * dd) * per_J;
         sxy[c] = Real(2) * P.shear * dxy * per_J;
-        if (!has(EFFECT_WHOLE_STRAIN)) continue;
-        // The stress belongs to the left stretch: R S R^T.
+        // 2.13: the stress belongs to the left stretch, R S R^T; (cs, sn) = (1, 0) otherwise.
         const Real half = mean(sxx[c], syy[c]);
         const Real along = mean(sxx[c], -syy[c]);
         const Real across = sxy[c];
         const Real c2 = cs * cs - sn * sn;
         const Real s2 = Real(2) * sn * cs;
-        sxx[c] = half + (along * c2 - across * s2);
-        syy[c] = half - (along * c2 - across * s2);
-        sxy[c] = across * c2 + along * s2;
+        if (has(EFFECT_WHOLE_STRAIN)) {
+            sxx[c] = half + (along * c2 - across * s2);
+            syy[c] = half - (along * c2 - across * s2);
+            sxy[c] = across * c2 + along * s2;
+        }
+        // Bulk viscosity, which takes the mean stress no further than yield does.
+        const int i = static_cast<int>(c) % x.nx;
+        const int j = static_cast<int>(c) / x.nx;
+        const Real divergence = (sand_velocity.x[x.face(i + 1, j)] - sand_velocity.x[x.face(i, j)] +
+                                 sand_velocity.y[y_axis.face(j + 1, i)] - sand_velocity.y[y_axis.face(j, i)]) /
+                                P.dx;
+        const Real before = mean(sxx[c], syy[c]);
+        Real after = std::min(before + P.viscosity * divergence, std::max(before, coh / (Real(2) * P.yield_friction)));
+        if (P.passive_pressure > Real(0)) {
+            const Real passive = P.passive_pressure * P.rho_s * P.gravity * sand[c] + coh / P.yield_friction;
+            after = std::max(after, std::min(before, -passive));
+        }
+        sxx[c] += after - before;
+        syy[c] += after - before;
+        // It fades out in thin layers where the taper is on.
+        const Real fade = P.taper > Real(0) ? std::clamp(sand[c] / P.taper - Real(1), Real(0), Real(1)) : Real(1);
+        sxx[c] *= fade;
+        syy[c] *= fade;
+        sxy[c] *= fade;
         if (!has(EFFECT_DIRECT_STRAIN)) continue;
         const Real Pxx = Vxx[c];
         const Real Pxy = Vxy[c];

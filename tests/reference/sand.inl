@@ -124,6 +124,7 @@ template <class Real> void Solver<Real>::apply_drag() {
 template <class Real> void Solver<Real>::apply_friction() {
     const bool two_layers = has(EFFECT_MIXTURE);
     const bool drag = has(EFFECT_DRAG) && !has(EFFECT_EXPLICIT_DRAG);
+    const bool absent = has(EFFECT_DRAG); // mixed water that is not there stands still
     Faces<Real>& partner = two_layers ? mixed_velocity : pure_velocity;
     const Faces<Real> us_old = sand_velocity;
     const Faces<Real> um_old = partner;
@@ -141,7 +142,7 @@ template <class Real> void Solver<Real>::apply_friction() {
         Real& um = partner.along(ax)[f];
         if (hs_bar <= P.eps / Real(2)) {
             us = Real(0);
-            um = clamped(um, P.clamp);
+            um = absent && two_layers && hm_bar <= Real(0) ? Real(0) : clamped(um, P.clamp);
             return;
         }
         // Per bed area: inertia of the partner layer and of the sand, and the drag impulse per velocity difference.
@@ -157,7 +158,10 @@ template <class Real> void Solver<Real>::apply_friction() {
         const Real g_f = sand_gravity(std::max(sand[L], sand[R]));
         const Real N = P.friction * g_f * P.substep * std::max(Real(1) - P.rho_w * r, Real(0));
         us = size > Real(0) ? std::max(Real(1) - N / size, Real(0)) * p / (Real(1) + kappa) : Real(0);
-        if (drag && inertia + kd > Real(0)) um = (inertia * um_old.along(ax)[f] + kd * us) / (inertia + kd);
+        if (absent && two_layers && hm_bar <= Real(0))
+            um = Real(0);
+        else if (drag && inertia + kd > Real(0))
+            um = (inertia * um_old.along(ax)[f] + kd * us) / (inertia + kd);
         us = clamped(us, P.clamp_sand);
         um = clamped(um, P.clamp);
     });

@@ -53,6 +53,7 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
     P.rest_velocity = static_cast<Real>(method.rest_velocity);
     P.passive_pressure = static_cast<Real>(method.passive_pressure);
     P.gradient_clamp = static_cast<Real>(method.gradient_clamp);
+    P.shock_viscosity = static_cast<Real>(method.shock_viscosity);
     P.cohesion_cap = static_cast<Real>(method.cohesion_cap);
     P.taper = static_cast<Real>(method.stress_taper);
     P.substeps = method.substeps;
@@ -96,6 +97,11 @@ template <class Real> void Solver<Real>::set_time_step(double dt) {
         P.lambda *= factor;
         P.shear *= factor;
     }
+    const Real beta = static_cast<Real>(settings.method.bulk_viscosity);
+    const Real wave = std::sqrt((P.lambda + Real(2) * P.shear) / P.rho_s); // speed of pressure waves in sand
+    const Real courant = wave * P.k_sand;
+    const Real number = std::min(beta * courant, std::max(Real(0), Real(0.2) - Real(0.4) * courant * courant));
+    P.viscosity = number * P.rho_s * P.dx * P.dx / P.substep;
 }
 
 template <class Real> void Solver<Real>::load(const InitialFields& fields) {

@@ -33,7 +33,9 @@ template <class Real> struct Constants {
     Real gravity_cap{}, gravity_cap_least{}, sand_gravity_cap{};
     Real rest_surface{}, rest_velocity{}; // [m], [m/s]
     Real passive_pressure{}, gradient_clamp{}, cohesion_cap{};
-    Real taper{}; // h_el [m]
+    Real shock_viscosity{}; // c1 of 2.3
+    Real viscosity{};       // bulk viscosity of sand [Pa s], bounded for stability (2.7)
+    Real taper{};           // h_el [m]
     int substeps{};
     int smoothing{}; // radius of the saturation's low-pass [cells]
     bool limiter{};
@@ -56,35 +58,36 @@ template <class Real> class Solver {
     // Stages, in the order in which step() calls them.
     void apply_sources();
     void apply_rain();
-    void update_open_sides();            // 2.9, water
-    void split_water();                  // mixed = min(W, hs), pure = W - mixed
-    void update_water_boundary_types();  // 2.12 -> pure_type, mixed_type
-    void diffuse_mixed_velocity();       // 2.15 -> mixed_velocity
-    void diffuse_mixed_water();          // 2.1 -> diffusion_flux
-    void limit_water_outflow();          // 2.2 -> pure_scale, mixed_scale
-    void compute_water_flux();           // 2.2 -> pure_flux, mixed_flux
-    void integrate_water_height();       // 2.2 -> water, pure_predicted, mixed_predicted, pure, mixed
-    void extrapolate_pure_velocity();    // 2.12 -> extrapolated
-    void backtrace_pure_velocity();      // 2.12 -> pure_velocity
-    void transport_mixed_velocity();     // both for the mixed water
-    void integrate_water_velocity();     // 2.3, 2.4 -> pure_velocity, mixed_velocity, mixed_push
-    void compute_bed_load();             // 2.11 -> bed_load
-    void compute_saturation();           // 2.7 -> saturation
-    void update_open_sand_sides();       // 2.9, sand: in every substep
-    void update_sand_boundary_types();   // 2.12 -> sand_type
-    void limit_sand_outflow();           // 2.2 -> sand_scale
-    void compute_sand_flux();            // 2.2 -> sand_flux
-    void integrate_sand_height();        // 2.5 -> sand, sand_before, pure, mixed, mixed_before
-    void evolve_deformation_gradient();  // 2.5, 2.6 -> Vxx, Vxy, Vyy
-    void project_deformation_gradient(); // 2.7 -> Vxx, Vxy, Vyy, sxx, sxy, syy
-    void extrapolate_sand_velocity();    // 2.12 -> extrapolated
-    void backtrace_sand_velocity();      // 2.12 -> sand_velocity
-    void integrate_sand_velocity();      // 2.3, 2.7, rule 2.4c -> sand_velocity
-    void advect_deformation_gradient();  // 2.13 -> Vxx, Vxy, Vyy, rotation
-    void stretch_deformation_gradient(); // 2.13, after the velocity -> Vxx, Vxy, Vyy, rotation
-    void compute_momentum_exchange();    // 2.4a after the sand height, then mixed_push on mixed_velocity
-    void apply_drag();                   // 2.14 -> sand_velocity, mixed_velocity (pure_velocity in the single-layer mask)
-    void apply_friction();               // 2.8 -> sand_velocity, mixed_velocity (pure_velocity in the single-layer mask)
+    void update_open_sides();                    // 2.9, water
+    void split_water();                          // mixed = min(W, hs), pure = W - mixed
+    void update_water_boundary_types();          // 2.12 -> pure_type, mixed_type
+    void diffuse_mixed_velocity();               // 2.15 -> mixed_velocity
+    void diffuse_mixed_water();                  // 2.1 -> diffusion_flux
+    void limit_water_outflow();                  // 2.2 -> pure_scale, mixed_scale
+    void compute_water_flux();                   // 2.2 -> pure_flux, mixed_flux
+    void integrate_water_height();               // 2.2 -> water, pure_predicted, mixed_predicted, pure, mixed
+    void extrapolate_pure_velocity();            // 2.12 -> extrapolated
+    void backtrace_pure_velocity();              // 2.12 -> pure_velocity
+    void transport_mixed_velocity();             // both for the mixed water
+    void damp_shocks(const Faces<Real>& before); // 2.3
+    void integrate_water_velocity();             // 2.3, 2.4 -> pure_velocity, mixed_velocity, mixed_push
+    void compute_bed_load();                     // 2.11 -> bed_load
+    void compute_saturation();                   // 2.7 -> saturation
+    void update_open_sand_sides();               // 2.9, sand: in every substep
+    void update_sand_boundary_types();           // 2.12 -> sand_type
+    void limit_sand_outflow();                   // 2.2 -> sand_scale
+    void compute_sand_flux();                    // 2.2 -> sand_flux
+    void integrate_sand_height();                // 2.5 -> sand, sand_before, pure, mixed, mixed_before
+    void evolve_deformation_gradient();          // 2.5, 2.6 -> Vxx, Vxy, Vyy
+    void project_deformation_gradient();         // 2.7 -> Vxx, Vxy, Vyy, sxx, sxy, syy
+    void extrapolate_sand_velocity();            // 2.12 -> extrapolated
+    void backtrace_sand_velocity();              // 2.12 -> sand_velocity
+    void integrate_sand_velocity();              // 2.3, 2.7, rule 2.4c -> sand_velocity
+    void advect_deformation_gradient();          // 2.13 -> Vxx, Vxy, Vyy, rotation
+    void stretch_deformation_gradient();         // 2.13, after the velocity -> Vxx, Vxy, Vyy, rotation
+    void compute_momentum_exchange();            // 2.4a after the sand height, then mixed_push on mixed_velocity
+    void apply_drag();                           // 2.14 -> sand_velocity, mixed_velocity (pure_velocity in the single-layer mask)
+    void apply_friction();                       // 2.8 -> sand_velocity, mixed_velocity (pure_velocity in the single-layer mask)
 
     bool has(std::uint32_t effect) const { return (effects & effect) != 0; }
     Axis axis(bool is_y) const { return {is_y, settings.grid.nx, settings.grid.ny}; }

@@ -122,9 +122,26 @@ template <class Real> void Solver<Real>::water_face(const Axis& ax, int a, int b
     um = clamped(um, P.clamp);
 }
 
+/// 2.3: viscosity along each axis in cells that are compressed along it.
+template <class Real> void Solver<Real>::damp_shocks(const Faces<Real>& before) {
+    for_inner_faces([&](const Axis& ax, int a, int b) {
+        const Field<Real>& u = before.along(ax);
+        const auto viscous = [&](int cell) {
+            const Real growth = u[ax.face(cell + 1, b)] - u[ax.face(cell, b)];
+            const Real depth = pure_predicted[ax.cell(cell, b)];
+            const Real number = std::min(P.shock_viscosity * P.k * std::sqrt(P.gravity * depth), Real(0.12));
+            return growth < Real(0) ? number * growth * depth : Real(0);
+        };
+        const Real depth = mean(pure_predicted[ax.cell(a - 1, b)], pure_predicted[ax.cell(a, b)]);
+        if (depth > P.eps) pure_velocity.along(ax)[ax.face(a, b)] += (viscous(a) - viscous(a - 1)) / depth;
+    });
+}
+
 template <class Real> void Solver<Real>::integrate_water_velocity() {
     const bool traced = has(EFFECT_SEMI_LAGRANGIAN);
+    const Faces<Real> before = pure_velocity;
     if (!traced) advect_velocity(pure_predicted, pure_flux, pure_velocity);
+    damp_shocks(before);
     if (has(EFFECT_MIXTURE)) {
         if (!traced) advect_velocity(mixed_predicted, mixed_flux, mixed_velocity);
         exchange_split(mixed_predicted, pure_predicted, mixed);

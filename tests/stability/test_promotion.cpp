@@ -53,9 +53,6 @@ TEST_CASE("terrain, then water, then sand: the bits of a world that had every ef
         for (const bool open : {false, true}) {
             for (const bool sand_first : {false, true}) {
                 auto scene = dry_valley(open);
-                // Drag gives the velocity of mixed water a value even where there is none yet; a world without water has no
-                // such value to begin with, and starts it at 0.
-                if (sand_first) scene.settings.material.exchange_rate = 0;
                 auto all = scene;
                 all.settings.effects = {{"water", Force::on}, {"sand", Force::on}};
                 auto grown = make_world(scene, {backend}), full = make_world(all, {backend});

@@ -31,7 +31,7 @@ inline double at(const wadi::Level& level, const std::vector<float>& field, int 
 }
 
 inline std::filesystem::path samples() {
-    return std::filesystem::path(__FILE__).parent_path().parent_path().parent_path() / "samples" / "levels";
+    return std::filesystem::path(WADI_SOURCE_DIR) / "samples" / "levels";
 }
 
 } // namespace level_text

@@ -44,12 +44,13 @@ TEST_CASE("a stage's access comes from its own binding lines") {
 TEST_CASE("timestamps and bindings that do not exist touch nothing") {
     CHECK(buffer_uses(Timestamp{"t"}).empty());
     const int stage = find_stage("project_deformation_gradient");
-    const Dispatch dry{Pipeline{1}, stage, 0, {a, b, c, d, Buffer{5}, Buffer{6}, Buffer{7}, Buffer{}}, {0, 0, 1, 1}, "project"};
-    CHECK(buffer_uses(dry).size() == 7);
+    const Dispatch dry{Pipeline{1},  stage,    0, {a, b, c, d, Buffer{5}, Buffer{6}, Buffer{7}, Buffer{8}, Buffer{9}, Buffer{}},
+                       {0, 0, 1, 1}, "project"};
+    CHECK(buffer_uses(dry).size() == 9);
     auto wet = dry;
     wet.effects = EFFECT_COHESION;
-    wet.slots.back() = Buffer{8};
-    CHECK(buffer_uses(wet).size() == 8);
+    wet.slots.back() = Buffer{10};
+    CHECK(buffer_uses(wet).size() == 10);
 }
 
 TEST_CASE("dependencies name the last writer, and the readers before a write") {

@@ -1,4 +1,4 @@
-// engine/image: PNG, r16 and NPY maps, their errors, and resampling.
+// engine/image: PNG, r16, NPY and ASC maps, their errors, and resampling.
 #include "engine/image/map.hpp"
 #include "tests/unit/map_files.hpp"
 #include <cmath>
@@ -19,6 +19,12 @@ template <class T> std::string message(const Result<T>& result) {
 bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 const std::vector<float> VALUES = {1.5f, -2, 3, 4, 5, 6}; // 3 columns, 2 rows
+
+const std::string ASC_HEADER = "ncols 3\nnrows 2\nxllcorner 500000\nyllcorner 5400000\ncellsize 30\n";
+Bytes asc(const std::string& header, const std::string& values) {
+    const std::string text = header + values;
+    return {text.begin(), text.end()};
+}
 
 } // namespace
 
@@ -134,16 +140,81 @@ TEST_CASE("image: the first NaN, infinity or overflow of an NPY is named") {
     CHECK(says(message(decode_npy(npy(dictionary("<f8", "(1, 1)"), std::vector<double>{1e300}), "a.npy")), "too large"));
 }
 
+TEST_CASE("image: Esri ASCII grids") {
+    const auto map = decode_asc(asc(ASC_HEADER, "4 5 6\n1.5 -2 3e0\n"), "a.asc");
+    REQUIRE_MESSAGE(map, message(map));
+    CHECK(map->nx == 3);
+    CHECK(map->ny == 2);
+    CHECK(!map->integer);
+    CHECK(map->cell_size == 30);
+    CHECK(map->filled == 0);
+    CHECK(map->values == VALUES);
+    // Any case, other order, corners or centres, line ends of any kind and place, signs.
+    const auto odd = decode_asc(
+        asc("NROWS 2\r\nNCols\t3\r\nYLLCENTER +15\r\nxllCenter -5e5\r\nCellSize 0.5\r\n", "4 5\r\n6 +1.5 -2.0\r\n\r\n3"),
+        "a.asc");
+    REQUIRE_MESSAGE(odd, message(odd));
+    CHECK(odd->values == VALUES);
+    CHECK(odd->cell_size == 0.5);
+}
+
+TEST_CASE("image: cells of an ASCII grid without data take the nearest height") {
+    const auto map = decode_asc(asc(ASC_HEADER + "NODATA_value -1\n", "4 -1 -1\n-1.0 -1 9\n"), "a.asc");
+    REQUIRE_MESSAGE(map, message(map));
+    CHECK(map->filled == 4);
+    CHECK(map->values[0] == 4); // south-west
+    CHECK(map->values[2] == 9);
+    CHECK(map->values[5] == 9);
+    for (const float value : map->values) CHECK((value == 4 || value == 9));
+    CHECK(decode_asc(asc(ASC_HEADER + "nodata_value nan\n", "4 nan 6 NaN 8 9"), "a.asc")->filled == 2);
+    CHECK(decode_asc(asc(ASC_HEADER, "4 -9999 6 7 8 9"), "a.asc")->filled == 1); // the format's own value
+    CHECK(decode_asc(asc(ASC_HEADER + "NODATA_value 0\n", "4 -9999 6 7 8 9"), "a.asc")->filled == 0);
+    CHECK(says(message(decode_asc(asc(ASC_HEADER, "-9999 -9999 -9999\n-9999 -9999 -9999\n"), "a.asc")),
+               "every value is NODATA_value"));
+}
+
+TEST_CASE("image: damaged ASCII grids are refused with their line") {
+    const auto refuses = [](const std::string& header, const std::string& values, const std::string& part) {
+        const std::string text = message(decode_asc(asc(header, values), "a.asc"));
+        CHECK_MESSAGE(says(text, "a.asc: line " + part), text);
+    };
+    const std::string six = "1 2 3\n4 5 6\n";
+    refuses(ASC_HEADER, "1 2 3\n4 5", "7: the file ends after 5 values where ncols x nrows, 3 x 2, are 6");
+    refuses(ASC_HEADER, "", "6: the file ends after 0 values");
+    refuses(ASC_HEADER, six + "\n7", "9: more values than ncols x nrows, 3 x 2");
+    refuses(ASC_HEADER, "1 2 3\n4 nan 6", "7: the value in column 2 of row 2 is NaN");
+    refuses(ASC_HEADER, "1 2 inf\n4 5 6", "6: the value in column 3 of row 1 is infinite");
+    refuses(ASC_HEADER, "1 2 3\n4 1e39 6", "7: the value in column 2 of row 2 is infinite or too large");
+    refuses(ASC_HEADER, "1 2 3\n4 5,0 6", "7: the value in column 2 of row 2: \"5,0\" is not a number");
+    refuses("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\n", six, "5: the header ends without cellsize");
+    refuses("nrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n", six, "5: the header ends without ncols");
+    refuses("ncols 3\nnrows 2\nxllcorner 0\ncellsize 1\n", six, "5: the header ends without yllcorner or yllcenter");
+    refuses(ASC_HEADER + "ncols 3\n", six, "6: ncols is given twice");
+    refuses("ncols 3\nnrows 2\nxllcorner 0\nxllcenter 0\n", six, "4: xllcenter is given twice");
+    refuses("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ndx 1\ndy 2\n", six, "5: \"dx\" is no key of an Esri ASCII grid");
+    refuses("ncols 3.5\n", six, "1: ncols: 3.5 is not a whole number in 1 ... 16384");
+    refuses("ncols 3\nnrows 0\n", six, "2: nrows: 0 is not a whole number");
+    refuses("ncols 16385\n", six, "1: ncols: 16385");
+    refuses("ncols many\n", six, "1: ncols: \"many\" is not a number");
+    refuses("ncols", "", "1: ncols: \"\" is not a number");
+    refuses("ncols 3\nnrows 2\nxllcorner nan\n", six, "3: xllcorner: \"nan\" is not a number");
+    refuses("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 0\n", six, "5: cellsize: 0 is not above 0");
+    refuses("ncols 16384\nnrows 16384\nxllcorner 0\nyllcorner 0\ncellsize 1\n", six, "8: the file ends after 6 values");
+    refuses("", "", "1: the header ends without ncols");
+    refuses("P2 3 2", "", "1: \"P2\" is no key");
+}
+
 TEST_CASE("image: files by the ending of their name") {
     const Folder folder;
     CHECK(read_map(folder.write("a.PNG", png16(1, 1, {7})), std::nullopt));
     CHECK(read_map(folder.write("a.r16", words({7}, false)), std::nullopt));
     CHECK(read_map(folder.write("a.raw", words({7, 8}, false)), std::pair{2, 1}));
+    CHECK(read_map(folder.write("a.Asc", asc(ASC_HEADER, "1 2 3 4 5 6")), std::nullopt));
     CHECK(read_map(folder.write("a.npy", npy(dictionary("<f4", "(2, 3)"), VALUES)), std::nullopt));
 
     CHECK(read_map(folder.file("none.png"), std::nullopt).status().code == Code::not_found);
     CHECK(says(message(read_map(folder.file("none.png"), std::nullopt)), "none.png: no such file"));
-    CHECK(says(message(read_map(folder.file("a.jpg"), std::nullopt)), "end in .png, .r16, .raw or .npy"));
+    CHECK(says(message(read_map(folder.file("a.jpg"), std::nullopt)), "end in .png, .r16, .raw, .npy or .asc"));
     CHECK(says(message(read_map(folder.file("a.PNG"), std::pair{1, 1})), "only .r16 and .raw maps are given a size"));
     std::filesystem::create_directory(folder.file("folder.png"));
     CHECK(says(message(read_map(folder.file("folder.png"), std::nullopt)), "not a regular file"));
@@ -180,14 +251,15 @@ TEST_CASE("image: resampling is exact at equal size, bilinear otherwise") {
 TEST_CASE("image: random damage never crashes a reader") {
     std::mt19937 random(1);
     const std::vector<Bytes> files = {png16(3, 2, {0, 1, 2, 3, 4, 5}), words({1, 2, 3, 4}, false),
-                                      npy(dictionary("<f4", "(2, 3)"), VALUES)};
+                                      npy(dictionary("<f4", "(2, 3)"), VALUES), asc(ASC_HEADER, "1 2 3\n4 5 6\n")};
     int read = 0;
     for (int round = 0; round < 3000; ++round) {
         Bytes bytes = files[static_cast<std::size_t>(round) % files.size()];
         for (int flips = 1 + static_cast<int>(random() % 4); flips > 0; --flips)
             bytes[random() % bytes.size()] = static_cast<std::uint8_t>(random());
         if (random() % 4 == 0) bytes.resize(random() % (bytes.size() + 1));
-        for (const auto& map : {decode_png(bytes, "f"), decode_r16(bytes, "f", std::nullopt), decode_npy(bytes, "f")})
+        for (const auto& map :
+             {decode_png(bytes, "f"), decode_r16(bytes, "f", std::nullopt), decode_npy(bytes, "f"), decode_asc(bytes, "f")})
             if (map) {
                 ++read;
                 CHECK(map->values.size() == static_cast<std::size_t>(map->nx) * static_cast<std::size_t>(map->ny));

@@ -133,7 +133,7 @@ TEST_CASE("level: surface fills up to an absolute elevation, flat to the bit") {
         "water": [{"shape": "plane", "surface": 2.1234567}])"));
     double surface = 0;
     for (int i = 0; i < 5; ++i) {
-        const double ground = at(level, level.fields.terrain, i, 4) + at(level, level.fields.sand, i, 4);
+        const double ground = at(level, level.fields.terrain, i, 4); // sand in the lake takes no room from the water
         const double here = ground + at(level, level.fields.water, i, 4);
         if (i > 0) CHECK(here == surface);
         surface = here;
@@ -141,6 +141,10 @@ TEST_CASE("level: surface fills up to an absolute elevation, flat to the bit") {
     }
     CHECK(surface == doctest::Approx(2.1234567));
     CHECK(at(level, level.fields.water, 9, 4) == 0); // ground above
+    const Level island = must(parse(R"("sand": [{"shape": "box", "from": [2, 0], "to": [5, 8], "height": 3}],
+        "water": [{"shape": "plane", "surface": 2}])"));
+    CHECK(at(island, island.fields.water, 3, 4) == 0); // sand above: dry
+    CHECK(at(island, island.fields.water, 1, 4) == 2);
 }
 
 TEST_CASE("level: a dam with a flat crest across a valley") {
@@ -198,6 +202,9 @@ TEST_CASE("level: maps") {
     CHECK(terrain(R"("file": "heights.npy")") == std::vector<float>{1.5, -2, 1.5, -2});
     CHECK(terrain(R"("file": "heights.npy", "scale": 2, "offset": -1)") == std::vector<float>{2, -5, 2, -5});
     CHECK(terrain(R"("file": "row.raw", "size": [3, 1], "max": 4)").size() == 4);
+    folder.write("heights.asc", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 30\n1 2\n3 4\n");
+    CHECK(terrain(R"("file": "heights.asc")") == std::vector<float>{3, 4, 1, 2});
+    CHECK(terrain(R"("file": "heights.asc", "scale": 2, "offset": -1)") == std::vector<float>{5, 7, 1, 3});
 
     const auto level = parse_level(level_text::level(R"("terrain": [{"shape": "plane", "height": 1}],
         "water": [{"file": "grey.png", "max": 4, "absolute": true}])",
@@ -356,6 +363,27 @@ TEST_CASE("level: from a terrain map alone") {
     CHECK(tall.settings.method.largest_height >= 1050);
 
     CHECK(level_from_terrain(folder.file("none.png"), {}).status().code == Code::not_found);
+    // Real sizes: 30 m cells in projected coordinates, heights in metres.
+    const std::string header = "NCOLS 3\nNROWS 2\nXLLCENTER 512345.5\nYLLCENTER 5400000\nCELLSIZE 30\n";
+    const Level real = must(level_from_terrain(folder.write("real.asc", header + "1400 1500 1450\n1300 1350 1250.5\n"), {}));
+    CHECK(real.settings.grid.dx == 30);
+    CHECK(real.settings.dt == doctest::Approx(1.5));
+    CHECK(real.duration == doctest::Approx(1800));
+    CHECK(real.settings.method.largest_height == 4096);
+    CHECK(at(real, real.fields.terrain, 1, 1) == 1500); // the file's first row is the north
+    CHECK(at(real, real.fields.terrain, 2, 0) == 1250.5);
+    CHECK(real.settings.sources[0].center == std::array<double, 2>{45, 30}); // clamped to the middle of so small a grid
+    CHECK(real.warnings.empty());
+    const std::string grid = "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize ";
+    const Level hole = must(level_from_terrain(folder.write("hole.asc", grid + "1\n7 -9999\n"), {}));
+    CHECK(at(hole, hole.fields.terrain, 1, 0) == 7);
+    REQUIRE(hole.warnings.size() == 1);
+    CHECK(says(hole.warnings[0], "1 of 2 cells hold NODATA_value"));
+    const Level degrees = must(level_from_terrain(folder.write("degrees.asc", grid + "0.000277\n7 8\n"), {}));
+    CHECK_MESSAGE(says(degrees.warnings.back(), "0.000277 looks like degrees"), degrees.warnings.back());
+    CHECK(says(message(level_from_terrain(folder.write("wide.asc", grid + "20000\n7 8\n"), {})),
+               "cellsize: 20000 is outside 0.0001 ... 10000 m"));
+
     const auto huge = folder.write("huge.npy", map_files::npy(map_files::dictionary("<f4", "(1, 1)"), std::vector<float>{1e30f}));
     CHECK(says(message(level_from_terrain(huge, {})), "more than a world holds"));
 }

@@ -211,7 +211,7 @@ TEST_CASE("level errors: damaged shipped levels never crash the loader") {
     int refused = 0;
     LevelOverrides small; // the damage is in the text; drawing stays cheap
     small.size = {16, 16};
-    for (const char* name : {"dam_break", "piles", "canyon"}) {
+    for (const char* name : {"dam_break", "piles", "canyon", "beach"}) {
         const auto folder = samples() / name;
         std::ifstream file(folder / "level.json", std::ios::binary);
         const std::string text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};

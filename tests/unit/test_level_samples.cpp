@@ -186,8 +186,8 @@ TEST_CASE("level warnings: a layer that changes nothing") {
     CHECK(warnings(R"("terrain": [{"shape": "plane", "height": 0}])").empty());
 }
 
-TEST_CASE("shipped levels: piles and canyon load without a warning, dam_break with the three its README explains") {
-    for (const char* name : {"piles", "canyon"}) {
+TEST_CASE("shipped levels load without a warning, dam_break with the three its README explains") {
+    for (const char* name : {"piles", "canyon", "beach", "wadi"}) {
         const auto level = load_level((samples() / name / "level.json").string(), {});
         REQUIRE_MESSAGE(level, message(level));
         for (const std::string& warning : level->warnings) CHECK_MESSAGE(false, name << ": " << warning);
@@ -204,6 +204,16 @@ TEST_CASE("shipped levels: piles and canyon load without a warning, dam_break wi
     const auto cured = load_level(path, overrides);
     REQUIRE_MESSAGE(cured, message(cured));
     CHECK(cured->warnings.empty());
+}
+
+TEST_CASE("shipped levels: seepage loads without a warning in every variant") {
+    for (const char* variant : {"low", "medium", "high"}) {
+        LevelOverrides overrides;
+        overrides.variant = variant;
+        const auto level = load_level((samples() / "seepage" / "level.json").string(), overrides);
+        REQUIRE_MESSAGE(level, message(level));
+        for (const std::string& warning : level->warnings) CHECK_MESSAGE(false, variant << ": " << warning);
+    }
 }
 
 TEST_CASE("shipped levels: every level and variant loads, at other sizes too") {
@@ -261,6 +271,50 @@ TEST_CASE("shipped levels: the canyon's dams close it, and its reaches lie one b
     for (const float sand : level.fields.sand) highest_sand = std::max(highest_sand, static_cast<double>(sand));
     CHECK(highest_sand < 4);
     CHECK(level.fields.water.empty());
+}
+
+TEST_CASE("shipped levels: the beach's lake is level over the sand, its castle dry above it, its wall in reach of the brushes") {
+    const auto loaded = load_level((samples() / "beach" / "level.json").string(), {});
+    REQUIRE_MESSAGE(loaded, message(loaded));
+    const Level& level = loaded.value();
+    CHECK(at(level, level.fields.terrain, 160, 20) + at(level, level.fields.water, 160, 20) ==
+          doctest::Approx(1.05).epsilon(1e-5));
+    CHECK(at(level, level.fields.sand, 160, 20) > 0.2);
+    const auto top = [&](int i, int j) { return at(level, level.fields.terrain, i, j) + at(level, level.fields.sand, i, j); };
+    CHECK(top(160, 160) - top(160, 220) > 0.5); // the keep over the beach behind it, which is higher ground
+    for (const ScriptedEdit& script : level.settings.edits) {
+        const double end = script.edit.x0 + script.move[0] * (script.until - script.time);
+        CHECK(script.edit.x0 >= 12);
+        CHECK(end <= 20);
+        CHECK(script.until < level.duration);
+    }
+    CHECK(level.settings.edits.size() == 8);
+}
+
+TEST_CASE("shipped levels: the wadi's floor falls to the east, dunes lie on it alone, the flood enters over the floor") {
+    const auto loaded = load_level((samples() / "wadi" / "level.json").string(), {});
+    REQUIRE_MESSAGE(loaded, message(loaded));
+    const Level& level = loaded.value();
+    const Grid& grid = level.settings.grid;
+    double before = 1e9;
+    for (int i = 40; i < grid.nx; i += 80) { // the lowest place of a column of cells is the floor
+        double lowest = 1e9;
+        for (int j = 0; j < grid.ny; ++j) {
+            lowest = std::min(lowest, at(level, level.fields.terrain, i, j));
+            if (at(level, level.fields.sand, i, j) > 1) CHECK(at(level, level.fields.terrain, i, j) < 14);
+        }
+        CHECK(lowest < before - 1);
+        before = lowest;
+    }
+    double deepest = 0;
+    for (const float sand : level.fields.sand) deepest = std::max(deepest, static_cast<double>(sand));
+    CHECK(deepest > 2);
+    CHECK(deepest < 4);
+    const Side& west = level.settings.sides[static_cast<std::size_t>(SideName::west)];
+    for (int j = 0; j < grid.ny; ++j) {
+        const double y = (j + 0.5) * grid.dx;
+        if (y > west.from && y < west.to) CHECK(at(level, level.fields.terrain, 0, j) < 11);
+    }
 }
 
 TEST_CASE("shipped levels: every key is in the schema, and the schema has every setting with its range and default") {

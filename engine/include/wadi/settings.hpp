@@ -2,6 +2,7 @@
 // loader fills it from JSON, hosts fill it by hand. validate() checks every field and names field and range.
 #pragma once
 #include "engine/compute/status.hpp"
+#include "engine/include/wadi/edit.hpp"
 #include <array>
 #include <cstdint>
 #include <string>
@@ -62,6 +63,8 @@ struct Method {
     double gravity_cap_least = 0.15;
     double sand_gravity_cap = 0.25; // NUMERICS 2.7; 0 = off
     double elastic_cap = 0.2;       // lambda + 2 mu <= elastic_cap rho_s dx^2/dts^2; 0 = off
+    double shock_viscosity = 0;     // c1 of NUMERICS 2.3, damps the ripples behind a bore; 0 = off
+    double bulk_viscosity = 0;      // beta of NUMERICS 2.7, damps elastic waves; 0 = off
     double rest_surface = 1e-5;     // eta_rest [m]; 0 with rest_velocity 0 = off
     double rest_velocity = 1e-3;    // v_rest [m/s]
     double passive_pressure = 1;    // K of the compression cap, NUMERICS 2.7; 0 = off
@@ -121,6 +124,7 @@ struct Settings {
     std::vector<Source> sources;                        // at most MAX_SOURCES (32)
     TimeSeries rain;                                    // [m/s]
     TimeSeries evaporation;                             // [m/s]
+    std::vector<ScriptedEdit> edits;                    // at most 1000; the world queues them itself
     std::vector<std::pair<std::string, Force>> effects; // names of engine/effects.cpp
 };
 

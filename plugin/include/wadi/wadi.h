@@ -100,7 +100,7 @@ typedef struct wadi_level_overrides {
 } wadi_level_overrides;
 WADI_API wadi_level_overrides wadi_default_level_overrides(void);
 
-/** Creates a world from a level file (.json) or from a terrain map (.png, .r16, .npy).
+/** Creates a world from a level file (.json) or from a terrain map (.png, .r16, .npy, .asc).
  *  Errors: NOT_FOUND, BAD_FILE, BAD_ARGUMENT, OUT_OF_MEMORY, NOT_SUPPORTED. */
 WADI_API wadi_result wadi_create_world_from_level(const char* path, const wadi_level_overrides* overrides,
                                                   const wadi_device_options* options, wadi_world_id* world);
@@ -522,6 +522,7 @@ WADI_API wadi_edit wadi_default_edit(void); /* a brush on terrain: radius 1, sof
  *  below method.largest_height is refused and counted (wadi_world_stats.refused); no more is taken than there is. Sand and water
  *  keep their depth where terrain changes, added sand is unstrained. An edit that adds a material the world has not held so far
  *  promotes it when its step comes: buffers are allocated and programs recorded anew, once, and that step may wait for the device.
+ *  Edits of the level itself act ahead of these and are no part of the command log.
  *  Returns at once. wadi_world_load and every other way back in time drops the edits that wait: queue those of later steps again.
  *  Errors: BAD_ARGUMENT, naming edit, field and range, or `effects` when the level forces off what an edit adds; none is queued. */
 WADI_API wadi_result wadi_world_edit(wadi_world_id world, const wadi_edit* edits, uint32_t count);

@@ -2,12 +2,15 @@
 """Writes terrain.png: a winding canyon cut into a plateau, 200 x 256 samples of 0.5 m, 16 bits, black 0 m, white 24 m.
 
 The stream enters in the north and falls towards the south by BED_SLOPE per metre along its line. Its line is a cosine, so
-that it runs due south at the bends, which is where level.json puts the dams. Row 0 of a PNG is the north side.
+that it runs due south at the bends, which is where level.json puts the dams.
 """
 import math
 import os
-import struct
-import zlib
+import sys
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.append(os.path.dirname(HERE))
+from map_writer import write_png  # noqa: E402
 
 NX, NY, DX = 200, 256, 0.5
 WHITE = 24.0            # height of white [m]
@@ -50,22 +53,10 @@ def height(points, x, y):
     return bed + (plateau - bed) * smooth((math.sqrt(square) - FLOOR) / WALL)
 
 
-def chunk(kind, data):
-    return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-
 def main():
     points = stream_line()
-    raw = bytearray()
-    for row in range(NY):
-        y = (NY - 1 - row + 0.5) * DX
-        raw.append(0)  # PNG filter: none
-        for i in range(NX):
-            raw += struct.pack(">H", round(height(points, (i + 0.5) * DX, y) / WHITE * 65535))
-    header = struct.pack(">IIBBBBB", NX, NY, 16, 0, 0, 0, 0)
-    path = os.path.join(os.path.dirname(os.path.abspath(__file__)), "terrain.png")
-    with open(path, "wb") as file:
-        file.write(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(bytes(raw), 9)) + chunk(b"IEND", b""))
+    write_png(os.path.join(HERE, "terrain.png"), NX, NY, WHITE,
+              lambda column, row: height(points, (column + 0.5) * DX, (row + 0.5) * DX))
 
 
 if __name__ == "__main__":

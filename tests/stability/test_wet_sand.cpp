@@ -1,0 +1,97 @@
+// What wet sand does once it has come to rest, and what keeps it moving: banks at a water line, piles that drain.
+#include "tests/support/worlds.hpp"
+#include <algorithm>
+#include <cmath>
+#include <doctest/doctest.h>
+
+using namespace wadi;
+using namespace wadi::test;
+
+namespace {
+
+std::vector<float> sand_of(World& world) {
+    std::vector<float> sand(static_cast<std::size_t>(world.settings().grid.nx) *
+                            static_cast<std::size_t>(world.settings().grid.ny));
+    const auto status = world.read("sand_height", sand);
+    REQUIRE_MESSAGE(status, status.message);
+    return sand;
+}
+
+/// Volume of sand that lies elsewhere after `steps` more steps [m3].
+double moved(World& world, int steps) {
+    const auto before = sand_of(world);
+    step(world, steps);
+    const auto after = sand_of(world);
+    double sum = 0;
+    for (std::size_t n = 0; n < before.size(); ++n)
+        sum += std::fabs(static_cast<double>(after[n]) - static_cast<double>(before[n]));
+    const double dx = world.settings().grid.dx;
+    return sum / 2 * dx * dx;
+}
+
+constexpr double FRICTION = 0.5;
+
+/// A dune of that slope, 0.9 m high, in water 0.45 m deep.
+Scene bank(double slope) {
+    auto scene = flat_scene(120, 6, 0.1, 0.012);
+    scene.settings.material.friction = FRICTION;
+    scene.settings.material.young_modulus = 0;
+    scene.fill(scene.fields.sand,
+               [&](double x, double) { return std::max(0.0, 0.9 - slope * std::max(0.0, std::fabs(x - 6) - 0.3)); });
+    scene.fill(scene.fields.water, [](double, double) { return 0.45; });
+    return scene;
+}
+
+/// A damp pile that its cohesion holds upright.
+Scene damp_pile() {
+    auto scene = flat_scene(50, 50, 0.2, 0.018);
+    auto& material = scene.settings.material;
+    material.friction = FRICTION;
+    material.young_modulus = 2e5;
+    material.cohesion_dry = 0;
+    material.cohesion_wet = material.cohesion_capillary = 2e4;
+    material.exchange_rate = 1e5;
+    const auto inside = [](double x, double y) { return std::hypot(x - 5, y - 5) < 2; };
+    scene.fill(scene.fields.sand, [&](double x, double y) { return inside(x, y) ? 2.0 : 0.0; });
+    scene.fill(scene.fields.water, [&](double x, double y) { return inside(x, y) ? 0.5 : 0.0; });
+    return scene;
+}
+
+} // namespace
+
+TEST_CASE("a bank below half the friction slope rests in a lake to the bit") {
+    auto world = make_world(bank(0.45 * FRICTION));
+    CHECK(moved(*world, 1000) == 0);
+}
+
+TEST_CASE("a steeper bank slumps at the water line to the slope that buoyant friction holds, then all but rests") {
+    auto world = make_world(bank(0.8 * FRICTION));
+    CHECK(moved(*world, 2500) > 0.005); // the gentle bank's negative control
+    CHECK(moved(*world, 1000) < 2e-4);
+    CHECK(world->stats()->largest_sand_speed < 2e-4);
+    const auto sand = sand_of(*world);
+    const double held = FRICTION * (1 - 0.5 * 0.45 / 0.5); // full to 0.45 m of 0.5 m, sand twice as dense as water
+    double steepest = 0;
+    for (std::size_t i = 1; i < 120; ++i) {
+        const auto [low, high] = std::minmax({static_cast<double>(sand[i - 1]), static_cast<double>(sand[i])});
+        if (low > 0.45 && high < 0.55) steepest = std::max(steepest, (high - low) / 0.1);
+    }
+    CHECK(steepest < 1.1 * held);
+    CHECK(steepest > 0.5 * held);
+}
+
+TEST_CASE("a damp pile creeps only as fast as it dries: its strength falls with its water, not by itself") {
+    const auto creep = [](const Scene& scene) {
+        auto world = make_world(scene);
+        step(*world, 1000);
+        return moved(*world, 1000);
+    };
+    Scene scene = damp_pile();
+    CHECK(creep(scene) > 0.1);
+    scene.settings.material.cohesion_dry = scene.settings.material.cohesion_wet; // as strong when dry
+    CHECK(creep(scene) == 0);
+    scene = damp_pile();
+    scene.settings.material.exchange_rate = 1e13; // keeps its water
+    scene.settings.material.diffusion_rate = 0;
+    CHECK(creep(scene) == 0);
+}
