@@ -2,6 +2,7 @@
 #include "engine/effects.hpp"
 #include "engine/level/setting_fields.hpp"
 #include "engine/level/text.hpp"
+#include "engine/method_presets.hpp"
 #include "engine/scripted_edits.hpp"
 #include <algorithm>
 #include <cmath>
@@ -160,11 +161,6 @@ Status check_field(const char* name, const std::vector<float>& field, const Grid
 }
 
 } // namespace
-
-const std::vector<std::string>& method_names() {
-    static const std::vector<std::string> names = {"robust"};
-    return names;
-}
 
 const std::vector<std::string>& effect_names() {
     static const std::vector<std::string> names = [] {

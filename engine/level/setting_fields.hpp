@@ -72,7 +72,6 @@ inline constexpr double EDIT_EVERY_LEAST = 1e-3;        // [s]
 inline constexpr double SATURATION_GAP = 1e-3;          // least distance of 0, phi1, phi2 and phi3
 
 /// Names as level files write them; sides are indexed by SideName.
-const std::vector<std::string>& method_names();
 const std::vector<std::string>& effect_names();
 const std::vector<std::string>& side_names();
 const std::vector<std::string>& velocity_transport_names();

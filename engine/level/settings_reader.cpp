@@ -1,5 +1,6 @@
 #include "engine/level/settings_reader.hpp"
 #include "engine/level/setting_fields.hpp"
+#include "engine/method_presets.hpp"
 #include <cstddef>
 #include <limits>
 
@@ -44,7 +45,9 @@ void read_material(const Json& value, Material& material, Status& status) {
 
 void read_method(const Json& value, Method& method, Status& status) {
     ObjectReader reader(value, "method", status);
-    reader.string("name", method.name);
+    std::string name = method.name;
+    reader.string("name", name);
+    choose_method(method, name); // the other keys change what the preset chose
     reader.boolean("outflow_limiter", method.outflow_limiter);
     read_fields(reader, method, METHOD_FIELDS);
     read_choice(reader, "velocity_transport", velocity_transport_names(), method.velocity_transport);

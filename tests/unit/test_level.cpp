@@ -280,6 +280,34 @@ TEST_CASE("level: size override keeps the x extent and stretches y") {
     CHECK(must(parse(rest, "", overrides)).settings.dt == 0.02);
 }
 
+TEST_CASE("level: a method preset is a set of choices; keys beside it and an override change it") {
+    const Method published =
+        must(parse(R"("method": {"name": "published", "velocity_clamp": 0.5, "substeps": 2})")).settings.method;
+    CHECK(published.name == "published");
+    CHECK(published.velocity_transport == VelocityTransport::semi_lagrangian);
+    CHECK(published.strain_transport == StrainTransport::polar);
+    CHECK(published.drag_friction == DragFriction::sequence);
+    CHECK(published.diffusion == Diffusion::laplacian);
+    CHECK(!published.outflow_limiter);
+    CHECK(published.gravity_cap == 0);
+    CHECK(published.velocity_clamp == 0.5); // in any order of the keys
+    CHECK(published.substeps == 2);
+    LevelOverrides overrides;
+    overrides.method = "published";
+    const Method other = must(parse(R"("method": {"substeps": 2, "largest_height": 32})", "", overrides)).settings.method;
+    CHECK(other.strain_transport == StrainTransport::polar);
+    CHECK(other.velocity_clamp == 0.24);
+    CHECK(other.substeps == 2);
+    CHECK(other.largest_height == 32);
+    const std::string tuned = R"("method": {"name": "published", "velocity_clamp": 0.5})";
+    CHECK(must(parse(tuned, "", overrides)).settings.method.velocity_clamp == 0.5); // the level's own method stays as it is
+    overrides.method = "robust";
+    const Method back = must(parse(tuned, "", overrides)).settings.method;
+    CHECK(back.velocity_transport == VelocityTransport::flux_form);
+    CHECK(back.velocity_clamp == Method{}.velocity_clamp);
+    CHECK(back.outflow_limiter);
+}
+
 TEST_CASE("level: variants are merged in by name") {
     const std::string rest = R"("material": {"friction": 0.4, "young_modulus": 1e5}, "sand": [{"shape": "plane", "height": 1}],
         "variants": {"slippery": {"material": {"friction": 0.1}}, "bare": {"sand": [], "material": null}})";
@@ -331,8 +359,8 @@ TEST_CASE("level: wrong overrides") {
     overrides.dt = 0;
     CHECK(says(with(overrides), "dt: 0 is outside"));
     overrides.dt.reset();
-    overrides.method = "published";
-    CHECK(says(with(overrides), "method: \"published\" is not known; known: robust"));
+    overrides.method = "publisht";
+    CHECK(says(with(overrides), "method: \"publisht\" is not known, did you mean \"published\"?"));
 }
 
 TEST_CASE("level: from a terrain map alone") {
