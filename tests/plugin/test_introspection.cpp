@@ -45,7 +45,7 @@ TEST_CASE("effects come with a reason, and the small array is filled no further"
     auto world = pond("cpu", 4, 4, 1, 1);
     uint32_t count = 0;
     REQUIRE(wadi_world_get_effects(world.id, nullptr, &count) == WADI_OK);
-    CHECK(count == 11);
+    CHECK(count == 12);
     std::vector<wadi_effect_info> effects(count);
     effects[1].on = -7;
     uint32_t one = 1;
