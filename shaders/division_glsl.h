@@ -1,7 +1,7 @@
 // Quotient and root of the stage language in GLSL. Vulkan lets a driver be a few ULP off; where it is, the residual from a
-// fused multiply-add corrects both. Which of the two a device needs is found by its self-test (backends/vulkan) with this
-// very code: 0 = native, 1 = corrected. On an NVIDIA H100, where 30 % of native quotients differ from the CPU's, 0 of
-// 2.3e8 corrected quotients and roots with exponents up to +-63 did.
+// fused multiply-add corrects both: a quotient by a reciprocal that is itself corrected, twice, which rounds correctly (P. Markstein
+// 1990); with the native reciprocal, once, about one quotient in 1e9 stayed wrong. Which of the two a device needs is found by its
+// self-test (backends/vulkan) with this very code: 0 = native, 1 = corrected.
 layout(constant_id = 3) const int CORRECTED_DIVISION = 0;
 
 // A zero residual leaves signed zeros alone, an infinite or undefined one infinities and NaN.
@@ -10,9 +10,12 @@ bool correctable(float residual) { return abs(residual) > 0.0f && abs(residual) 
 float wdiv(float a, float b) {
     float q = a / b;
     if (CORRECTED_DIVISION != 0) {
+        float reciprocal = 1.0f / b;
+        reciprocal = fma(fma(-b, reciprocal, 1.0f), reciprocal, reciprocal);
         float residual = fma(-q, b, a);
-        float corrected = fma(residual, 1.0f / b, q);
-        q = correctable(residual) ? corrected : q;
+        q = correctable(residual) ? fma(residual, reciprocal, q) : q;
+        residual = fma(-q, b, a);
+        q = correctable(residual) ? fma(residual, reciprocal, q) : q;
     }
     return q;
 }

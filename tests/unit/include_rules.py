@@ -14,6 +14,7 @@ RULES = {
     "backends": ["backends/", "engine/compute/"],
     "plugin": ["plugin/", "engine/", "wadi/"],
     "samples/recorder": ["wadi/", "samples/recorder/", ""],
+    "samples/viewer": ["wadi/", "../recorder/levels.hpp", "shaders/", "viewer_shaders/"],
     "samples": ["wadi/"],
 }
 # Libraries only some folders may use.

@@ -1,0 +1,14 @@
+// Pointer and keys, as ImGui has them, to the camera and the tools.
+#pragma once
+#include "session.hpp"
+
+namespace viewer {
+
+/// After ImGui::NewFrame(). Errors of the plugin become the session's message.
+void handle_input(Session& session, double seconds);
+
+inline constexpr const char* controls_help = "left button: tool (look: orbit)   right: orbit   middle: pan   wheel: distance\n"
+                                             "Shift + right: look round   W A S D Q E: fly   Space: pause   .: one step\n"
+                                             "R: restart   F12: screenshot   F9: record   1 ... 9, 0: tools";
+
+} // namespace viewer

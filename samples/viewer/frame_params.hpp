@@ -1,0 +1,14 @@
+// shaders/frame_params.inc as C++.
+#pragma once
+#include <glm/vec4.hpp>
+
+namespace viewer {
+
+struct FrameParams {
+    using vec4 = glm::vec4;
+    using ivec4 = glm::ivec4;
+#include "shaders/frame_params.inc"
+};
+static_assert(sizeof(FrameParams) == (23 + 8) * 16 - 0, "shaders/frame_params.inc holds 16-byte members only");
+
+} // namespace viewer

@@ -1,0 +1,55 @@
+#include "level_settings.hpp"
+#include "../recorder/levels.hpp"
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+namespace viewer {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json read_json(const std::filesystem::path& file) {
+    std::ifstream stream(file);
+    return Json::parse(stream, nullptr, false, true); // no exceptions, comments allowed
+}
+
+Json read_schema() {
+    for (const std::filesystem::path& folder : recorder::level_folders()) {
+        Json schema = read_json(folder / "level.schema.json");
+        if (schema.is_object()) return schema;
+    }
+    return {};
+}
+
+} // namespace
+
+LevelSettings::LevelSettings(const std::filesystem::path& level_file) {
+    const Json level = level_file.extension() == ".json" ? read_json(level_file) : Json();
+    const Json schema = read_schema();
+    if (!level.is_object() || !schema.is_object()) return;
+    level_ = level.dump();
+    const Json given = level.value("material", Json::object());
+    for (const auto& [key, property] : schema["properties"]["material"]["properties"].items()) {
+        if (property.value("type", "") != "number") continue;
+        materials.push_back({key, property.value("description", ""), property.value("minimum", 0.0f),
+                             property.value("maximum", 0.0f), given.value(key, property.value("default", 0.0f))});
+    }
+    const Json forced = level.value("effects", Json::object());
+    for (const auto& entry : schema["properties"]["effects"]["properties"].items()) {
+        const std::string force = forced.value(entry.key(), "auto");
+        const auto* found = std::find(std::begin(effect_forces), std::end(effect_forces), force);
+        effects.push_back(
+            {entry.key(), found == std::end(effect_forces) ? 0 : static_cast<int>(found - std::begin(effect_forces))});
+    }
+}
+
+std::string LevelSettings::text() const {
+    Json level = Json::parse(level_);
+    const LevelSettings& now = *this;
+    for (const MaterialSetting& material : now.materials) level["material"][material.key] = material.value;
+    for (const EffectSetting& effect : now.effects) level["effects"][effect.name] = effect_forces[effect.force];
+    return level.dump();
+}
+
+} // namespace viewer

@@ -1,0 +1,322 @@
+#include "panel.hpp"
+#include "../recorder/levels.hpp"
+#include "controls.hpp"
+#include <algorithm>
+#include <cinttypes>
+#include <cmath>
+#include <imgui.h>
+
+namespace viewer {
+namespace {
+
+constexpr float WIDTH = 330; // [pixels]
+
+/// A list to choose from; true where another entry was chosen.
+template <class Names> bool choose(const char* label, const Names& names, int count, int& chosen) {
+    bool changed = false;
+    if (!ImGui::BeginCombo(label, chosen >= 0 && chosen < count ? names(chosen) : "")) return false;
+    for (int n = 0; n < count; ++n) {
+        if (ImGui::Selectable(names(n), n == chosen)) {
+            changed = n != chosen;
+            chosen = n;
+        }
+    }
+    ImGui::EndCombo();
+    return changed;
+}
+
+void bar(const char* name, double value, double whole, const char* unit) {
+    char text[96];
+    std::snprintf(text, sizeof(text), "%s %.2f %s", name, value, unit);
+    ImGui::ProgressBar(whole > 0 ? static_cast<float>(value / whole) : 0.0f, ImVec2(-1, 0), text);
+}
+
+} // namespace
+
+void Panel::draw(Session& session, double frame_seconds) {
+    frame_milliseconds_ += 0.1f * (static_cast<float>(1e3 * frame_seconds) - frame_milliseconds_);
+    ImGui::SetNextWindowPos(ImVec2(0, 0));
+    ImGui::SetNextWindowSize(ImVec2(WIDTH, ImGui::GetIO().DisplaySize.y));
+    ImGui::Begin("Wadi", nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse);
+    ImGui::PushItemWidth(150);
+    session.picture.shift = WIDTH / ImGui::GetIO().DisplaySize.x;
+    try {
+        simulation(session);
+        if (ImGui::CollapsingHeader("Tools", ImGuiTreeNodeFlags_DefaultOpen)) tools(session);
+        if (ImGui::CollapsingHeader("Picture", ImGuiTreeNodeFlags_DefaultOpen)) quality(session);
+        if (ImGui::CollapsingHeader("Costs", ImGuiTreeNodeFlags_DefaultOpen)) costs(session);
+        if (ImGui::CollapsingHeader("Materials and effects")) level_changes(session);
+        if (ImGui::CollapsingHeader("Ledger")) ledger(session, frame_seconds);
+        if (ImGui::CollapsingHeader("Back in time")) time_travel(session);
+    } catch (const std::exception& error) {
+        session.message = error.what();
+    }
+    if (ImGui::CollapsingHeader("Keys")) ImGui::TextWrapped("%s", controls_help);
+    if (!session.message.empty()) {
+        ImGui::Separator();
+        ImGui::TextWrapped("%s", session.message.c_str());
+    }
+    ImGui::PopItemWidth();
+    ImGui::End();
+    if (session.picture.section.shown) profile(session);
+}
+
+void Panel::simulation(Session& session) {
+    static const std::vector<recorder::LevelEntry> levels = recorder::list_levels();
+    int level = -1;
+    for (std::size_t n = 0; n < levels.size(); ++n) {
+        if (levels[n].name == session.level_name) level = static_cast<int>(n);
+    }
+    const auto level_at = [&](int n) { return levels[static_cast<std::size_t>(n)].name.c_str(); };
+    if (choose("level", level_at, static_cast<int>(levels.size()), level)) {
+        SimulationChoice choice = session.choice();
+        choice.level_file = levels[static_cast<std::size_t>(level)].file.string();
+        choice.text.clear();
+        choice.nx = choice.ny = 0;
+        session.open(levels[static_cast<std::size_t>(level)].name, choice);
+    }
+    static const char* const backends[] = {"auto", "cpu", "vulkan", "cuda"};
+    int backend =
+        static_cast<int>(std::find(std::begin(backends), std::end(backends), session.choice().backend) - std::begin(backends));
+    if (choose(
+            "backend", [](int n) { return backends[n]; }, 4, backend)) {
+        SimulationChoice choice = session.choice();
+        choice.backend = backends[backend];
+        session.open(session.level_name, choice);
+    }
+    const wadi_world_info& info = session.simulation().info;
+    ImGui::TextWrapped("%d x %d cells of %g m, dt %g s\n%s: %s", info.nx, info.ny, info.dx, info.dt, info.backend,
+                       info.device_name);
+    ImGui::Text("t = %.2f s, step %" PRIu64, session.simulation().frame.time, session.simulation().frame.total_steps);
+    ImGui::Checkbox("pause", &session.paused);
+    ImGui::SameLine();
+    if (ImGui::Button("step")) {
+        session.paused = true;
+        session.single_step();
+    }
+    ImGui::SameLine();
+    if (ImGui::Button("restart")) session.restart();
+    ImGui::SliderFloat("speed", &session.speed, 0.02f, 4.0f, "%.2f x", ImGuiSliderFlags_Logarithmic);
+}
+
+void Panel::tools(Session& session) {
+    int tool = static_cast<int>(session.tool);
+    if (choose(
+            "tool", [](int n) { return tool_names[n]; }, static_cast<int>(std::size(tool_names)), tool))
+        session.tool = static_cast<Tool>(tool);
+    const glm::vec2 extent = session.simulation().grid.extent();
+    const float longest = std::max(extent.x, extent.y), dx = session.simulation().grid.dx;
+    ImGui::SliderFloat("radius [m]", &session.brush_radius, dx, 0.2f * longest, "%.2f", ImGuiSliderFlags_Logarithmic);
+    ImGui::SliderFloat(session.tool == Tool::push ? "strength" : "strength [m/s]", &session.brush_strength, 0.01f, 0.1f * longest,
+                       "%.2f", ImGuiSliderFlags_Logarithmic);
+    for (std::size_t n = 0; n < session.sources.size(); ++n) {
+        PlacedSource& source = session.sources[n];
+        ImGui::PushID(static_cast<int>(n));
+        ImGui::Checkbox("##on", &source.on);
+        ImGui::SameLine();
+        bool sand = source.layer == WADI_LAYER_SAND;
+        ImGui::Checkbox("sand", &sand);
+        source.layer = sand ? WADI_LAYER_SAND : WADI_LAYER_WATER;
+        ImGui::SameLine();
+        auto rate = static_cast<float>(source.rate);
+        ImGui::PushItemWidth(80);
+        ImGui::SliderFloat("m/s", &rate, 0.01f, 0.1f * longest, "%.2f", ImGuiSliderFlags_Logarithmic);
+        ImGui::PopItemWidth();
+        source.rate = static_cast<double>(rate);
+        ImGui::SameLine();
+        const bool removed = ImGui::SmallButton("x");
+        ImGui::PopID();
+        if (removed) session.sources.erase(session.sources.begin() + static_cast<std::ptrdiff_t>(n--));
+    }
+    if (ImGui::Button("screenshot")) session.screenshot();
+    ImGui::SameLine();
+    if (ImGui::Button("record (F9 stops)")) session.set_recording(true);
+}
+
+void Panel::quality(Session& session) {
+    Picture& picture = session.picture;
+    const std::vector<Quality>& presets = quality_presets();
+    int preset = 0;
+    for (std::size_t n = 0; n < presets.size(); ++n) {
+        if (presets[n].name == picture.quality.name) preset = static_cast<int>(n);
+    }
+    if (choose(
+            "quality", [&](int n) { return presets[static_cast<std::size_t>(n)].name.c_str(); }, static_cast<int>(presets.size()),
+            preset))
+        picture.quality = presets[static_cast<std::size_t>(preset)];
+    ImGui::SliderInt("samples", &picture.quality.samples, 1, 16);
+    ImGui::SliderInt("reflection steps", &picture.quality.reflection_steps, 0, 256);
+    ImGui::SliderInt("sky sectors", &picture.quality.sky_sectors, 4, 32);
+    ImGui::Checkbox("glitter", &picture.quality.glitter);
+    const std::vector<std::string>& cameras = camera_presets();
+    int camera = -1;
+    if (choose(
+            "camera", [&](int n) { return cameras[static_cast<std::size_t>(n)].c_str(); }, static_cast<int>(cameras.size()),
+            camera))
+        picture.camera =
+            camera_preset(cameras[static_cast<std::size_t>(camera)], session.simulation().grid.block,
+                          static_cast<float>(session.renderer.width()) / static_cast<float>(session.renderer.height()));
+    if (choose(
+            "view", [](int n) { return views()[static_cast<std::size_t>(n)].name; }, static_cast<int>(views().size()),
+            picture.view)) {
+        picture.low = views()[static_cast<std::size_t>(picture.view)].low;
+        picture.high = views()[static_cast<std::size_t>(picture.view)].high;
+    }
+    if (picture.view != 0) {
+        const View& view = views()[static_cast<std::size_t>(picture.view)];
+        ImGui::DragFloatRange2(view.unit[0] == 0 ? "range" : view.unit, &picture.low, &picture.high,
+                               0.01f * (view.high - view.low));
+        if (picture.high <= picture.low) picture.high = picture.low + 1e-3f;
+    }
+    ImGui::Checkbox("arrows", &picture.arrows);
+    ImGui::SameLine();
+    ImGui::Checkbox("section line", &picture.section.shown);
+    Look& look = picture.look;
+    ImGui::SliderFloat("sun azimuth", &look.sun_azimuth, 0, 360, "%.0f deg");
+    ImGui::SliderFloat("sun elevation", &look.sun_elevation, 5, 85, "%.0f deg");
+    ImGui::SliderFloat("exposure", &look.exposure, 0.1f, 3, "%.2f");
+    ImGui::SliderFloat("clarity of water", &look.clarity, 0.02f, 50, "%.2f m", ImGuiSliderFlags_Logarithmic);
+    ImGui::SliderFloat("ripples", &look.ripples, 0, 4);
+}
+
+void Panel::costs(Session& session) {
+    ImGui::Text("frame %.1f ms (%.1f/s), %.0f steps/s", static_cast<double>(frame_milliseconds_),
+                1e3 / std::max(static_cast<double>(frame_milliseconds_), 1e-3), session.steps_per_second);
+    ImGui::Text("%.2f times real time, dropped %.2f s", session.real_time_factor,
+                1e-9 * static_cast<double>(session.simulation().frame.dropped_nanoseconds_total));
+    const Milliseconds times = session.renderer.times();
+    if (session.renderer.timed()) {
+        bar("grid", times.grid, times.all(), "ms");
+        bar("see", times.see, times.all(), "ms");
+        bar("shade", times.shade, times.all(), "ms");
+        bar("finish", times.finish, times.all(), "ms");
+        bar("panel, copy", times.after, times.all(), "ms");
+    }
+    bool profiling = session.profiling;
+    if (ImGui::Checkbox("time the stages of a step", &profiling)) session.set_profiling(profiling);
+    if (!profiling) return;
+    std::vector<wadi_stage_timing> stages = session.stage_timings();
+    double all = 0;
+    for (const wadi_stage_timing& stage : stages) all += stage.milliseconds;
+    ImGui::Text("%.3f ms per water step", all);
+    for (const wadi_stage_timing& stage : stages) bar(stage.name, stage.milliseconds, all, "ms");
+}
+
+void Panel::level_changes(Session& session) {
+    LevelSettings& settings = session.settings;
+    if (settings.materials.empty()) {
+        ImGui::TextWrapped("No level file or no level.schema.json: nothing to change here.");
+        return;
+    }
+    ImGui::TextWrapped("Counts from the next start of the level.");
+    if (ImGui::Button("restart with these")) session.restart();
+    for (MaterialSetting& material : settings.materials) {
+        const bool wide = material.most > 1000;
+        // A slider over all that is allowed would have no resolution: up to 10 times the value, still within the range.
+        const float most = wide ? std::min(material.most, 10 * std::max(material.value, 1.0f)) : material.most;
+        ImGui::SliderFloat(material.key.c_str(), &material.value, material.least, most, "%.4g", ImGuiSliderFlags_AlwaysClamp);
+        if (ImGui::IsItemHovered())
+            ImGui::SetTooltip("%s; %g ... %g", material.description.c_str(), static_cast<double>(material.least),
+                              static_cast<double>(material.most));
+    }
+    uint32_t count = 0;
+    check(wadi_world_get_effects(session.simulation().world, nullptr, &count), "effects");
+    std::vector<wadi_effect_info> effects(count);
+    check(wadi_world_get_effects(session.simulation().world, effects.data(), &count), "effects");
+    for (EffectSetting& effect : settings.effects) {
+        choose(
+            effect.name.c_str(), [](int n) { return effect_forces[n]; }, static_cast<int>(std::size(effect_forces)),
+            effect.force);
+        for (const wadi_effect_info& now : effects) {
+            if (effect.name != now.name) continue;
+            ImGui::SameLine();
+            ImGui::Text("%s", now.on ? "on" : "off");
+            if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", now.why);
+        }
+    }
+}
+
+void Panel::ledger(Session& session, double seconds) {
+    stats_age_ += seconds;
+    if (stats_age_ > 1) { // reads the whole state: not every frame
+        stats_ = wadi_default_world_stats();
+        check(wadi_world_get_stats(session.simulation().world, &stats_), "statistics");
+        stats_age_ = 0;
+    }
+    ImGui::Text("          sand [m3]    water [m3]");
+    ImGui::Text("first  %12.3f  %12.3f", stats_.sand_initial, stats_.water_initial);
+    ImGui::Text("in     %12.3f  %12.3f", stats_.sand_in, stats_.water_in);
+    ImGui::Text("out    %12.3f  %12.3f", stats_.sand_out, stats_.water_out);
+    ImGui::Text("now    %12.3f  %12.3f", stats_.sand_volume, stats_.water_volume);
+    ImGui::Text("drift  %10" PRId64 " q  %10" PRId64 " q", stats_.sand_drift_quanta, stats_.water_drift_quanta);
+    ImGui::Text("speed  %8.2f m/s  %8.2f m/s", stats_.largest_sand_speed, stats_.largest_water_speed);
+    ImGui::Text("clamped %" PRIu64 ", capped %" PRIu64 ", limited %" PRIu64, stats_.clamped_faces, stats_.capped_faces,
+                stats_.limited_cells);
+    ImGui::Text("hash %016" PRIx64, stats_.hash);
+}
+
+void Panel::time_travel(Session& session) {
+    bool keeps = rollback_frames_ > 0;
+    ImGui::SliderInt("every n steps", &rollback_interval_, 1, 100);
+    if (ImGui::Checkbox("keep 64 earlier states", &keeps)) {
+        rollback_frames_ = keeps ? 64 : 0;
+        session.set_rollback(rollback_frames_, static_cast<uint32_t>(rollback_interval_));
+    }
+    const std::vector<uint64_t> steps = session.rollback_steps();
+    if (!steps.empty()) {
+        int kept = static_cast<int>(steps.size()) - 1;
+        char text[32];
+        std::snprintf(text, sizeof(text), "step %" PRIu64, steps.back());
+        if (ImGui::SliderInt("back to", &kept, 0, static_cast<int>(steps.size()) - 1, text)) {
+            session.paused = true;
+            session.roll_back(steps[static_cast<std::size_t>(kept)]);
+        }
+    }
+    if (ImGui::Button("check determinism (20 steps)")) determinism_ = session.check_determinism(20);
+    if (!determinism_.empty()) ImGui::TextWrapped("%s", determinism_.c_str());
+}
+
+void Panel::profile(const Session& session) {
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos(ImVec2(WIDTH + 10, size.y - 190), ImGuiCond_FirstUseEver);
+    ImGui::SetNextWindowSize(ImVec2(std::max(size.x - WIDTH - 20, 200.0f), 180), ImGuiCond_FirstUseEver);
+    ImGui::Begin("Section");
+    if (session.profile.size() < 2) {
+        ImGui::Text("draw a line with the tool \"section\"");
+        ImGui::End();
+        return;
+    }
+    float low = 1e9f, high = -1e9f;
+    for (const ProfilePoint& point : session.profile) {
+        low = std::min(low, point.terrain);
+        high = std::max(high, point.water);
+    }
+    low -= 0.1f * std::max(high - low, 0.1f);
+    high += 0.1f * std::max(high - low, 0.1f);
+    const glm::vec4& ends = session.picture.section.ends;
+    const float length = std::hypot(ends.z - ends.x, ends.w - ends.y);
+    ImGui::Text("%.1f m along, elevation %.2f ... %.2f m", static_cast<double>(length), static_cast<double>(low),
+                static_cast<double>(high));
+    const ImVec2 origin = ImGui::GetCursorScreenPos(), room = ImGui::GetContentRegionAvail();
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    list->Flags &= ~ImDrawListFlags_AntiAliasedFill; // soft edges would leave seams between the columns
+    const auto place = [&](std::size_t n, float height) {
+        return ImVec2(origin.x + room.x * static_cast<float>(n) / static_cast<float>(session.profile.size() - 1),
+                      origin.y + room.y * (1 - (height - low) / (high - low)));
+    };
+    const auto band = [&](auto&& bottom, auto&& top, ImU32 colour) {
+        for (std::size_t n = 0; n + 1 < session.profile.size(); ++n) {
+            const ProfilePoint &a = session.profile[n], &b = session.profile[n + 1];
+            list->AddQuadFilled(place(n, bottom(a)), place(n, top(a)), place(n + 1, top(b)), place(n + 1, bottom(b)), colour);
+        }
+    };
+    const auto terrain = [](const ProfilePoint& p) { return p.terrain; };
+    const auto sand = [](const ProfilePoint& p) { return p.sand; };
+    const auto water = [](const ProfilePoint& p) { return p.water; };
+    band([&](const ProfilePoint&) { return low; }, terrain, IM_COL32(110, 100, 92, 255));
+    band(terrain, sand, IM_COL32(214, 170, 100, 255));
+    band(sand, water, IM_COL32(50, 120, 190, 220));
+    ImGui::End();
+}
+
+} // namespace viewer

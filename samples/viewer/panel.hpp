@@ -1,0 +1,30 @@
+// The panel: what runs, what it costs, what can be changed.
+#pragma once
+#include "session.hpp"
+
+namespace viewer {
+
+class Panel {
+  public:
+    /// Between ImGui::NewFrame() and ImGui::Render(). Errors of the plugin become the session's message.
+    void draw(Session& session, double frame_seconds);
+
+  private:
+    float frame_milliseconds_ = 0;
+    int rollback_interval_ = 10;
+    uint32_t rollback_frames_ = 0;
+    std::string determinism_;
+    wadi_world_stats stats_{};
+    double stats_age_ = 1e9; // [s]
+
+    void simulation(Session& session);
+    void tools(Session& session);
+    void quality(Session& session);
+    void costs(Session& session);
+    void level_changes(Session& session);
+    void ledger(Session& session, double seconds);
+    void time_travel(Session& session);
+    void profile(const Session& session);
+};
+
+} // namespace viewer

@@ -1,0 +1,148 @@
+#include "script.hpp"
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <imgui.h>
+#include <sstream>
+#include <stdexcept>
+
+namespace viewer {
+namespace {
+
+/// Commands and how many words follow.
+const std::map<std::string, std::size_t> commands = {
+    {"pointer", 2},  {"press", 1}, {"release", 1},     {"wheel", 1},  {"key", 1},     {"tool", 1},     {"radius", 1},
+    {"strength", 1}, {"speed", 1}, {"pause", 0},       {"resume", 0}, {"step", 0},    {"restart", 0},  {"screenshot", 0},
+    {"record", 1},   {"view", 1},  {"quality", 1},     {"arrows", 0}, {"section", 4}, {"backend", 1},  {"level", 2},
+    {"keep", 2},     {"back", 1},  {"determinism", 1}, {"print", 0},  {"resize", 2},  {"minimise", 0}, {"restore", 0},
+};
+
+std::size_t button_number(const std::string& name) {
+    for (std::size_t n = 0; n < 3; ++n) {
+        if (name == (const char*[]){"left", "right", "middle"}[n]) return n;
+    }
+    throw std::runtime_error("script: button \"" + name + "\" is none of left, right, middle");
+}
+
+void print_state(Session& session) {
+    wadi_world_stats stats = wadi_default_world_stats();
+    check(wadi_world_get_stats(session.simulation().world, &stats), "statistics");
+    std::printf("state step %llu sand %.6f water %.6f sand_in %.6f water_in %.6f kept %zu hash %016llx\n",
+                static_cast<unsigned long long>(stats.steps), stats.sand_volume, stats.water_volume, stats.sand_in,
+                stats.water_in, session.rollback_steps().size(), static_cast<unsigned long long>(stats.hash));
+    std::fflush(stdout);
+}
+
+void run(const Script::Line& line, Session& session) {
+    const std::string& command = line.command;
+    const auto number = [&](std::size_t n) { return std::stof(line.words[n]); };
+    if (command == "tool") {
+        for (std::size_t n = 0; n < std::size(tool_names); ++n) {
+            std::string name = tool_names[n];
+            for (char& c : name) c = c == ' ' ? '-' : c;
+            if (name == line.words[0]) {
+                session.tool = static_cast<Tool>(n);
+                return;
+            }
+        }
+        throw std::runtime_error("script: unknown tool \"" + line.words[0] + "\"");
+    }
+    if (command == "radius") session.brush_radius = number(0);
+    if (command == "strength") session.brush_strength = number(0);
+    if (command == "speed") session.speed = number(0);
+    if (command == "pause") session.paused = true;
+    if (command == "resume") session.paused = false;
+    if (command == "step") session.single_step();
+    if (command == "restart") session.restart();
+    if (command == "screenshot") session.screenshot();
+    if (command == "record") session.set_recording(line.words[0] == "on");
+    if (command == "view") {
+        session.picture.view = view_number(line.words[0]);
+        session.picture.low = views()[static_cast<std::size_t>(session.picture.view)].low;
+        session.picture.high = views()[static_cast<std::size_t>(session.picture.view)].high;
+    }
+    if (command == "quality") session.picture.quality = quality_preset(line.words[0]);
+    if (command == "arrows") session.picture.arrows = true;
+    if (command == "section") {
+        session.picture.section.ends = {number(0), number(1), number(2), number(3)};
+        session.picture.section.shown = true;
+    }
+    if (command == "backend") {
+        SimulationChoice choice = session.choice();
+        choice.backend = line.words[0];
+        session.open(session.level_name, choice);
+    }
+    if (command == "level") {
+        SimulationChoice choice = session.choice();
+        choice.level_file = line.words[1];
+        session.open(line.words[0], choice);
+    }
+    if (command == "keep") session.set_rollback(static_cast<uint32_t>(number(0)), static_cast<uint32_t>(number(1)));
+    if (command == "back") session.roll_back(std::stoull(line.words[0]));
+    if (command == "determinism")
+        std::printf("determinism %s\n", session.check_determinism(static_cast<uint32_t>(number(0))).c_str());
+    if (command == "print") print_state(session);
+}
+
+} // namespace
+
+Script::Script(const std::filesystem::path& file) {
+    std::ifstream stream(file);
+    if (!stream) throw std::runtime_error("script: cannot read " + file.string());
+    std::string text;
+    for (int row = 1; std::getline(stream, text); ++row) {
+        std::istringstream words(text.substr(0, text.find('#')));
+        std::string first, word;
+        if (!(words >> first)) continue;
+        const std::string where = file.string() + ", line " + std::to_string(row) + ": ";
+        Line line;
+        words >> line.command;
+        while (words >> word) line.words.push_back(word);
+        if (first.find_first_not_of("0123456789") != std::string::npos)
+            throw std::runtime_error(where + "a line begins with a frame number, not \"" + first + "\"");
+        const auto known = commands.find(line.command);
+        if (known == commands.end()) throw std::runtime_error(where + "unknown command \"" + line.command + "\"");
+        if (known->second != line.words.size())
+            throw std::runtime_error(where + line.command + " takes " + std::to_string(known->second) + " words");
+        frames_[std::stoull(first)].push_back(line);
+    }
+}
+
+std::vector<Script::Line> Script::lines(uint64_t frame, const std::string& command) const {
+    std::vector<Line> found;
+    const auto at = frames_.find(frame);
+    if (at == frames_.end()) return found;
+    for (const Line& line : at->second) {
+        if (line.command == command) found.push_back(line);
+    }
+    return found;
+}
+
+void Script::apply_input(uint64_t frame) {
+    if (empty()) return;
+    ImGuiIO& io = ImGui::GetIO();
+    for (const Line& line : lines(frame, "pointer")) {
+        x_ = std::stof(line.words[0]);
+        y_ = std::stof(line.words[1]);
+    }
+    for (const Line& line : lines(frame, "press")) down_[button_number(line.words[0])] = true;
+    for (const Line& line : lines(frame, "release")) down_[button_number(line.words[0])] = false;
+    for (const Line& line : lines(frame, "wheel")) io.MouseWheel += std::stof(line.words[0]);
+    if (x_ >= 0) io.MousePos = ImVec2(x_, y_);
+    for (int n = 0; n < 3; ++n) {
+        if (x_ >= 0) io.MouseDown[n] = down_[n];
+    }
+    // A key is down for one frame.
+    for (const Line& line : lines(frame, "key")) io.KeysDown[static_cast<unsigned char>(line.words[0][0])] = true;
+    if (frame > 0) {
+        for (const Line& line : lines(frame - 1, "key")) io.KeysDown[static_cast<unsigned char>(line.words[0][0])] = false;
+    }
+}
+
+void Script::apply_commands(uint64_t frame, Session& session) const {
+    const auto at = frames_.find(frame);
+    if (at == frames_.end()) return;
+    for (const Line& line : at->second) run(line, session);
+}
+
+} // namespace viewer

@@ -1,0 +1,97 @@
+// What the window and the script act on: a world, how it is seen, and tools. Knows no window and no panel.
+#pragma once
+#include "level_settings.hpp"
+#include "options.hpp"
+#include "renderer.hpp"
+#include <deque>
+#include <memory>
+#include <optional>
+
+namespace viewer {
+
+enum class Tool { look, add_sand, take_sand, add_water, take_water, raise, lower, push, spring, section };
+inline constexpr const char* tool_names[] = {"look",  "add sand",     "take sand", "add water",    "take water",
+                                             "raise", "lower ground", "push",      "place source", "section"};
+
+/// A source placed by hand: an edit of each update.
+struct PlacedSource {
+    wadi_layer layer = WADI_LAYER_WATER;
+    double x = 0, y = 0, radius = 1; // [m]
+    double rate = 0.5;               // [m/s]
+    bool on = true;
+};
+
+/// One column of the section's profile [m].
+struct ProfilePoint {
+    float terrain, sand, water; // elevation of each top
+};
+
+class Session {
+  public:
+    Session(const Gpu& gpu, Renderer& renderer, const Options& options);
+
+    /// Replaces the world; keeps the old one and throws where the new one cannot be made.
+    void open(const std::string& level_name, const SimulationChoice& choice);
+    void restart(); // the same level as at its start, with changed settings
+    Simulation& simulation() { return *simulation_; }
+    const SimulationChoice& choice() const { return choice_; }
+
+    /// One frame of `seconds` of the host's time: edits, update, profile.
+    void advance(double seconds);
+    void draw(const Submission& swapchain, const std::function<void(VkCommandBuffer)>& after);
+    void single_step() { steps_due_ += 1; }
+
+    /// The pointer at a pixel of the picture, with the tool's button down or not.
+    void point(uint32_t x, uint32_t y, bool pressed);
+    void point_away();
+
+    std::string check_determinism(uint32_t steps);
+    void set_rollback(uint32_t frames, uint32_t interval);
+    void roll_back(uint64_t step);
+    std::vector<uint64_t> rollback_steps() const;
+    void set_profiling(bool on);
+    std::vector<wadi_stage_timing> stage_timings() const;
+
+    void screenshot() { screenshot_due_ = true; } // of the next frame
+    void set_recording(bool on);                  // pictures of equal simulated time, then an MP4
+
+    std::string level_name;
+    Picture picture;
+    bool paused = false;
+    float speed = 1;
+    Tool tool = Tool::look;
+    float brush_radius = 1, brush_strength = 1; // [m], [m/s]; push: share
+    std::vector<PlacedSource> sources;
+    LevelSettings settings;
+    bool recording() const { return recording_; }
+    /// The next frame becomes a file: nothing else should be drawn on it.
+    bool picture_is_kept() const { return recording_ || screenshot_due_; }
+    bool profiling = false;
+    double real_time_factor = 0, steps_per_second = 0; // over the last second or so
+    std::vector<ProfilePoint> profile;
+    std::string message; // the newest thing worth telling
+
+    const Gpu& gpu;
+    Renderer& renderer;
+
+  private:
+    Options options_;
+    SimulationChoice choice_;
+    std::unique_ptr<Simulation> simulation_;
+    uint32_t steps_due_ = 0;
+    std::optional<glm::vec3> pointed_, last_pointed_;
+    bool pressed_ = false;
+    bool recording_ = false, screenshot_due_ = false;
+    uint64_t recorded_ = 0, screenshots_ = 0;
+    std::filesystem::path recording_folder_;
+    uint64_t profile_ticket_ = 0;
+    bool profile_asked_ = false;
+    double host_seconds_ = 0, simulated_at_ = 0; // of the rates
+    uint64_t steps_at_ = 0;
+
+    void queue_edits(double simulated_seconds, double seconds);
+    void follow_section();
+    void count_rates(double seconds);
+};
+
+} // namespace viewer

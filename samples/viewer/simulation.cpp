@@ -1,0 +1,207 @@
+#include "simulation.hpp"
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+
+namespace viewer {
+namespace {
+
+constexpr std::array<wadi_output, 7> outputs = {WADI_OUTPUT_SAND_SURFACE, WADI_OUTPUT_SAND_DEPTH, WADI_OUTPUT_WATER_DEPTH,
+                                                WADI_OUTPUT_SATURATION,   WADI_OUTPUT_FOAM,       WADI_OUTPUT_FLOW,
+                                                WADI_OUTPUT_SAND_VELOCITY};
+constexpr std::array<int, 7> floats = {1, 1, 1, 1, 1, 2, 2};
+
+std::mutex log_mutex;
+std::vector<std::string> log_lines;
+
+void on_log(void*, int level, const char* message) {
+    if (level > 1) return;
+    const std::lock_guard lock(log_mutex);
+    log_lines.emplace_back(message);
+}
+
+VkSemaphore make_exportable_timeline(const Gpu& gpu) {
+    VkExportSemaphoreCreateInfo exported{VK_STRUCTURE_TYPE_EXPORT_SEMAPHORE_CREATE_INFO};
+    exported.handleTypes = VK_EXTERNAL_SEMAPHORE_HANDLE_TYPE_OPAQUE_FD_BIT;
+    VkSemaphoreTypeCreateInfo type{VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO, &exported};
+    type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
+    const VkSemaphoreCreateInfo info{VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, &type, 0};
+    VkSemaphore semaphore;
+    check(vkCreateSemaphore(gpu.device, &info, nullptr, &semaphore), "vkCreateSemaphore");
+    return semaphore;
+}
+
+/// A file that a level names, from the folder at `user`.
+int32_t read_beside(void* user, const char* name, void* data, std::size_t* size) {
+    std::ifstream file(*static_cast<const std::filesystem::path*>(user) / name, std::ios::binary | std::ios::ate);
+    if (!file) return 0;
+    const std::streamoff length = file.tellg();
+    if (data != nullptr) {
+        file.seekg(0);
+        file.read(static_cast<char*>(data), static_cast<std::streamsize>(std::min(static_cast<std::size_t>(length), *size)));
+        if (!file) return 0;
+    }
+    *size = static_cast<std::size_t>(length);
+    return 1;
+}
+
+} // namespace
+
+void check(wadi_result result, const char* what) {
+    if (result != WADI_OK) throw std::runtime_error(std::string(what) + ": " + wadi_get_last_error());
+}
+
+std::vector<std::string> take_log() {
+    const std::lock_guard lock(log_mutex);
+    return std::exchange(log_lines, {});
+}
+
+Simulation::Simulation(const Gpu& gpu, const SimulationChoice& choice) : gpu_(gpu) {
+    wadi_vulkan_host host = wadi_default_vulkan_host();
+    host.instance = gpu.instance;
+    host.physical_device = gpu.physical;
+    host.device = gpu.device;
+    host.get_instance_proc_addr = vkGetInstanceProcAddr;
+    host.queue_family = gpu.family;
+    host.queue = gpu.queue;
+    host.timeline_semaphore = VK_TRUE;
+    wadi_device_options options = wadi_default_device_options();
+    options.backend = choice.backend.c_str();
+    options.device = choice.device;
+    options.threads = choice.threads;
+    options.log = on_log;
+    options.vulkan_host = choice.backend == "cpu" ? nullptr : &host;
+    wadi_level_overrides overrides = wadi_default_level_overrides();
+    overrides.nx = choice.nx;
+    overrides.ny = choice.ny;
+    std::filesystem::path folder = std::filesystem::path(choice.level_file).parent_path();
+    check(choice.text.empty()
+              ? wadi_create_world_from_level(choice.level_file.c_str(), &overrides, &options, &world)
+              : wadi_create_world_from_level_text(choice.text.c_str(), read_beside, &folder, &overrides, &options, &world),
+          "creating the world");
+    try {
+        info = wadi_default_world_info();
+        check(wadi_world_get_info(world, &info), "describing the world");
+        on_host_ = std::string(info.backend) == "cpu";
+        if (std::string(info.backend) == "cuda") timeline_ = make_exportable_timeline(gpu);
+
+        grid.nx = info.nx;
+        grid.ny = info.ny;
+        grid.dx = static_cast<float>(info.dx);
+        const std::size_t cells = static_cast<std::size_t>(info.nx) * static_cast<std::size_t>(info.ny);
+        std::vector<float> heights(cells);
+        check(wadi_world_read_field(world, WADI_FIELD_TERRAIN, heights.data(), cells), "reading the terrain");
+        const float lowest = *std::min_element(heights.begin(), heights.end());
+        check(wadi_world_read_field(world, WADI_FIELD_FREE_SURFACE, heights.data(), cells), "reading the surface");
+        const float highest = *std::max_element(heights.begin(), heights.end());
+        const float longest = std::max(grid.extent().x, grid.extent().y);
+        grid.block.low = {0, 0, lowest - 0.03f * longest};
+        grid.block.high = {grid.extent().x, grid.extent().y, std::max(highest, lowest + 0.02f * longest)};
+        choose_outputs();
+        update(0);
+    } catch (...) {
+        wadi_destroy_world(world);
+        throw;
+    }
+}
+
+Simulation::~Simulation() {
+    vkQueueWaitIdle(gpu_.queue);
+    wadi_destroy_world(world);
+    if (timeline_ != VK_NULL_HANDLE) vkDestroySemaphore(gpu_.device, timeline_, nullptr);
+}
+
+void Simulation::choose_outputs() {
+    uint32_t mask = 0;
+    for (wadi_output output : outputs) mask |= WADI_OUTPUT_BIT(output);
+    if (on_host_) {
+        check(wadi_world_set_host_outputs(world, mask), "asking for outputs");
+        for (std::size_t n = 0; n < outputs.size(); ++n) {
+            const auto bytes = static_cast<VkDeviceSize>(info.nx) * static_cast<VkDeviceSize>(info.ny) * sizeof(float) *
+                               static_cast<VkDeviceSize>(floats[n]);
+            staging_[n] = Buffer(gpu_, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, true);
+            sources_[n] = {staging_[n].handle, 0, info.nx * floats[n]};
+        }
+    } else {
+        check(wadi_world_set_outputs(world, mask), "asking for outputs");
+    }
+    set_recording(false);
+}
+
+void Simulation::set_recording(bool on) {
+    wadi_update_settings settings = wadi_default_update_settings();
+    settings.interpolate_outputs = on_host_ ? 0 : 1;
+    if (on) {
+        settings.max_steps_per_update = 1024;
+        settings.max_steps_in_flight = 0;
+    }
+    check(wadi_world_set_update_settings(world, &settings), "setting the rhythm of updates");
+}
+
+void Simulation::update(uint64_t nanoseconds) {
+    frame = wadi_default_frame();
+    if (timeline_ != VK_NULL_HANDLE) {
+        const wadi_vulkan_sync before{timeline_, timeline_value_};
+        check(wadi_vulkan_wait(world, &before, 1), "waiting for the picture");
+    }
+    check(wadi_world_update(world, nanoseconds, &frame), "updating");
+    if (timeline_ != VK_NULL_HANDLE) {
+        const wadi_vulkan_sync after{timeline_, ++timeline_value_};
+        check(wadi_vulkan_signal(world, &after), "signalling the picture");
+    }
+}
+
+Submission Simulation::next_submission() {
+    Submission next;
+    if (timeline_ == VK_NULL_HANDLE) return next;
+    next.timeline = timeline_;
+    next.timeline_value = timeline_value_++;
+    return next;
+}
+
+void Simulation::step(uint32_t steps) { check(wadi_world_step(world, steps), "stepping"); }
+
+bool Simulation::stage() {
+    for (std::size_t n = 0; n < outputs.size(); ++n) {
+        const float* data = nullptr;
+        uint64_t row_pitch = 0, step = 0;
+        const wadi_result result = wadi_world_get_host_output(world, outputs[n], &data, &row_pitch, &step);
+        if (result == WADI_NOT_READY) return false;
+        check(result, "fetching an output");
+        const std::size_t row_bytes = static_cast<std::size_t>(info.nx) * static_cast<std::size_t>(floats[n]) * sizeof(float);
+        for (std::size_t j = 0; j < static_cast<std::size_t>(info.ny); ++j) {
+            std::memcpy(static_cast<char*>(staging_[n].mapped) + j * row_bytes,
+                        reinterpret_cast<const char*>(data) + j * row_pitch, row_bytes);
+        }
+        staged_step_ = step;
+    }
+    return true;
+}
+
+const Sources& Simulation::sources(bool whole) {
+    if (on_host_) {
+        while (!stage() || (whole && staged_step_ != frame.total_steps)) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            update(0);
+        }
+        return sources_;
+    }
+    for (std::size_t n = 0; n < outputs.size(); ++n) {
+        wadi_output_view view = wadi_default_output_view();
+        wadi_result result =
+            floats[n] == 1 ? wadi_world_get_view(world, outputs[n], WADI_OUTPUT_INTERPOLATED, &view) : WADI_NOT_READY;
+        if (result == WADI_NOT_READY) result = wadi_world_get_view(world, outputs[n], WADI_OUTPUT_CURRENT, &view);
+        check(result, "viewing an output");
+        sources_[n] = {reinterpret_cast<VkBuffer>(view.handle), static_cast<int>(view.offset / sizeof(float)),
+                       static_cast<int>(view.row_pitch / sizeof(float))};
+    }
+    return sources_;
+}
+
+} // namespace viewer
