@@ -29,7 +29,10 @@ std::string World::describe_plan() const {
     const auto& plan = state_.plan();
     std::ostringstream out;
     out << "grid " << state_.layout().nx << " x " << state_.layout().ny << ", dx " << settings().grid.dx << " m, dt "
-        << settings().dt << " s, method " << settings().method.name << ", T = " << plan.substeps << "\neffects\n";
+        << settings().dt << " s, method " << settings().method.name << ", T = " << plan.substeps;
+    for (const auto& choice : choice_table())
+        if ((plan.effects & choice.bit) != 0) out << ", " << choice.name;
+    out << "\neffects\n";
     for (std::size_t n = 0; n < effect_table().size(); ++n) {
         const auto& effect = effect_table()[n];
         char line[160];

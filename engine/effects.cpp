@@ -21,6 +21,23 @@ constexpr std::array<Effect, 12> table = {{
     {EFFECT_BED_SHEAR, "bed_shear", EFFECT_MIXTURE, "pure water drags the sand under it along: bed load"},
 }};
 
+constexpr std::array<Choice, 5> choices = {{
+    {EFFECT_SEMI_LAGRANGIAN, "semi_lagrangian", 0,
+     [](const Method& m) { return m.velocity_transport == VelocityTransport::semi_lagrangian; },
+     [](Method& m) { m.velocity_transport = VelocityTransport::semi_lagrangian; }},
+    {EFFECT_WHOLE_STRAIN, "whole_strain", EFFECT_ELASTOPLASTIC,
+     [](const Method& m) { return m.strain_transport != StrainTransport::left_stretch; },
+     [](Method& m) { m.strain_transport = StrainTransport::polar; }},
+    {EFFECT_DIRECT_STRAIN, "direct_strain", EFFECT_WHOLE_STRAIN,
+     [](const Method& m) { return m.strain_transport == StrainTransport::direct; },
+     [](Method& m) { m.strain_transport = StrainTransport::direct; }},
+    {EFFECT_EXPLICIT_DRAG, "explicit_drag", EFFECT_DRAG,
+     [](const Method& m) { return m.drag_friction == DragFriction::sequence; },
+     [](Method& m) { m.drag_friction = DragFriction::sequence; }},
+    {EFFECT_LAPLACE_DIFFUSION, "laplace_diffusion", EFFECT_DIFFUSION,
+     [](const Method& m) { return m.diffusion == Diffusion::laplacian; }, [](Method& m) { m.diffusion = Diffusion::laplacian; }},
+}};
+
 bool ever_above_zero(const TimeSeries& series) {
     return std::any_of(series.samples.begin(), series.samples.end(), [](const auto& s) { return s.second > 0; });
 }
@@ -86,6 +103,8 @@ Wanted wanted(const Effect& effect, std::uint32_t mask, const Settings& s, Conte
 
 std::span<const Effect> effect_table() { return table; }
 
+std::span<const Choice> choice_table() { return choices; }
+
 std::string effect_names(std::uint32_t bits) {
     std::string names;
     for (const auto& effect : table) {
@@ -96,7 +115,9 @@ std::string effect_names(std::uint32_t bits) {
 
 bool is_legal(std::uint32_t mask) {
     return std::all_of(table.begin(), table.end(),
-                       [&](const Effect& e) { return (mask & e.bit) == 0 || (mask & e.needs) == e.needs; });
+                       [&](const Effect& e) { return (mask & e.bit) == 0 || (mask & e.needs) == e.needs; }) &&
+           std::all_of(choices.begin(), choices.end(),
+                       [&](const Choice& c) { return (mask & c.bit) == 0 || (mask & c.needs) == c.needs; });
 }
 
 Result<EffectChoice> effects_required(const Settings& settings, Content content) {
@@ -126,6 +147,8 @@ Result<EffectChoice> effects_required(const Settings& settings, Content content)
         if (want.on) choice.mask |= effect.bit;
         choice.reasons.push_back(want.reason);
     }
+    for (const auto& made : choices)
+        if (made.chosen(settings.method) && (choice.mask & made.needs) == made.needs) choice.mask |= made.bit;
     return choice;
 }
 

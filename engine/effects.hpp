@@ -18,8 +18,19 @@ struct Effect {
 
 /// All effects, dependencies first.
 std::span<const Effect> effect_table();
-/// "sand, water": the effects of a mask.
+/// "sand, water": the effects of a mask, without the choices of method.
 std::string effect_names(std::uint32_t mask);
+
+/// A choice of method that has a bit in the same mask; a level makes it in `method`, not in `effects`.
+struct Choice {
+    std::uint32_t bit;
+    const char* name;    // as level files write it
+    std::uint32_t needs; // bits that must be on as well; without them the choice has nothing to act on
+    bool (*chosen)(const Method& method);
+    void (*choose)(Method& method); // what makes `chosen` true
+};
+
+std::span<const Choice> choice_table();
 
 /// What a world holds, or an edit is about to bring.
 struct Content {
@@ -40,7 +51,7 @@ Result<EffectChoice> effects_required(const Settings& settings, Content content)
 /// ok, or bad_argument where the level forces off what this content needs.
 Status check_allowed(const Settings& settings, Content content);
 
-/// True when every effect in the mask has what it needs.
+/// True when every effect in the mask and choice in the mask has what it needs.
 bool is_legal(std::uint32_t mask);
 
 } // namespace wadi

@@ -38,16 +38,17 @@ class Rows {
 struct Bands {
     Bands(WorldState& state, int first, int end)
         : terrain(state, "terrain", first, end), sand(state, "sand_height", first, end), water(state, "water_height", first, end),
-          xx(state, "stretch_xx", first, end), xy(state, "stretch_xy", first, end), yy(state, "stretch_yy", first, end) {}
+          xx(state, "stretch_xx", first, end), xy(state, "stretch_xy", first, end), yy(state, "stretch_yy", first, end),
+          turn(state, "rotation", first, end) {}
     Status read() {
-        for (Rows* rows : {&terrain, &sand, &water, &xx, &xy, &yy}) {
+        for (Rows* rows : {&terrain, &sand, &water, &xx, &xy, &yy, &turn}) {
             if (auto status = rows->read(); !status) return status;
         }
         return ok_status();
     }
     Rows& of(EditLayer layer) { return layer == EditLayer::terrain ? terrain : layer == EditLayer::sand ? sand : water; }
 
-    Rows terrain, sand, water, xx, xy, yy;
+    Rows terrain, sand, water, xx, xy, yy, turn;
 };
 
 const char* layer_name(EditLayer layer) {
@@ -89,7 +90,7 @@ void repeat_edges(const FieldLayout& layout, Rows& terrain, int first, int end) 
 }
 
 Status write_sand(Bands& bands) {
-    for (Rows* rows : {&bands.sand, &bands.xx, &bands.xy, &bands.yy}) {
+    for (Rows* rows : {&bands.sand, &bands.xx, &bands.xy, &bands.yy, &bands.turn}) {
         if (auto status = rows->write(); !status) return status;
     }
     return ok_status();
@@ -149,7 +150,7 @@ Status write_region(WorldState& state, Stepper& stepper, EditLayer layer, const 
                 std::llrint(static_cast<double>(value) / quantum) - std::llrint(static_cast<double>(held) / quantum);
             (change > 0 ? in : out) += std::abs(change);
             if (sand && value > held) {
-                for (Rows* rows : {&bands.xx, &bands.xy, &bands.yy}) {
+                for (Rows* rows : {&bands.xx, &bands.xy, &bands.yy, &bands.turn}) {
                     const float stretch = rows->at(i, j) * (held / value);
                     rows->at(i, j) = std::abs(stretch) < 1e-20F ? 0.0F : stretch; // as the stages do: no denormals
                 }

@@ -2,6 +2,7 @@
 #include "engine/effects.hpp"
 #include "engine/level/setting_fields.hpp"
 #include "engine/level/text.hpp"
+#include "engine/method_presets.hpp"
 #include "engine/scripted_edits.hpp"
 #include <algorithm>
 #include <cmath>
@@ -73,6 +74,9 @@ Status check_method(const Method& method) {
     if (method.gravity_cap > 0 && method.gravity_cap_least > method.gravity_cap)
         return refuse(outside_text("method.gravity_cap_least", method.gravity_cap_least, 0, method.gravity_cap) +
                       " (at most gravity_cap)");
+    if (method.velocity_transport == VelocityTransport::semi_lagrangian && method.velocity_clamp > SEMI_LAGRANGIAN_CLAMP_MOST)
+        return refuse(outside_text("method.velocity_clamp", method.velocity_clamp, 0.01, SEMI_LAGRANGIAN_CLAMP_MOST) +
+                      " (semi_lagrangian looks one cell back)");
     if (method.quantum < 0 && method.quantum > -1)
         return refuse("method.quantum: " + number_text(method.quantum) +
                       " is neither -1 (chosen), nor 0 (off), nor a positive height");
@@ -158,11 +162,6 @@ Status check_field(const char* name, const std::vector<float>& field, const Grid
 
 } // namespace
 
-const std::vector<std::string>& method_names() {
-    static const std::vector<std::string> names = {"robust"};
-    return names;
-}
-
 const std::vector<std::string>& effect_names() {
     static const std::vector<std::string> names = [] {
         std::vector<std::string> found;
@@ -174,6 +173,26 @@ const std::vector<std::string>& effect_names() {
 
 const std::vector<std::string>& side_names() {
     static const std::vector<std::string> names = {"west", "east", "south", "north"};
+    return names;
+}
+
+const std::vector<std::string>& velocity_transport_names() {
+    static const std::vector<std::string> names = {"flux_form", "semi_lagrangian"};
+    return names;
+}
+
+const std::vector<std::string>& strain_transport_names() {
+    static const std::vector<std::string> names = {"left_stretch", "polar", "direct"};
+    return names;
+}
+
+const std::vector<std::string>& drag_friction_names() {
+    static const std::vector<std::string> names = {"joint", "sequence"};
+    return names;
+}
+
+const std::vector<std::string>& diffusion_names() {
+    static const std::vector<std::string> names = {"limited", "laplacian"};
     return names;
 }
 

@@ -69,7 +69,11 @@ std::uint64_t level_digest(const Settings& s) {
                                w.gradient_clamp,
                                w.cohesion_cap,
                                w.stress_taper,
-                               double(w.saturation_smoothing)})
+                               double(w.saturation_smoothing),
+                               double(w.velocity_transport),
+                               double(w.strain_transport),
+                               double(w.drag_friction),
+                               double(w.diffusion)})
         add(value);
     for (const auto& side : s.sides) {
         add(static_cast<double>(side.kind));

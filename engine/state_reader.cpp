@@ -17,9 +17,9 @@ std::uint64_t mix(std::uint64_t x) {
 }
 
 // In the order that the hash numbers them: never reorder, or every golden hash changes.
-constexpr const char* hashed_fields[] = {"sand_height",      "water_height",     "stretch_xx",      "stretch_xy",
-                                         "stretch_yy",       "sand_velocity_x",  "sand_velocity_y", "water_velocity_x",
-                                         "water_velocity_y", "mixed_velocity_x", "mixed_velocity_y"};
+constexpr const char* hashed_fields[] = {"sand_height",      "water_height",     "stretch_xx",       "stretch_xy",
+                                         "stretch_yy",       "sand_velocity_x",  "sand_velocity_y",  "water_velocity_x",
+                                         "water_velocity_y", "mixed_velocity_x", "mixed_velocity_y", "rotation"};
 
 bool is_velocity(const std::string& name) { return name.ends_with("velocity_x") || name.ends_with("velocity_y"); }
 

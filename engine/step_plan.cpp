@@ -14,8 +14,9 @@ bool is_next(const std::string& name) { return name.ends_with(next_suffix); }
 std::string base_name(const std::string& name) { return is_next(name) ? name.substr(0, name.size() - next_suffix.size()) : name; }
 
 const std::set<std::string> state_fields = {
-    "terrain",         "sand_height",     "water_height",     "stretch_xx",       "stretch_xy",       "stretch_yy",
-    "sand_velocity_x", "sand_velocity_y", "water_velocity_x", "water_velocity_y", "mixed_velocity_x", "mixed_velocity_y",
+    "terrain",          "sand_height",      "water_height",    "stretch_xx",       "stretch_xy",
+    "stretch_yy",       "sand_velocity_x",  "sand_velocity_y", "water_velocity_x", "water_velocity_y",
+    "mixed_velocity_x", "mixed_velocity_y", "rotation",
 };
 
 FieldRole role_of(const std::string& name) {
@@ -55,11 +56,24 @@ class Builder {
     bool in_substep_;
 };
 
+// Semi-Lagrangian transport of one layer's velocities, by the boundary types from before its height moved (NUMERICS 2.12).
+void plan_backtrace(Builder& b, const std::string& layer, const char* backtrace) {
+    const std::string velocity = layer + "_velocity_", type = layer + "_face_type_";
+    const Names names = {
+        {"velocity_x", velocity + "x"}, {"velocity_y", velocity + "y"}, {"face_type_x", type + "x"}, {"face_type_y", type + "y"}};
+    b.run("extrapolate_velocity", {}, names);
+    b.run(backtrace, {velocity + "x", velocity + "y"}, names);
+}
+
 void plan_water(Builder b) {
     if (b.has(EFFECT_SOURCES)) b.run("apply_sources");
     if (b.has(EFFECT_RAIN)) b.run("apply_rain");
     if (!b.has(EFFECT_WATER)) return;
     if (b.has(EFFECT_OPEN_SIDES)) b.run("open_sides");
+    const bool traced = b.has(EFFECT_SEMI_LAGRANGIAN);
+    if (traced) b.run("update_water_boundary_types");
+    // In flux form the diffusive flux carries its momentum; traced velocities need a pass for it.
+    if (traced && b.has(EFFECT_LAPLACE_DIFFUSION)) b.run("diffuse_mixed_velocity", {"mixed_velocity_x", "mixed_velocity_y"});
     if (b.has(EFFECT_DIFFUSION)) b.run("diffuse_mixed_water");
     b.run("limit_water_outflow");
     b.run("compute_water_flux");
@@ -72,6 +86,8 @@ void plan_water(Builder b) {
         }
     }
     b.run("integrate_water_height", {"water_height"});
+    if (traced) plan_backtrace(b, "water", "backtrace_water_velocity");
+    if (traced && b.has(EFFECT_MIXTURE)) plan_backtrace(b, "mixed", "backtrace_water_velocity");
     std::vector<std::string> moved = {"water_velocity_x", "water_velocity_y"};
     if (b.has(EFFECT_MIXTURE)) moved.insert(moved.end(), {"mixed_velocity_x", "mixed_velocity_y"});
     b.run("integrate_water_velocity", moved);
@@ -82,13 +98,17 @@ void plan_water(Builder b) {
 void plan_sand(Builder b) {
     if (!b.has(EFFECT_SAND)) return;
     if (b.has(EFFECT_OPEN_SIDES)) b.run("open_sand_sides");
+    if (b.has(EFFECT_SEMI_LAGRANGIAN)) b.run("update_sand_boundary_types");
     b.run("limit_sand_outflow");
     b.run("compute_sand_flux");
     if (b.has(EFFECT_OPEN_SIDES)) {
         b.run("account_sides", {}, {{"flux_x", "sand_flux_x"}, {"flux_y", "sand_flux_y"}, {"side_ledger", "sand_side_ledger"}});
     }
     b.run("integrate_sand_height");
-    if (b.has(EFFECT_ELASTOPLASTIC)) b.run("evolve_deformation_gradient", {"stretch_xx", "stretch_xy", "stretch_yy"});
+    if (b.has(EFFECT_WHOLE_STRAIN))
+        b.run("advect_deformation_gradient", {"stretch_xx", "stretch_xy", "stretch_yy", "rotation"});
+    else if (b.has(EFFECT_ELASTOPLASTIC))
+        b.run("evolve_deformation_gradient", {"stretch_xx", "stretch_xy", "stretch_yy"});
     // Touches only the water's velocities, which the sand's velocity stage does not read: here both sand heights are at hand.
     if (b.has(EFFECT_MIXTURE)) b.run("compute_momentum_exchange");
 }
@@ -97,7 +117,9 @@ void plan_sand(Builder b) {
 void plan_sand_forces(Builder b) {
     if (!b.has(EFFECT_SAND)) return;
     if (b.has(EFFECT_ELASTOPLASTIC)) b.run("project_deformation_gradient");
+    if (b.has(EFFECT_SEMI_LAGRANGIAN)) plan_backtrace(b, "sand", "backtrace_sand_velocity");
     b.run("integrate_sand_velocity", {"sand_velocity_x", "sand_velocity_y"});
+    if (b.has(EFFECT_WHOLE_STRAIN)) b.run("stretch_deformation_gradient");
     std::vector<std::string> moved = {"sand_velocity_x", "sand_velocity_y"};
     Names drag;
     if (b.has(EFFECT_DRAG)) {
@@ -105,6 +127,7 @@ void plan_sand_forces(Builder b) {
         drag = {{"drag_velocity_x", layer + "x"}, {"drag_velocity_y", layer + "y"}};
         moved.insert(moved.end(), {layer + "x", layer + "y"});
     }
+    if (b.has(EFFECT_EXPLICIT_DRAG)) b.run("apply_drag", {}, drag);
     b.run("apply_friction", moved, drag);
 }
 

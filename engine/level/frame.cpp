@@ -1,6 +1,7 @@
 #include "engine/level/frame.hpp"
 #include "engine/level/setting_fields.hpp"
 #include "engine/level/text.hpp"
+#include "engine/method_presets.hpp"
 #include <algorithm>
 #include <cstddef>
 
@@ -53,7 +54,7 @@ Result<Frame> apply_overrides(const LevelOverrides& overrides, Settings& setting
         stretch(settings, frame.stretch_y);
     }
     if (overrides.dt) settings.dt = *overrides.dt;
-    if (overrides.method) settings.method.name = *overrides.method;
+    if (overrides.method && *overrides.method != settings.method.name) choose_method(settings.method, *overrides.method);
     frame.nx = settings.grid.nx;
     frame.ny = settings.grid.ny;
     frame.dx = settings.grid.dx;

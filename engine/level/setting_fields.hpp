@@ -55,6 +55,9 @@ inline constexpr SettingField<Method, int> METHOD_COUNTS[] = {
     {"saturation_smoothing", &Method::saturation_smoothing, 0, 2},
 };
 
+/// What semi-Lagrangian transport can follow: it looks one cell back.
+inline constexpr double SEMI_LAGRANGIAN_CLAMP_MOST = 1;
+
 inline constexpr int GRID_MOST = 16384;
 inline constexpr double DX_LEAST = 1e-4, DX_MOST = 1e4; // [m]
 inline constexpr double DT_LEAST = 1e-7, DT_MOST = 100; // [s]
@@ -69,8 +72,11 @@ inline constexpr double EDIT_EVERY_LEAST = 1e-3;        // [s]
 inline constexpr double SATURATION_GAP = 1e-3;          // least distance of 0, phi1, phi2 and phi3
 
 /// Names as level files write them; sides are indexed by SideName.
-const std::vector<std::string>& method_names();
 const std::vector<std::string>& effect_names();
 const std::vector<std::string>& side_names();
+const std::vector<std::string>& velocity_transport_names();
+const std::vector<std::string>& strain_transport_names();
+const std::vector<std::string>& drag_friction_names();
+const std::vector<std::string>& diffusion_names();
 
 } // namespace wadi

@@ -1,5 +1,6 @@
 #include "engine/level/settings_reader.hpp"
 #include "engine/level/setting_fields.hpp"
+#include "engine/method_presets.hpp"
 #include <cstddef>
 #include <limits>
 
@@ -12,6 +13,13 @@ constexpr std::size_t SOURCES_READ = 1000;                 // more than a world 
 template <class Owner, std::size_t COUNT>
 void read_fields(ObjectReader& reader, Owner& owner, const SettingField<Owner, double> (&fields)[COUNT]) {
     for (const auto& field : fields) reader.number(field.name, owner.*field.member, field.least, field.most);
+}
+
+template <class Enum>
+void read_choice(ObjectReader& reader, const char* key, const std::vector<std::string>& names, Enum& value) {
+    int index = static_cast<int>(value);
+    reader.choice(key, names, index);
+    value = static_cast<Enum>(index);
 }
 
 void read_grid(const Json& value, Grid& grid, Status& status) {
@@ -37,9 +45,15 @@ void read_material(const Json& value, Material& material, Status& status) {
 
 void read_method(const Json& value, Method& method, Status& status) {
     ObjectReader reader(value, "method", status);
-    reader.string("name", method.name);
+    std::string name = method.name;
+    reader.string("name", name);
+    choose_method(method, name); // the other keys change what the preset chose
     reader.boolean("outflow_limiter", method.outflow_limiter);
     read_fields(reader, method, METHOD_FIELDS);
+    read_choice(reader, "velocity_transport", velocity_transport_names(), method.velocity_transport);
+    read_choice(reader, "strain_transport", strain_transport_names(), method.strain_transport);
+    read_choice(reader, "drag_friction", drag_friction_names(), method.drag_friction);
+    read_choice(reader, "diffusion", diffusion_names(), method.diffusion);
     for (const auto& field : METHOD_COUNTS) reader.whole_number(field.name, method.*field.member, field.least, field.most);
     reader.finish();
 }

@@ -20,6 +20,15 @@ FN float drag_coupling_single(float water_height, float mixed_height, float sand
     return mixed_height > dry ? kappa : 0.0f;
 }
 
+// Explicit drag (paper 4.2.3, NUMERICS 2.14): impulse = dts c_e h_m, inertia = momentum per velocity of a layer [kg/m2].
+FN void explicit_drag(REF(float) sand, REF(float) water, float impulse, float sand_inertia, float water_inertia) {
+    float difference = sand - water;
+    float lost = divide_or_zero(impulse * difference, sand_inertia);
+    float gained = divide_or_zero(impulse * difference, water_inertia);
+    sand = sand - lost;
+    water = water + gained;
+}
+
 // Sand's velocity after drag and stick or slip. px, py: sand momentum per mass with the water's share, us + kappa um;
 // slip: mu g dts max(0, 1 - rho_w h_m/(rho_s h_s)).
 FN float stick_or_slip(float along, float across, float slip, float kappa) {

@@ -44,6 +44,33 @@ FN float sinh_over(float hh) {
     return 1.0f + hh * (1.66666667e-1f + hh * (8.33333333e-3f + hh * (1.98412698e-4f + hh * 2.75573192e-6f)));
 }
 
+// One-sided at the rim of the sand (NUMERICS 2.6): dry neighbours say nothing about the velocity gradient.
+FN float across_gradient(float low, float centre, float high, bool wet_low, bool wet_high, float k, float other) {
+    float both_sides = 0.5f * k * (high - low);
+    float upper = k * (high - centre);
+    float lower = k * (centre - low);
+    float one = wet_high ? upper : (wet_low ? lower : -other);
+    return both(wet_low, wet_high) ? both_sides : one;
+}
+
+// dts grad v of a cell: velocities of its four faces, mean velocities of the cells around along the other axis.
+FN Gradient velocity_gradient(float u_w, float u_e, float v_s, float v_n, float u_s, float u_n, float v_w, float v_e, bool wet_w, bool wet_e, bool wet_s,
+                              bool wet_n, float k, float limit) {
+    float u_c = 0.5f * (u_w + u_e);
+    float v_c = 0.5f * (v_s + v_n);
+    bool any_y = either(wet_s, wet_n);
+    bool any_x = either(wet_w, wet_e);
+    float yx_alone = across_gradient(v_w, v_c, v_e, wet_w, wet_e, k, 0.0f);
+    float xy = across_gradient(u_s, u_c, u_n, wet_s, wet_n, k, any_x ? yx_alone : 0.0f);
+    float yx = any_x ? yx_alone : -(any_y ? xy : 0.0f);
+    Gradient g;
+    g.xx = wclamp(k * (u_e - u_w), -limit, limit);
+    g.yy = wclamp(k * (v_n - v_s), -limit, limit);
+    g.xy = wclamp(xy, -limit, limit);
+    g.yx = wclamp(yx, -limit, limit);
+    return g;
+}
+
 // Evolution by the Cayley form (I - G/2)^-1 (I + G/2), which rotates without stretching, then back to the left stretch.
 FN Stretch evolve_stretch(Stretch v, Gradient g) {
     float ax = 1.0f - 0.5f * g.xx;
@@ -72,6 +99,61 @@ FN Stretch evolve_stretch(Stretch v, Gradient g) {
     r.xx = (exx * cs - exy * sn) + cs_less_one;
     r.yy = (eyx * sn + eyy * cs) + cs_less_one;
     r.xy = 0.5f * ((exx - eyy) * sn + (exy + eyx) * cs);
+    return r;
+}
+
+struct Turn {
+    float cs, sn, cs_less_one;
+};
+
+// Right stretch less the identity, and rotation, of F = I + e = R P.
+FN Stretch right_stretch(float exx, float exy, float eyx, float eyy, REF(Turn) by) {
+    float x = 2.0f + (exx + eyy);
+    float y = eyx - exy;
+    float n = wsqrt(x * x + y * y);
+    float safe_n = n > 0.0f ? n : 1.0f;
+    by.cs = n > 0.0f ? wdiv(x, safe_n) : 1.0f;
+    by.sn = wdiv(y, safe_n);
+    float den = safe_n * (safe_n + x);
+    float safe_den = x > 0.0f ? den : 1.0f;
+    float small = -wdiv(y * y, safe_den);
+    by.cs_less_one = x > 0.0f ? small : by.cs - 1.0f;
+    Stretch r;
+    r.xx = (by.cs * exx + by.sn * eyx) + by.cs_less_one;
+    r.yy = (by.cs * eyy - by.sn * exy) + by.cs_less_one;
+    r.xy = 0.5f * ((exy + eyx) * by.cs + (eyy - exx) * by.sn);
+    return r;
+}
+
+// R^T G R.
+FN Gradient turned_back(Gradient g, float cs, float sn) {
+    float mean = 0.5f * (g.xx + g.yy);
+    float spin = 0.5f * (g.yx - g.xy);
+    float along = 0.5f * (g.xx - g.yy);
+    float across = 0.5f * (g.xy + g.yx);
+    float c2 = cs * cs - sn * sn;
+    float s2 = 2.0f * (sn * cs);
+    float along_back = along * c2 + across * s2;
+    float across_back = across * c2 - along * s2;
+    Gradient h;
+    h.xx = mean + along_back;
+    h.yy = mean - along_back;
+    h.xy = across_back - spin;
+    h.yx = across_back + spin;
+    return h;
+}
+
+// R S R^T.
+FN Stress turned_forward(Stress s, float cs, float sn) {
+    float mean = 0.5f * (s.xx + s.yy);
+    float along = 0.5f * (s.xx - s.yy);
+    float c2 = cs * cs - sn * sn;
+    float s2 = 2.0f * (sn * cs);
+    float along_forward = along * c2 - s.xy * s2;
+    Stress r;
+    r.xx = mean + along_forward;
+    r.yy = mean - along_forward;
+    r.xy = s.xy * c2 + along * s2;
     return r;
 }
 

@@ -17,14 +17,14 @@ double metres(double cells, const Grid& grid) { return std::nearbyint(cells * 25
 
 // The state of one cell and its west and south faces, edited one edit after the other.
 template <class Real> struct Cell {
-    Real terrain, sand, water, stretch[3];
+    Real terrain, sand, water, stretch[4];
     Real velocity[6]; // water, mixed, sand; x and y each
     double counts[LEDGER_ENTRIES] = {};
 };
 
 constexpr std::array velocity_names = {"water_velocity_x", "water_velocity_y", "mixed_velocity_x",
                                        "mixed_velocity_y", "sand_velocity_x",  "sand_velocity_y"};
-constexpr std::array stretch_names = {"stretch_xx", "stretch_xy", "stretch_yy"};
+constexpr std::array stretch_names = {"stretch_xx", "stretch_xy", "stretch_yy", "rotation"};
 
 template <class Real> class Definition {
   public:
@@ -36,7 +36,7 @@ template <class Real> class Definition {
         cell.terrain = before("terrain");
         cell.sand = before("sand_height");
         cell.water = before("water_height");
-        for (std::size_t n = 0; n < 3; ++n) cell.stretch[n] = before(stretch_names[n]);
+        for (std::size_t n = 0; n < 4; ++n) cell.stretch[n] = before(stretch_names[n]);
         for (std::size_t n = 0; n < 6; ++n) cell.velocity[n] = before(velocity_names[n]);
         for (const Edit& edit : edits_) edit.kind == EditKind::push ? push(edit, i, j, cell) : change(edit, i, j, cell);
         return cell;
@@ -124,7 +124,7 @@ template <class Real> class Definition {
 template <class Real> Real value_of(const Cell<Real>& cell, const std::string& name) {
     for (std::size_t n = 0; n < 6; ++n)
         if (name == velocity_names[n]) return cell.velocity[n];
-    for (std::size_t n = 0; n < 3; ++n)
+    for (std::size_t n = 0; n < 4; ++n)
         if (name == stretch_names[n]) return cell.stretch[n];
     return name == "terrain" ? cell.terrain : name == "sand_height" ? cell.sand : cell.water;
 }

@@ -13,20 +13,11 @@ using reference::Solver;
 
 template <class Real> const Field<Real>* cell_field(const Solver<Real>& s, const std::string& base) {
     const std::map<std::string, const Field<Real>*> fields = {
-        {"terrain", &s.terrain},
-        {"sand_height", &s.sand},
-        {"water_height", &s.water},
-        {"stretch_xx", &s.Vxx},
-        {"stretch_xy", &s.Vxy},
-        {"stretch_yy", &s.Vyy},
-        {"water_scale", &s.pure_scale},
-        {"mixed_scale", &s.mixed_scale},
-        {"sand_scale", &s.sand_scale},
-        {"saturation", &s.saturation},
-        {"mixed_predicted", &s.mixed_predicted},
-        {"stress_xx", &s.sxx},
-        {"stress_xy", &s.sxy},
-        {"stress_yy", &s.syy},
+        {"terrain", &s.terrain},       {"sand_height", &s.sand},       {"water_height", &s.water},
+        {"stretch_xx", &s.Vxx},        {"stretch_xy", &s.Vxy},         {"stretch_yy", &s.Vyy},
+        {"rotation", &s.rotation},     {"water_scale", &s.pure_scale}, {"mixed_scale", &s.mixed_scale},
+        {"sand_scale", &s.sand_scale}, {"saturation", &s.saturation},  {"mixed_predicted", &s.mixed_predicted},
+        {"stress_xx", &s.sxx},         {"stress_xy", &s.sxy},          {"stress_yy", &s.syy},
     };
     const auto found = fields.find(base);
     return found == fields.end() ? nullptr : found->second;
@@ -38,6 +29,8 @@ template <class Real> const Faces<Real>* face_field(const Solver<Real>& s, const
         {"sand_velocity", &s.sand_velocity},  {"water_flux", &s.pure_flux},
         {"mixed_flux", &s.mixed_flux},        {"sand_flux", &s.sand_flux},
         {"pressure", &s.mixed_push},          {"bed_load", &s.bed_load},
+        {"water_face_type", &s.pure_type},    {"mixed_face_type", &s.mixed_type},
+        {"sand_face_type", &s.sand_type},     {"extrapolated_velocity", &s.extrapolated},
     };
     const auto found = fields.find(layer);
     return found == fields.end() ? nullptr : found->second;
@@ -47,7 +40,8 @@ bool ends_with_axis(const std::string& base) { return base.ends_with("_x") || ba
 
 // The stages between the sand's transport and the flip of its height read both heights.
 bool reads_both_heights(const std::string& stage) {
-    return stage == "evolve_deformation_gradient" || stage == "compute_momentum_exchange";
+    return stage == "evolve_deformation_gradient" || stage == "advect_deformation_gradient" ||
+           stage == "compute_momentum_exchange";
 }
 
 bool mixed_flux_is_diffusion(const std::string& stage, bool after) {
@@ -63,6 +57,10 @@ FieldName field_of(const std::string& stage, const std::string& binding, std::ui
     if (name.base.starts_with("drag_velocity")) name.base = (mixture ? "mixed" : "water") + name.base.substr(4);
     if ((stage == "publish_velocity" || stage == "publish_flow") && name.base.starts_with("velocity"))
         name.base = "water_" + name.base;
+    if (stage == "extrapolate_velocity" || stage.starts_with("backtrace_")) { // one layer's: the reference has run the same
+        const char* layer = stage == "backtrace_sand_velocity" ? "sand_" : "water_";
+        if (name.base.starts_with("velocity") || name.base.starts_with("face_type")) name.base = layer + name.base;
+    }
     if (stage == "account_sides" && name.base.starts_with("flux")) name.base = "water_" + name.base;
     // Stages that read published fields: any fields do, equal in some places and not in others.
     const std::map<std::string, const char*> stand_ins = {{"previous_output", "sand_height"}, {"current_output", "water_height"}};

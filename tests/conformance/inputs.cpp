@@ -269,6 +269,8 @@ Result<Scene> make_scene(const std::string& grid, const std::string& name, const
     s.material.exchange_rate = 3e4;
     s.material.bed_friction = 0.01;
     s.material.bed_shear = 0.05;
+    for (const auto& choice : choice_table())
+        if ((effects & choice.bit) != 0) choice.choose(s.method);
     if (!set_method(s.method, method)) return error(Code::bad_argument, "method=" + method + ": no such choice");
     if (name == "deep") {
         make_deep(scene);

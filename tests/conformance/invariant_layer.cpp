@@ -14,6 +14,9 @@ namespace {
 
 constexpr std::uint32_t WET = EFFECT_WATER | EFFECT_SAND | EFFECT_MIXTURE | EFFECT_DIFFUSION | EFFECT_DRAG;
 constexpr std::uint32_t ELASTIC = EFFECT_ELASTOPLASTIC;
+constexpr std::uint32_t TRACED = EFFECT_SEMI_LAGRANGIAN;
+constexpr std::uint32_t POLAR = EFFECT_WHOLE_STRAIN, DIRECT = EFFECT_WHOLE_STRAIN | EFFECT_DIRECT_STRAIN;
+constexpr std::uint32_t PUBLISHED = TRACED | POLAR | EFFECT_EXPLICIT_DRAG | EFFECT_LAPLACE_DIFFUSION;
 constexpr std::uint32_t ALL = 4095;
 
 CaseSpec spec_of(const char* name, const char* grid, std::uint32_t effects, const std::string& scene, const std::string& method,
@@ -43,6 +46,10 @@ std::vector<CaseSpec> list() {
     add("bounds", "33x17", ALL, "thin_film", "default", 300);
     add("bounds", "33x17", WET | ELASTIC | EFFECT_COHESION, "cliff", "plain",
         500); // closed: its ledger would count rounded quanta
+    add("bounds", "33x17", ALL | TRACED, "random", "default", 300);
+    add("bounds", "33x17", ALL | TRACED | POLAR, "random", "default", 300);
+    add("bounds", "33x17", ALL | DIRECT, "random", "default", 300);
+    add("bounds", "33x17", ALL | PUBLISHED, "random", "default", 300);
     for (int seed = 1; seed <= 8; ++seed)
         add("bounds", "24x20", ALL & ~EFFECT_SOURCES, "random", ("fuzz" + std::to_string(seed)).c_str(), 80);
     add("lake_at_rest", "33x17", EFFECT_WATER, "lake_at_rest", "default", 200);
@@ -50,6 +57,8 @@ std::vector<CaseSpec> list() {
     add("lake_at_rest", "33x17", WET | ELASTIC | EFFECT_COHESION, "lake_at_rest", "default", 200);
     add("lake_at_rest", "33x17", WET | EFFECT_BED_SHEAR, "lake_at_rest", "default", 200);
     add("lake_at_rest", "33x17", EFFECT_WATER | EFFECT_SAND | EFFECT_DRAG | EFFECT_BED_FRICTION, "lake_at_rest", "default", 200);
+    add("lake_at_rest", "33x17", WET | ELASTIC | EFFECT_COHESION | TRACED, "lake_at_rest", "default", 200);
+    add("static_pile", "33x17", EFFECT_SAND | TRACED, "static_pile", "default", 200);
     add("static_pile", "33x17", EFFECT_SAND, "static_pile", "default", 200);
     add("static_pile", "65x33", EFFECT_SAND | ELASTIC, "static_pile", "default", 200);
     add("static_pile", "33x17", EFFECT_SAND | ELASTIC, "static_pile", "bare", 200);
@@ -58,6 +67,10 @@ std::vector<CaseSpec> list() {
         add(symmetry, "33x17", EFFECT_SAND | ELASTIC, "cliff", "default", 60);
         add(symmetry, "33x17", WET | EFFECT_BED_SHEAR, "islands", "default", 60);
         add(symmetry, "33x17", ALL, "random", "default", 60);
+        add(symmetry, "33x17", ALL | TRACED, "random", "default", 60);
+        add(symmetry, "33x17", ALL | POLAR, "random", "default", 60);
+        add(symmetry, "33x17", ALL | DIRECT, "random", "default", 60);
+        add(symmetry, "33x17", ALL | PUBLISHED, "random", "default", 60);
         add(symmetry, "65x3", ALL, "random", "plain", 30);
     }
     for (const char* variant : {"same_again", "same_without_replay", "same_with_full_barriers", "same_interleaved"})

@@ -12,6 +12,14 @@ namespace {
 
 using ByTested = std::map<std::uint32_t, std::uint32_t>; // tested bits -> the smallest whole mask that has them
 
+// Effects and choices of method.
+std::vector<std::pair<std::uint32_t, const char*>> named_bits() {
+    std::vector<std::pair<std::uint32_t, const char*>> bits;
+    for (const auto& effect : effect_table()) bits.emplace_back(effect.bit, effect.name);
+    for (const auto& choice : choice_table()) bits.emplace_back(choice.bit, choice.name);
+    return bits;
+}
+
 bool smaller(std::uint32_t a, std::uint32_t b) {
     return std::popcount(a) != std::popcount(b) ? std::popcount(a) < std::popcount(b) : a < b;
 }
@@ -26,6 +34,7 @@ std::vector<ByTested> find_masks() {
     };
     std::uint32_t all = 0;
     for (const auto& effect : effect_table()) all |= effect.bit;
+    for (const auto& choice : choice_table()) all |= choice.bit;
     std::vector<std::uint32_t> legal;
     for (std::uint32_t mask = 0; mask <= all; ++mask)
         if ((mask & ~all) == 0 && is_legal(mask)) legal.push_back(mask);
@@ -49,10 +58,10 @@ std::vector<ByTested> find_masks() {
 
 std::string effects_text(std::uint32_t mask) {
     std::string text;
-    for (const auto& effect : effect_table()) {
-        if ((mask & effect.bit) == 0) continue;
+    for (const auto& [bit, name] : named_bits()) {
+        if ((mask & bit) == 0) continue;
         if (!text.empty()) text += '+';
-        text += effect.name;
+        text += name;
     }
     return text.empty() ? "none" : text;
 }
@@ -62,10 +71,10 @@ Result<std::uint32_t> parse_effects(const std::string& text) {
     for (std::size_t at = 0; text != "none" && at <= text.size();) {
         const std::size_t end = std::min(text.find('+', at), text.size());
         const std::string name = text.substr(at, end - at);
-        const auto effects = effect_table();
-        const auto found = std::find_if(effects.begin(), effects.end(), [&](const Effect& e) { return name == e.name; });
-        if (found == effects.end()) return error(Code::bad_argument, "effects=" + text + ": no effect \"" + name + "\"");
-        mask |= found->bit;
+        const auto bits = named_bits();
+        const auto found = std::find_if(bits.begin(), bits.end(), [&](const auto& bit) { return name == bit.second; });
+        if (found == bits.end()) return error(Code::bad_argument, "effects=" + text + ": no effect \"" + name + "\"");
+        mask |= found->first;
         at = end + 1;
     }
     if (!is_legal(mask)) return error(Code::bad_argument, "effects=" + text + ": an effect lacks what it needs");

@@ -353,7 +353,10 @@ Status run_perf(Session& session, const PerfOptions& options, bool first) {
     for (int size = least_size; size <= options.max_size; size *= 2) {
         if (auto status = measure_stages(**device, size, options, rows); !status) return status;
         if (!options.stage.empty()) continue;
+        constexpr std::uint32_t published =
+            EFFECT_SEMI_LAGRANGIAN | EFFECT_WHOLE_STRAIN | EFFECT_EXPLICIT_DRAG | EFFECT_LAPLACE_DIFFUSION;
         constexpr std::pair<const char*, std::uint32_t> steps[] = {{"step, all effects", ALL},
+                                                                   {"step, published", ALL | published},
                                                                    {"step, water only", EFFECT_WATER},
                                                                    {"step, dry sand", EFFECT_SAND | EFFECT_ELASTOPLASTIC}};
         for (const auto& [name, effects] : steps)

@@ -19,7 +19,7 @@ const std::uint32_t nan_word = std::bit_cast<std::uint32_t>(std::numeric_limits<
 
 // Behind the flip of the water height the cells outside open sides hold depths of an older step.
 constexpr std::array stages_with_stale_ghosts = {"integrate_water_velocity", "compute_saturation", "compute_momentum_exchange",
-                                                 "integrate_sand_velocity", "apply_friction"};
+                                                 "integrate_sand_velocity",  "apply_drag",         "apply_friction"};
 
 std::size_t components_of(compute::Scalar type) {
     return type == compute::Scalar::vec4 ? 4 : type == compute::Scalar::vec2 ? 2 : 1;

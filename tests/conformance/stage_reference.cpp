@@ -13,6 +13,7 @@ template <class Real> struct Step {
     const char* stage;
     void (Solver<Real>::*run)();
     std::uint32_t needs;
+    std::uint32_t without = 0; // bits whose stages do its work instead
 };
 
 // In the order of the step plan. The splits of the water are the reference's own: the stages derive them where they read.
@@ -22,22 +23,33 @@ constexpr Step<Real> steps[] = {
     {"apply_rain", &Solver<Real>::apply_rain, EFFECT_RAIN},
     {"open_sides", &Solver<Real>::update_open_sides, EFFECT_OPEN_SIDES | EFFECT_WATER},
     {"split_water", &Solver<Real>::split_water, 0},
+    {"update_water_boundary_types", &Solver<Real>::update_water_boundary_types, EFFECT_SEMI_LAGRANGIAN | EFFECT_WATER},
+    {"diffuse_mixed_velocity", &Solver<Real>::diffuse_mixed_velocity, EFFECT_SEMI_LAGRANGIAN | EFFECT_LAPLACE_DIFFUSION},
     {"diffuse_mixed_water", &Solver<Real>::diffuse_mixed_water, EFFECT_DIFFUSION},
     {"limit_water_outflow", &Solver<Real>::limit_water_outflow, EFFECT_WATER},
     {"compute_water_flux", &Solver<Real>::compute_water_flux, EFFECT_WATER},
     {"account_sides", nullptr, EFFECT_OPEN_SIDES},
     {"integrate_water_height", &Solver<Real>::integrate_water_height, EFFECT_WATER},
+    {"extrapolate_velocity", &Solver<Real>::extrapolate_pure_velocity, EFFECT_SEMI_LAGRANGIAN | EFFECT_WATER},
+    {"backtrace_water_velocity", &Solver<Real>::backtrace_pure_velocity, EFFECT_SEMI_LAGRANGIAN | EFFECT_WATER},
+    {"transport_mixed_velocity", &Solver<Real>::transport_mixed_velocity, EFFECT_SEMI_LAGRANGIAN | EFFECT_MIXTURE},
     {"integrate_water_velocity", &Solver<Real>::integrate_water_velocity, EFFECT_WATER},
     {"compute_bed_load", &Solver<Real>::compute_bed_load, EFFECT_BED_SHEAR},
     {"compute_saturation", &Solver<Real>::compute_saturation, EFFECT_COHESION},
     {"open_sand_sides", &Solver<Real>::update_open_sand_sides, EFFECT_OPEN_SIDES | EFFECT_SAND},
+    {"update_sand_boundary_types", &Solver<Real>::update_sand_boundary_types, EFFECT_SEMI_LAGRANGIAN | EFFECT_SAND},
     {"limit_sand_outflow", &Solver<Real>::limit_sand_outflow, EFFECT_SAND},
     {"compute_sand_flux", &Solver<Real>::compute_sand_flux, EFFECT_SAND},
     {"integrate_sand_height", &Solver<Real>::integrate_sand_height, EFFECT_SAND},
-    {"evolve_deformation_gradient", &Solver<Real>::evolve_deformation_gradient, EFFECT_ELASTOPLASTIC},
+    {"evolve_deformation_gradient", &Solver<Real>::evolve_deformation_gradient, EFFECT_ELASTOPLASTIC, EFFECT_WHOLE_STRAIN},
+    {"advect_deformation_gradient", &Solver<Real>::advect_deformation_gradient, EFFECT_WHOLE_STRAIN},
     {"compute_momentum_exchange", &Solver<Real>::compute_momentum_exchange, EFFECT_MIXTURE},
     {"project_deformation_gradient", &Solver<Real>::project_deformation_gradient, EFFECT_ELASTOPLASTIC},
+    {"extrapolate_sand_velocity", &Solver<Real>::extrapolate_sand_velocity, EFFECT_SEMI_LAGRANGIAN | EFFECT_SAND},
+    {"backtrace_sand_velocity", &Solver<Real>::backtrace_sand_velocity, EFFECT_SEMI_LAGRANGIAN | EFFECT_SAND},
     {"integrate_sand_velocity", &Solver<Real>::integrate_sand_velocity, EFFECT_SAND},
+    {"stretch_deformation_gradient", &Solver<Real>::stretch_deformation_gradient, EFFECT_WHOLE_STRAIN},
+    {"apply_drag", &Solver<Real>::apply_drag, EFFECT_EXPLICIT_DRAG},
     {"apply_friction", &Solver<Real>::apply_friction, EFFECT_SAND},
 };
 
@@ -54,10 +66,12 @@ void settle_stretch(Solver<float>& s, bool rough) {
                 s.Vxx[c] += size * band_limited(21, i, j);
                 s.Vxy[c] += size * band_limited(22, i, j);
                 s.Vyy[c] += size * band_limited(23, i, j);
+                if (s.has(EFFECT_WHOLE_STRAIN)) s.rotation[c] += 20 * size * band_limited(24, i, j);
             }
             s.Vxx[c] = snap(s.Vxx[c]);
             s.Vxy[c] = snap(s.Vxy[c]);
             s.Vyy[c] = snap(s.Vyy[c]);
+            s.rotation[c] = snap(s.rotation[c]);
         }
     }
 }
@@ -91,7 +105,8 @@ References::References(const Scene& scene)
 
 void References::run_stage(const std::string& stage) {
     const auto run = [&](auto& solver) {
-        if (stage == "diffuse_mixed_water" || stage == "limit_water_outflow") solver.split_water();
+        if (stage == "diffuse_mixed_velocity" || stage == "diffuse_mixed_water" || stage == "limit_water_outflow")
+            solver.split_water();
         run_reference_stage(solver, stage);
     };
     run(narrow);
@@ -139,12 +154,14 @@ Pilot make_pilot(const Scene& scene, const std::string& stage) {
     pilot.input = inputs.next(scene.pilot_steps);
     pilot.input.interpolation = 0.3F;
     pilot.input.point_count = stage == "sample_points" ? sampled_points : 0;
-    if (scene.rough_stretch) settle_stretch(s, true);
+    // A rotation that is rounding alone would prove nothing.
+    if (scene.rough_stretch || s.has(EFFECT_WHOLE_STRAIN)) settle_stretch(s, true);
     const bool in_step =
         std::any_of(std::begin(steps<float>), std::end(steps<float>), [&](const auto& step) { return stage == step.stage; });
     for (const auto& step : steps<float>) {
         if (!in_step || stage == step.stage) break;
-        if (step.run != nullptr && (scene.effects & step.needs) == step.needs) (s.*step.run)();
+        if (step.run != nullptr && (scene.effects & step.needs) == step.needs && (scene.effects & step.without) == 0)
+            (s.*step.run)();
     }
     settle_stretch(s, false);
     pilot.wide->copy_from(s);

@@ -16,6 +16,9 @@ namespace {
 
 constexpr std::uint32_t WET = EFFECT_WATER | EFFECT_SAND | EFFECT_MIXTURE | EFFECT_DIFFUSION | EFFECT_DRAG;
 constexpr std::uint32_t ELASTIC = EFFECT_ELASTOPLASTIC;
+constexpr std::uint32_t TRACED = EFFECT_SEMI_LAGRANGIAN;
+constexpr std::uint32_t POLAR = EFFECT_WHOLE_STRAIN, DIRECT = EFFECT_WHOLE_STRAIN | EFFECT_DIRECT_STRAIN;
+constexpr std::uint32_t PUBLISHED = TRACED | POLAR | EFFECT_EXPLICIT_DRAG | EFFECT_LAPLACE_DIFFUSION;
 constexpr std::uint32_t ALL = 4095;
 
 struct Row {
@@ -51,6 +54,16 @@ constexpr Row against_reference[] = {
     {"257x130", WET | ELASTIC | EFFECT_COHESION, "dam_break", "default", 2},
     {"33x17", WET | ELASTIC | EFFECT_COHESION, "deep", "default", 2},
     {"33x17", WET | ELASTIC | EFFECT_COHESION | EFFECT_RAIN | EFFECT_SOURCES, "slope", "default", 2},
+    {"33x17", EFFECT_WATER | TRACED, "dam_break", "default", 4},
+    {"33x17", EFFECT_WATER | EFFECT_OPEN_SIDES | TRACED, "flat", "default", 4},
+    {"33x17", EFFECT_SAND | ELASTIC | TRACED, "slope", "default", 3},
+    {"33x17", WET | TRACED, "slope", "default", 3},
+    {"33x17", EFFECT_SAND | ELASTIC | POLAR, "slope", "default", 3},
+    {"33x17", WET | ELASTIC | EFFECT_COHESION | POLAR, "slope", "default", 2},
+    {"33x17", EFFECT_SAND | ELASTIC | DIRECT, "slope", "default", 3},
+    {"33x17", WET | EFFECT_EXPLICIT_DRAG | EFFECT_LAPLACE_DIFFUSION, "slope", "default", 3},
+    {"33x17", WET | TRACED | EFFECT_LAPLACE_DIFFUSION, "slope", "default", 3},
+    {"33x17", EFFECT_WATER | EFFECT_SAND | EFFECT_DRAG | EFFECT_EXPLICIT_DRAG, "slope", "default", 3},
     {"33x17", ALL, "flat", "default", 2},
     {"1x1", ALL, "flat", "default", 2},
 };
@@ -64,7 +77,14 @@ constexpr Row in_bits[] = {
     {"257x130", ALL, "random", "default", 20},
     {"33x17", ALL, "thin_film", "tapered", 40},
     {"33x17", ALL, "deep", "default", 40},
+    {"33x17", ALL | TRACED, "random", "default", 20},
+    {"64x4", WET | TRACED, "slope", "coarse", 30},
+    {"33x17", ALL | TRACED | POLAR, "random", "default", 20},
+    {"33x17", ALL | DIRECT, "random", "default", 20},
+    {"33x17", ALL | PUBLISHED, "random", "default", 20},
+    {"33x17", ALL | PUBLISHED, "random", "bare", 20},
     {"1x1", ALL, "random", "default", 40},
+    {"1x1", ALL | TRACED, "random", "default", 20},
     {"9x1", ALL, "dam_break", "default", 40},
 };
 

@@ -94,9 +94,9 @@ Verdict compare_images(World& world, World& image, Symmetry symmetry) {
             twin = "stretch_yy";
         else if (symmetry == Symmetry::transpose && twin == "stretch_yy")
             twin = "stretch_xx";
-        const bool shear = field.name == "stretch_xy";
-        const bool odd =
-            (symmetry == Symmetry::mirror_x && (face_x || shear)) || (symmetry == Symmetry::mirror_y && (face_y || shear));
+        const bool shear = field.name == "stretch_xy", turn = field.name == "rotation";
+        const bool odd = turn || (symmetry == Symmetry::mirror_x && (face_x || shear)) ||
+                         (symmetry == Symmetry::mirror_y && (face_y || shear));
         auto a = world.read_raw(field.name), b = image.read_raw(twin);
         if (!a) return verdict_of(a.status());
         if (!b) return verdict_of(b.status());

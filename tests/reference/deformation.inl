@@ -9,9 +9,11 @@ namespace wadi::reference {
 template <class Real> void Solver<Real>::advect_stretch() {
     const Axis x = axis(false);
     const Axis y = axis(true);
-    for (Field<Real>* component : {&Vxx, &Vxy, &Vyy}) {
+    const Real whole_turn = static_cast<Real>(2 * 3.14159265358979323846);
+    for (Field<Real>* component : {&Vxx, &Vxy, &Vyy, &rotation}) {
         const Field<Real> old = *component;
-        const Real identity = component == &Vxy ? Real(0) : Real(1);
+        const Real identity = component == &Vxx || component == &Vyy ? Real(1) : Real(0);
+        const bool angle = component == &rotation && !has(EFFECT_DIRECT_STRAIN); // differences the shorter way round
         for (int j = 0; j < x.ny; ++j) {
             for (int i = 0; i < x.nx; ++i) {
                 const std::size_t c = x.cell(i, j);
@@ -23,27 +25,27 @@ template <class Real> void Solver<Real>::advect_stretch() {
                 const auto inflow = [&](const Axis& ax, int a, int b, Real sign, int neighbour) {
                     const Real in = std::max(sign * sand_flux.along(ax)[ax.face(a, b)], Real(0));
                     if (neighbour < 0 || neighbour >= ax.along()) return Real(0);
-                    return in * (old[ax.cell(neighbour, b)] - old[c]);
+                    const Real difference = old[ax.cell(neighbour, b)] - old[c];
+                    return in * (angle ? std::remainder(difference, whole_turn) : difference);
                 };
                 const Real along_x = inflow(x, i, j, Real(1), i - 1) + inflow(x, i + 1, j, Real(-1), i + 1);
                 const Real along_y = inflow(y, j, i, Real(1), j - 1) + inflow(y, j + 1, i, Real(-1), j + 1);
-                (*component)[c] = old[c] + (along_x + along_y) / sand[c];
+                const Real moved = old[c] + (along_x + along_y) / sand[c];
+                (*component)[c] = angle ? std::remainder(moved, whole_turn) : moved;
             }
         }
     }
 }
 
-/// 2.6 on one cell: Cayley step with the gradient of the velocities before this substep, then the left stretch.
-template <class Real> void Solver<Real>::stretch_by_velocity_gradient(int i, int j) {
+/// Substep times the velocity gradient of a cell (xx, xy, yx, yy) by the rules of 2.6, wet cells being those of `depth`.
+template <class Real> std::array<Real, 4> Solver<Real>::velocity_gradient(const Field<Real>& depth, int i, int j) const {
     const Axis x = axis(false);
-    const std::size_t c = x.cell(i, j);
-    if (sand_before[c] <= P.eps) return;
     // d(velocity along ax)/d(across ax), times the substep; `known` is false where no neighbour across is wet.
     const auto shear_rate = [&](const Axis& ax, int a, int b, bool& known) {
         const Field<Real>& u = sand_velocity.along(ax);
         const auto average = [&](int row) { return mean(u[ax.face(a, row)], u[ax.face(a + 1, row)]); };
-        const bool below = b > 0 && sand_before[ax.cell(a, b - 1)] > P.eps;
-        const bool above = b + 1 < ax.across() && sand_before[ax.cell(a, b + 1)] > P.eps;
+        const bool below = b > 0 && depth[ax.cell(a, b - 1)] > P.eps;
+        const bool above = b + 1 < ax.across() && depth[ax.cell(a, b + 1)] > P.eps;
         known = below || above;
         if (below && above) return (average(b + 1) - average(b - 1)) * P.k_sand / Real(2);
         if (above) return (average(b + 1) - average(b)) * P.k_sand;
@@ -61,10 +63,18 @@ template <class Real> void Solver<Real>::stretch_by_velocity_gradient(int i, int
     if (!xy_known && yx_known) Gxy = -Gyx;
     if (!yx_known && xy_known) Gyx = -Gxy;
     const auto limited = [&](Real G) { return P.gradient_clamp > Real(0) ? clamped(G, P.gradient_clamp) : G; };
-    const Real a = limited(stretch_rate(x, i, j)) / Real(2);
-    const Real b = limited(Gxy) / Real(2);
-    const Real d = limited(Gyx) / Real(2);
-    const Real e = limited(stretch_rate(axis(true), j, i)) / Real(2);
+    return {limited(stretch_rate(x, i, j)), limited(Gxy), limited(Gyx), limited(stretch_rate(axis(true), j, i))};
+}
+
+/// 2.6 on one cell: Cayley step with the gradient of the velocities before this substep, then the left stretch.
+template <class Real> void Solver<Real>::stretch_by_velocity_gradient(int i, int j) {
+    const std::size_t c = axis(false).cell(i, j);
+    if (sand_before[c] <= P.eps) return;
+    const auto [Gxx, Gxy, Gyx, Gyy] = velocity_gradient(sand_before, i, j);
+    const Real a = Gxx / Real(2);
+    const Real b = Gxy / Real(2);
+    const Real d = Gyx / Real(2);
+    const Real e = Gyy / Real(2);
 
     // A = (I - G/2)^-1 (I + G/2) with G/2 = (a b; d e).
     const Real det = (Real(1) - a) * (Real(1) - e) - b * d;
@@ -93,6 +103,53 @@ template <class Real> void Solver<Real>::evolve_deformation_gradient() {
         for (int i = 0; i < x.nx; ++i) stretch_by_velocity_gradient(i, j);
 }
 
+template <class Real> void Solver<Real>::advect_deformation_gradient() { advect_stretch(); }
+
+/// 2.13: F + G F on every wet cell; for `polar` in the frame of R, so that F = R P becomes R (I + R^T G R) P.
+template <class Real> void Solver<Real>::stretch_deformation_gradient() {
+    const Axis x = axis(false);
+    for (int j = 0; j < x.ny; ++j) {
+        for (int i = 0; i < x.nx; ++i) {
+            const std::size_t c = x.cell(i, j);
+            if (sand[c] <= P.eps) continue;
+            auto [Gxx, Gxy, Gyx, Gyy] = velocity_gradient(sand, i, j);
+            const bool direct = has(EFFECT_DIRECT_STRAIN);
+            const Real Fxy = Vxy[c] - (direct ? rotation[c] : Real(0));
+            const Real Fyx = Vxy[c] + (direct ? rotation[c] : Real(0));
+            if (!direct) {
+                const Real cs = std::cos(rotation[c]);
+                const Real sn = std::sin(rotation[c]);
+                const Real A = cs * Gxx + sn * Gyx; // R^T G
+                const Real B = cs * Gxy + sn * Gyy;
+                const Real C = cs * Gyx - sn * Gxx;
+                const Real D = cs * Gyy - sn * Gxy;
+                Gxx = A * cs + B * sn;
+                Gxy = B * cs - A * sn;
+                Gyx = C * cs + D * sn;
+                Gyy = D * cs - C * sn;
+            }
+            const Real N00 = Vxx[c] + (Gxx * Vxx[c] + Gxy * Fyx);
+            const Real N01 = Fxy + (Gxx * Fxy + Gxy * Vyy[c]);
+            const Real N10 = Fyx + (Gyx * Vxx[c] + Gyy * Fyx);
+            const Real N11 = Vyy[c] + (Gyx * Fxy + Gyy * Vyy[c]);
+            if (direct) {
+                Vxx[c] = N00;
+                Vyy[c] = N11;
+                Vxy[c] = mean(N01, N10);
+                rotation[c] = (N10 - N01) / Real(2);
+                continue;
+            }
+            const Real turn = std::atan2(N10 - N01, N00 + N11);
+            const Real cs = std::cos(turn);
+            const Real sn = std::sin(turn);
+            Vxx[c] = cs * N00 + sn * N10;
+            Vyy[c] = cs * N11 - sn * N01;
+            Vxy[c] = mean(cs * N01 + sn * N11, cs * N10 - sn * N00);
+            rotation[c] = std::remainder(rotation[c] + turn, static_cast<Real>(2 * 3.14159265358979323846));
+        }
+    }
+}
+
 /// Cohesion c_c(phibar) [Pa]: the paper's piecewise linear law, capped for thin layers (2.7).
 template <class Real> Real Solver<Real>::cohesion(std::size_t cell) const {
     const Real phi = has(EFFECT_COHESION) ? saturation[cell] : Real(0);
@@ -114,6 +171,26 @@ template <class Real> void Solver<Real>::project_deformation_gradient() {
     for (std::size_t c = 0; c < cells(); ++c) {
         sxx[c] = sxy[c] = syy[c] = Real(0);
         if (sand[c] <= P.eps) continue;
+        // 2.13: the right stretch and the rotation (cs, sn) that F is kept with.
+        Real cs(1);
+        Real sn(0);
+        if (has(EFFECT_DIRECT_STRAIN)) {
+            const Real fxy = Vxy[c] - rotation[c];
+            const Real fyx = Vxy[c] + rotation[c];
+            const Real size = std::hypot(Vxx[c] + Vyy[c], fyx - fxy);
+            if (size > Real(0)) {
+                cs = (Vxx[c] + Vyy[c]) / size;
+                sn = (fyx - fxy) / size;
+            }
+            const Real Pxx = cs * Vxx[c] + sn * fyx;
+            const Real Pyy = cs * Vyy[c] - sn * fxy;
+            Vxy[c] = mean(cs * fxy + sn * Vyy[c], cs * fyx - sn * Vxx[c]);
+            Vxx[c] = Pxx;
+            Vyy[c] = Pyy;
+        } else if (has(EFFECT_WHOLE_STRAIN)) {
+            cs = std::cos(rotation[c]);
+            sn = std::sin(rotation[c]);
+        }
         // Logarithmic strain of V from b = V V^T, without angles.
         const Real bxx = Vxx[c] * Vxx[c] + Vxy[c] * Vxy[c];
         const Real byy = Vxy[c] * Vxy[c] + Vyy[c] * Vyy[c];
@@ -163,6 +240,17 @@ template <class Real> void Solver<Real>::project_deformation_gradient() {
         sxx[c] = (lm * tr + Real(2) * P.shear * dd) * per_J;
         syy[c] = (lm * tr - Real(2) * P.shear * dd) * per_J;
         sxy[c] = Real(2) * P.shear * dxy * per_J;
+        // 2.13: the stress belongs to the left stretch, R S R^T; (cs, sn) = (1, 0) otherwise.
+        const Real half = mean(sxx[c], syy[c]);
+        const Real along = mean(sxx[c], -syy[c]);
+        const Real across = sxy[c];
+        const Real c2 = cs * cs - sn * sn;
+        const Real s2 = Real(2) * sn * cs;
+        if (has(EFFECT_WHOLE_STRAIN)) {
+            sxx[c] = half + (along * c2 - across * s2);
+            syy[c] = half - (along * c2 - across * s2);
+            sxy[c] = across * c2 + along * s2;
+        }
         // Bulk viscosity, which takes the mean stress no further than yield does.
         const int i = static_cast<int>(c) % x.nx;
         const int j = static_cast<int>(c) / x.nx;
@@ -182,6 +270,14 @@ template <class Real> void Solver<Real>::project_deformation_gradient() {
         sxx[c] *= fade;
         syy[c] *= fade;
         sxy[c] *= fade;
+        if (!has(EFFECT_DIRECT_STRAIN)) continue;
+        const Real Pxx = Vxx[c];
+        const Real Pxy = Vxy[c];
+        const Real Pyy = Vyy[c];
+        Vxx[c] = cs * Pxx - sn * Pxy;
+        Vyy[c] = cs * Pyy + sn * Pxy;
+        Vxy[c] = cs * Pxy + sn * mean(Pxx, -Pyy);
+        rotation[c] = sn * mean(Pxx, Pyy);
     }
 }
 

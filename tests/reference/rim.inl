@@ -25,6 +25,7 @@ template <class Real> void Solver<Real>::add_depth(Field<Real>& field, std::size
         Vxx[cell] = Real(1) + keep * (Vxx[cell] - Real(1));
         Vxy[cell] = keep * Vxy[cell];
         Vyy[cell] = Real(1) + keep * (Vyy[cell] - Real(1));
+        rotation[cell] = keep * rotation[cell];
     }
     field[cell] += change;
     ledger += static_cast<double>(change);

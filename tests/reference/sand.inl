@@ -65,7 +65,7 @@ template <class Real> void Solver<Real>::add_stress_and_gravity() {
 }
 
 template <class Real> void Solver<Real>::integrate_sand_velocity() {
-    advect_velocity(sand, sand_flux, sand_velocity);
+    if (!has(EFFECT_SEMI_LAGRANGIAN)) advect_velocity(sand, sand_flux, sand_velocity);
     add_stress_and_gravity();
 }
 
@@ -102,10 +102,29 @@ template <class Real> void Solver<Real>::compute_momentum_exchange() {
     });
 }
 
+/// 2.14: explicit exchange of momentum on every inner face that holds wet sand.
+template <class Real> void Solver<Real>::apply_drag() {
+    const bool two_layers = has(EFFECT_MIXTURE);
+    Faces<Real>& partner = two_layers ? mixed_velocity : pure_velocity;
+    for_inner_faces([&](const Axis& ax, int a, int b) {
+        const std::size_t L = ax.cell(a - 1, b);
+        const std::size_t R = ax.cell(a, b);
+        const Real hs_bar = mean(sand[L], sand[R]);
+        const Real hm_bar = mean(mixed[L], mixed[R]);
+        if (hm_bar <= P.eps || hs_bar <= P.eps / Real(2)) return;
+        Real& us = sand_velocity.along(ax)[ax.face(a, b)];
+        Real& um = partner.along(ax)[ax.face(a, b)];
+        const Real impulse = P.substep * P.exchange * hm_bar * (us - um);
+        us -= impulse / (P.rho_s * hs_bar);
+        um += impulse / (P.rho_w * (two_layers ? hm_bar : mean(water[L], water[R])));
+    });
+}
+
 /// 2.8: implicit pair of drag and Coulomb friction, on every inner face from the velocities before it.
 template <class Real> void Solver<Real>::apply_friction() {
     const bool two_layers = has(EFFECT_MIXTURE);
-    const bool drag = has(EFFECT_DRAG);
+    const bool drag = has(EFFECT_DRAG) && !has(EFFECT_EXPLICIT_DRAG);
+    const bool absent = has(EFFECT_DRAG); // mixed water that is not there stands still
     Faces<Real>& partner = two_layers ? mixed_velocity : pure_velocity;
     const Faces<Real> us_old = sand_velocity;
     const Faces<Real> um_old = partner;
@@ -123,7 +142,7 @@ template <class Real> void Solver<Real>::apply_friction() {
         Real& um = partner.along(ax)[f];
         if (hs_bar <= P.eps / Real(2)) {
             us = Real(0);
-            um = drag && two_layers && hm_bar <= Real(0) ? Real(0) : clamped(um, P.clamp);
+            um = absent && two_layers && hm_bar <= Real(0) ? Real(0) : clamped(um, P.clamp);
             return;
         }
         // Per bed area: inertia of the partner layer and of the sand, and the drag impulse per velocity difference.
@@ -139,7 +158,7 @@ template <class Real> void Solver<Real>::apply_friction() {
         const Real g_f = sand_gravity(std::max(sand[L], sand[R]));
         const Real N = P.friction * g_f * P.substep * std::max(Real(1) - P.rho_w * r, Real(0));
         us = size > Real(0) ? std::max(Real(1) - N / size, Real(0)) * p / (Real(1) + kappa) : Real(0);
-        if (drag && two_layers && hm_bar <= Real(0))
+        if (absent && two_layers && hm_bar <= Real(0))
             um = Real(0);
         else if (drag && inertia + kd > Real(0))
             um = (inertia * um_old.along(ax)[f] + kd * us) / (inertia + kd);

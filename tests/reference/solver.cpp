@@ -1,5 +1,6 @@
 // Set-up and the order of the stages (section 3).
 #include "tests/reference/solver.hpp"
+#include "tests/reference/backtrace.inl"
 #include "tests/reference/deformation.inl"
 #include "tests/reference/rim.inl"
 #include "tests/reference/sand.inl"
@@ -63,12 +64,13 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
     const std::size_t nx = static_cast<std::size_t>(world.grid.nx);
     const std::size_t ny = static_cast<std::size_t>(world.grid.ny);
     for (Field<Real>* field : {&terrain, &sand, &water, &Vxy, &pure, &mixed, &pure_predicted, &mixed_predicted, &pure_scale,
-                               &mixed_scale, &sand_scale, &saturation, &sand_before, &mixed_before, &sxx, &sxy, &syy})
+                               &mixed_scale, &sand_scale, &saturation, &sand_before, &mixed_before, &sxx, &sxy, &syy, &rotation})
         field->assign(nx * ny, Real(0));
     Vxx.assign(nx * ny, Real(1));
     Vyy.assign(nx * ny, Real(1));
-    for (Faces<Real>* faces : {&sand_velocity, &pure_velocity, &mixed_velocity, &diffusion_flux, &pure_flux, &mixed_flux,
-                               &sand_flux, &bed_load, &mixed_push, &ghost_water}) {
+    for (Faces<Real>* faces :
+         {&sand_velocity, &pure_velocity, &mixed_velocity, &diffusion_flux, &pure_flux, &mixed_flux, &sand_flux, &bed_load,
+          &mixed_push, &ghost_water, &pure_type, &mixed_type, &sand_type, &extrapolated}) {
         faces->x.assign((nx + 1) * ny, Real(0));
         faces->y.assign(nx * (ny + 1), Real(0));
     }
@@ -143,6 +145,7 @@ template <class Real> template <class Other> void Solver<Real>::copy_from(const 
     field(&A::Vxx, &B::Vxx);
     field(&A::Vxy, &B::Vxy);
     field(&A::Vyy, &B::Vyy);
+    field(&A::rotation, &B::rotation);
     field(&A::pure, &B::pure);
     field(&A::mixed, &B::mixed);
     field(&A::pure_predicted, &B::pure_predicted);
@@ -166,6 +169,10 @@ template <class Real> template <class Other> void Solver<Real>::copy_from(const 
     faces(&A::bed_load, &B::bed_load);
     faces(&A::mixed_push, &B::mixed_push);
     faces(&A::ghost_water, &B::ghost_water);
+    faces(&A::pure_type, &B::pure_type);
+    faces(&A::mixed_type, &B::mixed_type);
+    faces(&A::sand_type, &B::sand_type);
+    faces(&A::extrapolated, &B::extrapolated);
     water_added = other.water_added;
     sand_added = other.sand_added;
     refused = other.refused;
@@ -179,27 +186,42 @@ template <class Real> void Solver<Real>::step() {
     apply_sources();
     apply_rain();
     update_open_sides();
+    const bool traced = has(EFFECT_SEMI_LAGRANGIAN);
     if (has(EFFECT_WATER)) {
         split_water();
+        if (traced) update_water_boundary_types();
+        if (traced && has(EFFECT_LAPLACE_DIFFUSION)) diffuse_mixed_velocity();
         diffuse_mixed_water();
         limit_water_outflow();
         compute_water_flux();
         integrate_water_height();
+        if (traced) {
+            extrapolate_pure_velocity();
+            backtrace_pure_velocity();
+            if (has(EFFECT_MIXTURE)) transport_mixed_velocity();
+        }
         integrate_water_velocity();
     }
     if (has(EFFECT_BED_SHEAR)) compute_bed_load();
     if (has(EFFECT_COHESION)) compute_saturation();
     for (int substep = 0; has(EFFECT_SAND) && substep < P.substeps; ++substep) {
         update_open_sand_sides();
+        if (traced) update_sand_boundary_types();
         limit_sand_outflow();
         compute_sand_flux();
         integrate_sand_height();
         if (has(EFFECT_ELASTOPLASTIC)) {
-            evolve_deformation_gradient();
+            has(EFFECT_WHOLE_STRAIN) ? advect_deformation_gradient() : evolve_deformation_gradient();
             project_deformation_gradient();
         }
+        if (traced) {
+            extrapolate_sand_velocity();
+            backtrace_sand_velocity();
+        }
         integrate_sand_velocity();
+        if (has(EFFECT_WHOLE_STRAIN)) stretch_deformation_gradient();
         if (has(EFFECT_MIXTURE)) compute_momentum_exchange();
+        if (has(EFFECT_EXPLICIT_DRAG)) apply_drag();
         apply_friction();
     }
     ++step_index;

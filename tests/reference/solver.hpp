@@ -60,22 +60,33 @@ template <class Real> class Solver {
     void apply_rain();
     void update_open_sides();                    // 2.9, water
     void split_water();                          // mixed = min(W, hs), pure = W - mixed
+    void update_water_boundary_types();          // 2.12 -> pure_type, mixed_type
+    void diffuse_mixed_velocity();               // 2.15 -> mixed_velocity
     void diffuse_mixed_water();                  // 2.1 -> diffusion_flux
     void limit_water_outflow();                  // 2.2 -> pure_scale, mixed_scale
     void compute_water_flux();                   // 2.2 -> pure_flux, mixed_flux
     void integrate_water_height();               // 2.2 -> water, pure_predicted, mixed_predicted, pure, mixed
+    void extrapolate_pure_velocity();            // 2.12 -> extrapolated
+    void backtrace_pure_velocity();              // 2.12 -> pure_velocity
+    void transport_mixed_velocity();             // both for the mixed water
     void damp_shocks(const Faces<Real>& before); // 2.3
     void integrate_water_velocity();             // 2.3, 2.4 -> pure_velocity, mixed_velocity, mixed_push
     void compute_bed_load();                     // 2.11 -> bed_load
     void compute_saturation();                   // 2.7 -> saturation
     void update_open_sand_sides();               // 2.9, sand: in every substep
+    void update_sand_boundary_types();           // 2.12 -> sand_type
     void limit_sand_outflow();                   // 2.2 -> sand_scale
     void compute_sand_flux();                    // 2.2 -> sand_flux
     void integrate_sand_height();                // 2.5 -> sand, sand_before, pure, mixed, mixed_before
     void evolve_deformation_gradient();          // 2.5, 2.6 -> Vxx, Vxy, Vyy
     void project_deformation_gradient();         // 2.7 -> Vxx, Vxy, Vyy, sxx, sxy, syy
+    void extrapolate_sand_velocity();            // 2.12 -> extrapolated
+    void backtrace_sand_velocity();              // 2.12 -> sand_velocity
     void integrate_sand_velocity();              // 2.3, 2.7, rule 2.4c -> sand_velocity
+    void advect_deformation_gradient();          // 2.13 -> Vxx, Vxy, Vyy, rotation
+    void stretch_deformation_gradient();         // 2.13, after the velocity -> Vxx, Vxy, Vyy, rotation
     void compute_momentum_exchange();            // 2.4a after the sand height, then mixed_push on mixed_velocity
+    void apply_drag();                           // 2.14 -> sand_velocity, mixed_velocity (pure_velocity in the single-layer mask)
     void apply_friction();                       // 2.8 -> sand_velocity, mixed_velocity (pure_velocity in the single-layer mask)
 
     bool has(std::uint32_t effect) const { return (effects & effect) != 0; }
@@ -88,8 +99,9 @@ template <class Real> class Solver {
     std::int64_t step_index = 0;
 
     // State (section 1). Velocities of walls are 0. Without mixture pure_velocity is the velocity of all water.
-    Field<Real> terrain, sand, water;                         // H, hs, W [m]
-    Field<Real> Vxx, Vxy, Vyy;                                // left stretch of the sand
+    Field<Real> terrain, sand, water; // H, hs, W [m]
+    Field<Real> Vxx, Vxy, Vyy;        // left stretch of the sand; 2.13: right stretch, or F's symmetric part
+    Field<Real> rotation;             // 2.13: angle, or (Fyx - Fxy)/2
     Faces<Real> sand_velocity, pure_velocity, mixed_velocity; // us, uw, um [m/s]
 
     // Intermediate fields. Fluxes are depths per step, k q [m].
@@ -98,12 +110,14 @@ template <class Real> class Solver {
     Field<Real> pure_scale, mixed_scale, sand_scale;
     Faces<Real> diffusion_flux; // q_D [m2/s]
     Faces<Real> pure_flux, mixed_flux, sand_flux;
-    Faces<Real> bed_load;                  // [m2/s]
-    Faces<Real> mixed_push;                // d_f, pressure's change of um per sand substep [m/s]
-    Field<Real> saturation;                // phibar
-    Field<Real> sand_before, mixed_before; // hs^n and min(W, hs^n)
-    Field<Real> sxx, sxy, syy;             // Cauchy stress [Pa]
-    Faces<Real> ghost_water;               // depth outside the open sides [m], on boundary faces
+    Faces<Real> bed_load;                         // [m2/s]
+    Faces<Real> mixed_push;                       // d_f, pressure's change of um per sand substep [m/s]
+    Faces<Real> pure_type, mixed_type, sand_type; // boundary types: 0 untracked, 1 tracked, 2 fixed
+    Faces<Real> extrapolated;                     // velocity of one layer
+    Field<Real> saturation;                       // phibar
+    Field<Real> sand_before, mixed_before;        // hs^n and min(W, hs^n)
+    Field<Real> sxx, sxy, syy;                    // Cauchy stress [Pa]
+    Faces<Real> ghost_water;                      // depth outside the open sides [m], on boundary faces
 
     // What sources, rain and open sides added, as sums of depths [m]: exact in double with a quantum.
     double water_added = 0;
@@ -124,11 +138,15 @@ template <class Real> class Solver {
     /// Depth that the four fluxes add to cell (i, j).
     Real gain(const Faces<Real>& flux, int i, int j) const;
     void advect_velocity(const Field<Real>& height, const Faces<Real>& flux, Faces<Real>& velocity) const;
+    template <class Height, class Surface> void update_types(Height height, Surface surface, Faces<Real>& type) const;
+    void extrapolate(const Faces<Real>& velocity, const Faces<Real>& type);
+    void backtrace(const Faces<Real>& type, Real k, Faces<Real>& velocity) const;
     void exchange_split(const Field<Real>& mixed_old, const Field<Real>& pure_old, const Field<Real>& mixed_new);
     Real water_gravity(Real fastest, Real deepest) const;
     Real sand_gravity(Real deepest) const;
     void water_face(const Axis& axis, int a, int b);
     void advect_stretch();
+    std::array<Real, 4> velocity_gradient(const Field<Real>& depth, int i, int j) const; // substep * (xx, xy, yx, yy)
     void stretch_by_velocity_gradient(int i, int j);
     Real cohesion(std::size_t cell) const;
     void add_stress_and_gravity();

@@ -174,6 +174,81 @@ TEST_CASE_TEMPLATE("reference: a rigidly turning strained disc keeps its strain"
     }
 }
 
+// Two halves of a sheet, unstrained and turned by +angle and -angle, slide through each other's border: the least det F.
+double least_det_where_turns_mix(std::uint32_t strain, double angle) {
+    const int n = 20;
+    Settings set = make_settings(n, 4, 0.1, 0.01);
+    set.method.substeps = 1;
+    set.method.quantum = 0;
+    Solver<double> s(set, EFFECT_SAND | EFFECT_ELASTOPLASTIC | strain);
+    fill(s, s.sand, [](double, double) { return 0.5; });
+    const bool direct = (strain & EFFECT_DIRECT_STRAIN) != 0;
+    const Axis x = s.axis(false);
+    for (int j = 0; j < 4; ++j)
+        for (int i = 0; i < n; ++i) {
+            const double turn = i < n / 2 ? angle : -angle;
+            const std::size_t c = x.cell(i, j);
+            s.rotation[c] = direct ? std::sin(turn) : turn;
+            s.Vxx[c] = s.Vyy[c] = direct ? std::cos(turn) : 1;
+        }
+    for_all_faces(s, [&](const Axis& ax, int a, int b) {
+        if (!ax.is_y && a > 0 && a < n) s.sand_velocity.x[ax.face(a, b)] = 1;
+    });
+    for (int step = 0; step < 5; ++step) {
+        s.limit_sand_outflow();
+        s.compute_sand_flux();
+        s.integrate_sand_height();
+        s.advect_deformation_gradient();
+    }
+    double least = 1;
+    for (std::size_t c = 0; c < s.sand.size(); ++c) {
+        const double turn = direct ? s.rotation[c] : 0;
+        least = std::min(least, s.Vxx[c] * s.Vyy[c] - (s.Vxy[c] - turn) * (s.Vxy[c] + turn));
+    }
+    return least;
+}
+
+// Strain of a disc that turns once by the imposed field, 0.1 at first: as in the case before, with F kept whole.
+double strain_after_a_turn(double dt) {
+    const int n = 24;
+    const double dx = 0.1, omega = 1;
+    Settings set = make_settings(n, n, dx, dt);
+    set.method.substeps = 1;
+    set.method.quantum = 0;
+    Solver<double> s(set, EFFECT_SAND | EFFECT_ELASTOPLASTIC | EFFECT_WHOLE_STRAIN);
+    fill(s, s.sand, [](double, double) { return 0.5; });
+    for (std::size_t c = 0; c < s.sand.size(); ++c) {
+        s.Vxx[c] = std::exp(0.1);
+        s.Vyy[c] = std::exp(-0.1);
+    }
+    for_all_faces(s, [&](const Axis& ax, int a, int b) {
+        const double across = (b + 0.5) * dx - 0.5 * n * dx;
+        s.sand_velocity.along(ax)[ax.face(a, b)] = (ax.is_y ? omega : -omega) * across;
+    });
+    const int steps = static_cast<int>(std::lround(2 * PI / (omega * dt)));
+    for (int step = 0; step < steps; ++step) s.stretch_deformation_gradient();
+    const std::size_t c = s.axis(false).cell(n / 2, n / 2);
+    return std::log(s.Vxx[c] * s.Vyy[c] - s.Vxy[c] * s.Vxy[c]);
+}
+
+TEST_CASE("reference: F moved as it is shrinks where turns meet, angle and stretch moved apart do not (paper 4.2.2)") {
+    for (const double angle : {0.4, 1.2}) {
+        const double polar = least_det_where_turns_mix(EFFECT_WHOLE_STRAIN, angle),
+                     direct = least_det_where_turns_mix(EFFECT_WHOLE_STRAIN | EFFECT_DIRECT_STRAIN, angle);
+        MESSAGE("turns of +-" << angle << ": least det F " << polar << " polar, " << direct << " direct");
+        CHECK(std::abs(polar - 1) < 1e-14);
+        CHECK(direct < std::cos(angle)); // halfway between the two it is cos^2
+    }
+}
+
+TEST_CASE("reference: F + dt grad(v) F inflates a turning disc by (omega dt)^2 a step, as the paper's formula does") {
+    for (const double dt : {0.02, 0.01}) {
+        const double grown = strain_after_a_turn(dt);
+        MESSAGE("dt " << dt << ": ln det F after a turn " << grown);
+        CHECK(within(grown, 2 * PI * dt, 0.02));
+    }
+}
+
 TEST_CASE("reference: the projection ends on the yield surface and leaves what is inside it") {
     const int n = 60;
     Settings set = make_settings(n, n, 0.1, 0.001);

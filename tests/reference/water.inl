@@ -17,9 +17,33 @@ template <class Real> void Solver<Real>::diffuse_mixed_water() {
         const std::size_t L = ax.cell(a - 1, b);
         const std::size_t R = ax.cell(a, b);
         Real q(0);
-        if (sand[L] > P.eps && sand[R] > P.eps)
+        if (has(EFFECT_LAPLACE_DIFFUSION))
+            q = -P.diffusion * (mixed[R] - mixed[L]) / P.dx;
+        else if (sand[L] > P.eps && sand[R] > P.eps)
             q = -P.diffusion * minmod(mixed[R] - mixed[L], (terrain[R] + water[R]) - (terrain[L] + water[L])) / P.dx;
         diffusion_flux.along(ax)[ax.face(a, b)] = q;
+    });
+}
+
+/// 2.15 on faces: D div(u grad h) / h, centred; heights beyond the sides repeat the last one.
+template <class Real> void Solver<Real>::diffuse_mixed_velocity() {
+    const Faces<Real> old = mixed_velocity;
+    const Real number = P.diffusion * P.dt / (P.dx * P.dx);
+    for_inner_faces([&](const Axis& ax, int a, int b) {
+        const auto depth = [&](int cell, int row) {
+            return mixed[ax.cell(std::clamp(cell, 0, ax.along() - 1), std::clamp(row, 0, ax.across() - 1))];
+        };
+        const auto at_face = [&](int face, int row) { return mean(depth(face - 1, row), depth(face, row)); };
+        const Field<Real>& u = old.along(ax);
+        const Real own = u[ax.face(a, b)];
+        const Real h = at_face(a, b);
+        if (h <= P.eps) return;
+        const auto part = [&](int face, int row) { // mean velocity of the two faces times the rise of h to the other one
+            const Real other = row < 0 || row >= ax.across() ? own : u[ax.face(face, row)];
+            return mean(own, other) * (at_face(face, row) - h);
+        };
+        const Real spread = (part(a + 1, b) + part(a - 1, b)) + (part(a, b - 1) + part(a, b + 1));
+        mixed_velocity.along(ax)[ax.face(a, b)] = clamped(own + number * spread / h, P.clamp);
     });
 }
 
@@ -114,11 +138,12 @@ template <class Real> void Solver<Real>::damp_shocks(const Faces<Real>& before) 
 }
 
 template <class Real> void Solver<Real>::integrate_water_velocity() {
+    const bool traced = has(EFFECT_SEMI_LAGRANGIAN);
     const Faces<Real> before = pure_velocity;
-    advect_velocity(pure_predicted, pure_flux, pure_velocity);
+    if (!traced) advect_velocity(pure_predicted, pure_flux, pure_velocity);
     damp_shocks(before);
     if (has(EFFECT_MIXTURE)) {
-        advect_velocity(mixed_predicted, mixed_flux, mixed_velocity);
+        if (!traced) advect_velocity(mixed_predicted, mixed_flux, mixed_velocity);
         exchange_split(mixed_predicted, pure_predicted, mixed);
     }
     for_inner_faces([&](const Axis& ax, int a, int b) { water_face(ax, a, b); });

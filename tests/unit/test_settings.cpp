@@ -76,6 +76,12 @@ TEST_CASE("settings: saturation, quantum, caps, names") {
     CHECK(says(message([](Settings& s) { s.method.quantum = std::ldexp(1.0, -30); }), "largest_height / 2^24"));
     CHECK(says(message([](Settings& s) { s.method.quantum = -0.5; }), "neither -1"));
     CHECK(says(message([](Settings& s) { s.method.gravity_cap_least = 0.6; }), "0.6 is outside 0 ... 0.55"));
+    CHECK(says(message([](Settings& s) {
+                   s.method.velocity_transport = VelocityTransport::semi_lagrangian;
+                   s.method.velocity_clamp = 1.5;
+               }),
+               "method.velocity_clamp: 1.5 is outside 0.01 ... 1 (semi_lagrangian"));
+    CHECK(message([](Settings& s) { s.method.velocity_clamp = 1.5; }).empty());
     CHECK(says(message([](Settings& s) { s.method.name = "robst"; }), "did you mean \"robust\"?"));
     CHECK(says(message([](Settings& s) { s.effects = {{"cohesoin", Force::off}}; }), "did you mean \"cohesion\"?"));
     CHECK(message([](Settings& s) { s.effects = {{"bed_friction", Force::on}}; }).empty());

@@ -13,6 +13,7 @@ namespace {
 std::vector<std::uint32_t> legal_masks() {
     std::uint32_t all = 0;
     for (const auto& effect : effect_table()) all |= effect.bit;
+    for (const auto& choice : choice_table()) all |= choice.bit;
     std::vector<std::uint32_t> masks;
     for (std::uint32_t mask = 1; mask <= all; ++mask) {
         if (is_legal(mask) && (mask & (EFFECT_WATER | EFFECT_SAND)) != 0) masks.push_back(mask);
@@ -138,6 +139,37 @@ TEST_CASE("an effect that is off has no pass and no buffer") {
             CHECK_MESSAGE(fewer_passes, effect.name << " off removes no pass");
         }
     }
+}
+
+TEST_CASE("choices of method are passes of their own at their place in the order") {
+    const auto order = [](const std::vector<PlanPass>& passes) {
+        std::string names;
+        for (const auto& pass : passes)
+            names += std::string(compute::stage_table()[static_cast<std::size_t>(pass.stage)].name) + " ";
+        return names;
+    };
+    const auto plan = make_step_plan(EFFECT_WATER | EFFECT_SAND | EFFECT_MIXTURE | EFFECT_SEMI_LAGRANGIAN, 3);
+    CHECK(order(plan.water_passes) == "update_water_boundary_types limit_water_outflow compute_water_flux integrate_water_height "
+                                      "extrapolate_velocity backtrace_water_velocity extrapolate_velocity "
+                                      "backtrace_water_velocity integrate_water_velocity ");
+    CHECK(order(plan.substep_passes) == "update_sand_boundary_types limit_sand_outflow compute_sand_flux integrate_sand_height "
+                                        "compute_momentum_exchange extrapolate_velocity backtrace_sand_velocity "
+                                        "integrate_sand_velocity apply_friction ");
+    const auto strain = make_step_plan(EFFECT_SAND | EFFECT_ELASTOPLASTIC | EFFECT_WHOLE_STRAIN, 3);
+    CHECK(order(strain.substep_passes) ==
+          "limit_sand_outflow compute_sand_flux integrate_sand_height advect_deformation_gradient "
+          "project_deformation_gradient integrate_sand_velocity stretch_deformation_gradient "
+          "apply_friction ");
+    CHECK(strain.find("rotation") != nullptr);
+    CHECK(make_step_plan(EFFECT_SAND | EFFECT_ELASTOPLASTIC, 3).find("rotation") == nullptr);
+    const auto drag = make_step_plan(EFFECT_WATER | EFFECT_SAND | EFFECT_DRAG | EFFECT_EXPLICIT_DRAG, 3);
+    CHECK(order(drag.substep_passes) == "limit_sand_outflow compute_sand_flux integrate_sand_height integrate_sand_velocity "
+                                        "apply_drag apply_friction ");
+    auto scene = test::flat_scene(8, 8, 1, 0.01);
+    scene.fill(scene.fields.water, [](double, double) { return 1; });
+    scene.settings.method.strain_transport = StrainTransport::direct; // no sand: nothing to act on
+    scene.settings.method.velocity_transport = VelocityTransport::semi_lagrangian;
+    CHECK(effects_required(scene.settings, content_of(scene.fields))->mask == (EFFECT_WATER | EFFECT_SEMI_LAGRANGIAN));
 }
 
 TEST_CASE("effects follow from the scene, with a reason, and a level may force them") {

@@ -37,6 +37,19 @@ struct Material {
     double bed_friction = 0;      // c of u/(1 + dt c |u|/h) for pure water, dimensionless, 0 ... 10; 0 = off
 };
 
+/// How velocities move with the flow (NUMERICS 2.3): by the mass fluxes, or traced back along the velocity as the paper does.
+enum class VelocityTransport : std::uint8_t { flux_form, semi_lagrangian };
+
+/// What moves with the sand of its deformation gradient F (NUMERICS 2.5, 2.13): the left stretch V (F = V R), the angle of R and
+/// the right stretch P apart (F = R P, the paper's choice), or F as it is.
+enum class StrainTransport : std::uint8_t { left_stretch, polar, direct };
+
+/// Drag and friction (NUMERICS 2.8, 2.14): one implicit solve, or explicit drag and then friction, as the paper has it.
+enum class DragFriction : std::uint8_t { joint, sequence };
+
+/// Diffusion of mixed water (NUMERICS 2.1, 2.15): a limited flux, zero in a lake at rest, or the Laplacian of the paper.
+enum class Diffusion : std::uint8_t { limited, laplacian };
+
 /// How water and sand are stepped. Every guard is off at a neutral value, so that any one can be studied alone.
 struct Method {
     std::string name = "robust";
@@ -59,6 +72,10 @@ struct Method {
     double cohesion_cap = 0.9;      // c <= 2 c_f cohesion_cap rho_s g hs; 0 = off
     double stress_taper = 0;        // h_el [m]: stress fades in between h_el and 2 h_el; 0 = off
     int saturation_smoothing = 2;   // radius in cells of the low-pass before the cohesion lookup: 0, 1, 2
+    VelocityTransport velocity_transport = VelocityTransport::flux_form; // semi_lagrangian: velocity_clamp at most 1
+    StrainTransport strain_transport = StrainTransport::left_stretch;
+    DragFriction drag_friction = DragFriction::joint;
+    Diffusion diffusion = Diffusion::limited;
 };
 
 /// A value over time: linear between samples, constant outside. One sample = constant.

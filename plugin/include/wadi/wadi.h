@@ -95,7 +95,7 @@ typedef struct wadi_level_overrides {
     uint32_t struct_size;
     int32_t nx, ny;            /* keeps the x extent and square cells, stretches maps in y, scales dt with dx */
     double dt;                 /* [s] */
-    const char* method;        /* "robust" */
+    const char* method;        /* "robust" or "published" */
     const char* variant;       /* one of the level's variants; NULL = the level as it is. Not for terrain maps */
 } wadi_level_overrides;
 WADI_API wadi_level_overrides wadi_default_level_overrides(void);
