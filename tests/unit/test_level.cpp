@@ -68,6 +68,8 @@ TEST_CASE("level: cylinder and cone") {
     CHECK(at(level, level.fields.terrain, 8, 3) == 0);
     const Level sloped = must(parse(R"("sand": [{"shape": "cone", "center": [6.5, 3.5], "side_slope": 2, "surface": 4}])"));
     CHECK(sloped.fields.sand == level.fields.terrain);
+    const Level steep = must(parse(R"("sand": [{"shape": "cone", "center": [6.5, 3.5], "side_slope": 2, "height": 4}])"));
+    CHECK(steep.fields.sand == level.fields.terrain);
 }
 
 TEST_CASE("level: ridge along a line") {
