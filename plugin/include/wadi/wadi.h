@@ -97,8 +97,21 @@ typedef struct wadi_level_overrides {
     double dt;                 /* [s] */
     const char* method;        /* "robust" or "published" */
     const char* variant;       /* one of the level's variants; NULL = the level as it is. Not for terrain maps */
+    const char* accuracy;      /* "draft", "balanced" or "accurate": half, all or twice the level's cells along x and y (nx, ny win) and
+                                  two sand steps per water step; NULL = what the level says. samples/report has errors and costs */
 } wadi_level_overrides;
 WADI_API wadi_level_overrides wadi_default_level_overrides(void);
+
+/** An accuracy preset, with what it was measured to err and to cost against "balanced" (samples/report, full runs). */
+typedef struct wadi_accuracy_preset {
+    const char* name;
+    double cells;              /* factor on the level's cells along x and y */
+    int32_t substeps;          /* sand steps per water step */
+    double error;              /* mean absolute error, factor */
+    double gpu_cost, cpu_cost; /* time per simulated second, factor: one H100, two CPU cores */
+} wadi_accuracy_preset;
+/** Fills up to *count presets by rising accuracy and sets *count to their number; presets may be NULL to ask for it. */
+WADI_API wadi_result wadi_list_accuracy_presets(wadi_accuracy_preset* presets, uint32_t* count);
 
 /** Creates a world from a level file (.json) or from a terrain map (.png, .r16, .npy, .asc).
  *  Errors: NOT_FOUND, BAD_FILE, BAD_ARGUMENT, OUT_OF_MEMORY, NOT_SUPPORTED. */
