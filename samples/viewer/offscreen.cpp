@@ -25,8 +25,9 @@ int run_offscreen(const Options& options) {
         Renderer renderer(gpu, options.width, options.height);
         std::printf("level      %s, %d x %d cells of %g m, dt %g s\n", options.level_name.c_str(), simulation.info.nx,
                     simulation.info.ny, simulation.info.dx, simulation.info.dt);
-        std::printf("simulated  %s: %s\ndrawn      %s, %u x %u, quality %s\n", simulation.info.backend,
-                    simulation.info.device_name, gpu.name.c_str(), options.width, options.height, options.quality.c_str());
+        std::printf("simulated  %s: %s\n", simulation.info.backend, simulation.info.device_name);
+        std::printf("drawn      %s (queue family %u of %u), %u x %u, quality %s\n", gpu.name.c_str(),
+                    gpu.family, gpu.families, options.width, options.height, options.quality.c_str());
 
         Picture picture;
         picture.camera = camera_preset(options.camera, simulation.grid.block,

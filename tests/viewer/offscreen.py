@@ -9,8 +9,9 @@ from pathlib import Path
 from pictures import alike, black_pixels, blue, difference, pixels, read_png, sandy, share
 
 IMAGES = Path(__file__).parent / "images"
-# Level and time [s]: early enough for a slow machine.
-SCENES = {"beach": 1.0, "canyon": 6.0, "castle": 2.0, "dam_break": 3.0, "flush": 1.5, "letters": 0.5, "piles": 0.5, "seepage": 1.0, "spring": 0.5, "wadi": 1.0}
+# Time [s] and grid of a level: half as fine as its own and early, for slow machines.
+SCENES = {"beach": (1.0, "160x128"), "canyon": (6.0, "100x128"), "castle": (2.0, "128x64"), "dam_break": (3.0, "96x96"), "flush": (1.5, "128x128"),
+          "letters": (0.5, "160x80"), "piles": (0.5, "168x112"), "seepage": (1.0, "128x64"), "spring": (0.5, "128x128"), "wadi": (1.0, "224x144")}
 
 
 class Viewer:
@@ -39,8 +40,8 @@ def test_checks_can_fail():
 
 def test_levels(viewer, store):
     shots = {}
-    for level, start in SCENES.items():
-        shot = shots[level] = viewer.picture(level, level, "--backend", "cpu", "--start", start, "--size", "240x135")
+    for level, (start, grid) in SCENES.items():
+        shot = shots[level] = viewer.picture(level, level, "--backend", "cpu", "--start", start, "--grid", grid, "--size", "192x108")
         assert black_pixels(shot) == 0, f"{level}: {black_pixels(shot)} black pixels"
         if store:
             (IMAGES / f"{level}.png").write_bytes((viewer.folder / level / "frame_00000.png").read_bytes())
@@ -56,7 +57,7 @@ def test_levels(viewer, store):
 def test_water_is_where_water_is(viewer):
     """Seen from above at the start, dam_break has water on 39 m x 40 m of 96 m x 96 m, in the south-west."""
     for backend in ("cpu", "vulkan"):
-        shot = viewer.picture(f"top_{backend}", "dam_break", "--backend", backend, "--camera", "top", "--size", "200x200")
+        shot = viewer.picture(f"top_{backend}", "dam_break", "--backend", backend, "--camera", "top", "--grid", "96x96", "--size", "200x200")
         width, height, rows = shot
         corner = (0, 0, [row[:3 * (width // 2)] for row in rows[height // 2:]])
         south_west = (width // 2, height - height // 2, corner[2])
@@ -71,7 +72,7 @@ def test_water_is_where_water_is(viewer):
 
 def test_backends_agree(viewer):
     """The outputs read in place on the device and those that came through host memory make the same picture."""
-    one, other = (viewer.picture(f"same_{b}", "dam_break", "--backend", b, "--start", 1, "--size", "240x135") for b in ("cpu", "vulkan"))
+    one, other = (viewer.picture(f"same_{b}", "dam_break", "--backend", b, "--start", 1, "--grid", "96x96", "--size", "192x108") for b in ("cpu", "vulkan"))
     mean, most = difference(one, other)
     print(f"backends: {mean:.3f}, {most:.3f}")
     assert mean < 1 and most < 12 # the outputs of one are interpolated in time, one step late
@@ -83,8 +84,8 @@ def test_views(viewer):
     reds = share(depth, lambda r, g, b: r > 120 and g < 110 and b < 100)
     print(f"view depth: {reds:.3f} of the picture in the highest colour")
     assert 0.05 < reds < 0.3
-    plain = viewer.picture("plain", "dam_break", "--backend", "cpu", "--camera", "top", "--size", "120x120", "--start", 2)
-    arrows = viewer.picture("arrows", "dam_break", "--backend", "cpu", "--camera", "top", "--size", "120x120", "--start", 2, "--arrows")
+    plain = viewer.picture("plain", "dam_break", "--backend", "cpu", "--camera", "top", "--size", "120x120", "--grid", "96x96", "--start", 2)
+    arrows = viewer.picture("arrows", "dam_break", "--backend", "cpu", "--camera", "top", "--size", "120x120", "--grid", "96x96", "--start", 2, "--arrows")
     changed = sum(1 for p, q in zip(pixels(plain), pixels(arrows)) if p != q)
     assert changed > 50, f"arrows change {changed} pixels"
 
