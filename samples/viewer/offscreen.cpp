@@ -26,8 +26,8 @@ int run_offscreen(const Options& options) {
         std::printf("level      %s, %d x %d cells of %g m, dt %g s\n", options.level_name.c_str(), simulation.info.nx,
                     simulation.info.ny, simulation.info.dx, simulation.info.dt);
         std::printf("simulated  %s: %s\n", simulation.info.backend, simulation.info.device_name);
-        std::printf("drawn      %s (queue family %u of %u), %u x %u, quality %s\n", gpu.name.c_str(),
-                    gpu.family, gpu.families, options.width, options.height, options.quality.c_str());
+        std::printf("drawn      %s (queue family %u of %u), %u x %u, quality %s\n", gpu.name.c_str(), gpu.family, gpu.families,
+                    options.width, options.height, options.quality.c_str());
 
         Picture picture;
         picture.camera = camera_preset(options.camera, simulation.grid.block,

@@ -111,6 +111,20 @@ def test_changes(session):
         assert read_png(out / "last.png")[:2] == (400, 240)
 
 
+def test_material(session):
+    """A number of the material counts at once and outlives a restart; an effect switched off and on again leaves other states."""
+    steps = lambda first: "".join(f"{n} step\n" for n in range(first, first + 6))
+    _, _, (plain, slippery, again, back, without), _ = session.run(
+        f"0 pause\n{steps(1)}8 print\n9 material friction 0.02\n9 restart\n{steps(10)}17 print\n18 restart\n{steps(19)}26 print\n"
+        f"27 material friction 0.5\n27 restart\n{steps(28)}35 print\n36 effect elastoplastic off\n36 restart\n{steps(37)}44 print\n45 effect elastoplastic on\n", 47)
+    assert plain["step"] == slippery["step"] == without["step"] == "6"
+    assert slippery["hash"] == again["hash"] and plain["hash"] == back["hash"]
+    assert len({plain["hash"], slippery["hash"], without["hash"]}) == 3
+    for script, says in (("0 material friction 99\n", "0 ... 10"), ("0 material fiction 1\n", "friction"), ("0 effect water off\n", "water")):
+        _, _, _, errors = session.run(script, 2, code=2)
+        assert says in errors, errors
+
+
 def test_panel(session):
     out, _, _, _ = session.run("1 section 10 48 80 48\n", 5, "--panel", size="800x450")
     _, _, rows = read_png(out / "last.png")
@@ -211,7 +225,7 @@ def main():
             if window:
                 tests = (test_painting, test_changes, test_minimised, test_real_input)
             else:
-                tests = (test_painting, test_tools, test_time, test_changes, test_panel, test_one_queue, test_refusals)
+                tests = (test_painting, test_tools, test_time, test_changes, test_material, test_panel, test_one_queue, test_refusals)
             chosen = [word for word in sys.argv[2:] if word != "--window"]
             for test in (test for test in tests if not chosen or test.__name__ in chosen):
                 start = time.time()
