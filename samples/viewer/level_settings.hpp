@@ -1,4 +1,5 @@
-// What of a level file can be changed from outside: effects, to start again with, and what its numbers mean, from level.schema.json.
+// What of a level file can be changed from outside: effects, to start again with, and what its numbers mean, from
+// level.schema.json.
 #pragma once
 #include <filesystem>
 #include <map>

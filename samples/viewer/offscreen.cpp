@@ -40,6 +40,7 @@ int run_offscreen(const Options& options) {
         picture.arrows = options.arrows;
 
         simulation.set_recording(true);
+        simulation.show(host_field_of(picture.view));
         const auto first_steps = static_cast<uint64_t>(std::llround(options.start / simulation.info.dt));
         for (uint64_t done = 0; done < first_steps; done += 256)
             simulation.step(static_cast<uint32_t>(std::min<uint64_t>(256, first_steps - done)));

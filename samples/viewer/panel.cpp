@@ -73,6 +73,7 @@ void Panel::simulation(Session& session) {
         SimulationChoice choice = session.choice();
         choice.level_file = levels[static_cast<std::size_t>(level)].file.string();
         choice.text.clear();
+        choice.variant.clear();
         choice.nx = choice.ny = 0;
         session.open(levels[static_cast<std::size_t>(level)].name, choice);
     }

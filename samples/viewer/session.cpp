@@ -159,6 +159,7 @@ void Session::advance(double seconds) {
     queue_edits(paused ? steps_due_ * simulation_->info.dt : simulated, seconds);
     if (paused && steps_due_ > 0) simulation_->step(steps_due_);
     steps_due_ = 0;
+    simulation_->show(host_field_of(picture.view));
     simulation_->update(static_cast<uint64_t>(simulated * 1e9));
     count_rates(seconds);
     follow_section();
@@ -178,6 +179,7 @@ void Session::count_rates(double seconds) {
 
 void Session::draw(const Submission& swapchain, const std::function<void(VkCommandBuffer)>& after) {
     picture.time = static_cast<float>(simulation_->frame.time + simulation_->frame.interpolation * simulation_->info.dt);
+    renderer.wait(); // the last picture reads what is filled now
     const Sources& outputs = simulation_->sources(recording_);
     Submission submission = simulation_->next_submission();
     submission.wait = swapchain.wait;
