@@ -26,7 +26,24 @@ every=()
 [[ $level == canyon ]] && every=(--every 6.5)
 phase "4/4 record $level" build/release/bin/wadi-recorder "$level" "${every[@]}" --out "out/$level"
 
+# Three moments in three dimensions, where the viewer can be built and a Vulkan device draws. What it says stays in a file.
+draw() {
+    cmake --build --preset release --target wadi-viewer || return 1
+    build/release/bin/wadi-viewer --list-gpus >/dev/null 2>&1 || return 1
+    samples/levels/gallery.py build/release/bin/wadi-viewer "$level" --moments 3 --quality low --size 640x360 --coarse 2 --backend cpu \
+        --out "out/$level/viewer"
+}
+pictures=
+if grep -q "WADI_HAS_VIEWER:INTERNAL=ON" build/release/CMakeCache.txt; then
+    phase "and with the viewer" draw && pictures="out/$level/viewer"
+fi
+
 echo
 echo "Ready in $SECONDS s. Look at"
 echo "  $root/out/$level/contact_sheet.png"
 echo "  $root/out/$level/frame_*.png"
+if [[ -n $pictures ]]; then
+    echo "  $root/$pictures/*.png (build/release/bin/wadi-viewer $level is a window)"
+else
+    echo "(no pictures in three dimensions: the configure report above says what the viewer lacks, or there is no Vulkan device)"
+fi

@@ -42,8 +42,10 @@ int run_offscreen(const Options& options) {
         simulation.set_recording(true);
         simulation.show(host_field_of(picture.view));
         const auto first_steps = static_cast<uint64_t>(std::llround(options.start / simulation.info.dt));
-        for (uint64_t done = 0; done < first_steps; done += 256)
-            simulation.step(static_cast<uint32_t>(std::min<uint64_t>(256, first_steps - done)));
+        for (uint64_t done = 0; done + 1 < first_steps; done += 256)
+            simulation.step(static_cast<uint32_t>(std::min<uint64_t>(256, first_steps - 1 - done)));
+        simulation.update(0); // what the last step changed shows in the view of active tiles
+        if (first_steps > 0) simulation.step(1);
         simulation.update(0);
         gpu.wait_idle();
 

@@ -164,9 +164,9 @@ void Simulation::show(HostField field) {
     if (tiles != had_tiles) choose_outputs();
 }
 
-void Simulation::fill_host_field() {
+void Simulation::fill_host_field(bool whole) {
     if (host_field_ == HostField::strain || host_field_ == HostField::stress) read_strain();
-    if (host_field_ == HostField::activity) read_activity();
+    if (host_field_ == HostField::activity) read_activity(whole);
 }
 
 // Of the left stretch V in the plane: the size of ln V, or that of the stress that material of these numbers answers with, in
@@ -198,19 +198,25 @@ void Simulation::read_strain() {
     }
 }
 
-// 1 in tiles whose surface changed in the newest publish, less the longer ago that was.
-void Simulation::read_activity() {
+// 1 in tiles whose surface changed in the newest publish.
+void Simulation::read_activity(bool whole) {
     uint32_t count = 0;
     uint64_t step = 0;
-    if (wadi_world_get_tiles(world, nullptr, &count, &step) == WADI_NOT_READY) return;
+    wadi_result result = WADI_NOT_READY;
+    for (;;) {
+        result = wadi_world_get_tiles(world, nullptr, &count, &step);
+        if (!whole || (result == WADI_OK && step == frame.published_step)) break;
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        update(0);
+    }
+    if (result == WADI_NOT_READY) return;
     std::vector<wadi_tile> tiles(count);
     check(wadi_world_get_tiles(world, tiles.data(), &count, &step), "tiles");
     auto* to = static_cast<float*>(host_field_buffer_.mapped);
     for (const wadi_tile& tile : tiles) {
-        const auto since = static_cast<float>(static_cast<int64_t>(step) - tile.changed_step);
+        const float active = static_cast<int64_t>(step) == tile.changed_step ? 1.0f : 0.0f;
         for (int j = tile.j; j < tile.j + tile.ny; ++j)
-            std::fill_n(to + static_cast<std::size_t>(j) * static_cast<std::size_t>(info.nx) + tile.i, tile.nx,
-                        std::exp2(-0.1f * since));
+            std::fill_n(to + static_cast<std::size_t>(j) * static_cast<std::size_t>(info.nx) + tile.i, tile.nx, active);
     }
 }
 
@@ -265,7 +271,7 @@ bool Simulation::stage() {
 }
 
 const Sources& Simulation::sources(bool whole) {
-    fill_host_field();
+    fill_host_field(whole);
     if (on_host_) {
         while (!stage() || (whole && staged_step_ != frame.total_steps)) {
             std::this_thread::sleep_for(std::chrono::milliseconds(1));

@@ -83,9 +83,9 @@ class Simulation {
 
     void choose_outputs();
     void make_buffers();
-    void fill_host_field();
+    void fill_host_field(bool whole);
     void read_strain();
-    void read_activity();
+    void read_activity(bool whole);
     bool stage();
 };
 
