@@ -158,7 +158,7 @@ template <class Real> class Solver {
     /// f(side, axis, far end) for the four sides.
     template <class F> void for_sides(F f);
     bool in_span(const Side& side, int b) const;
-    void leave(Faces<Real>& velocity, const Axis& axis, bool far_end, int b) const;
+    void leave(Faces<Real>& velocity, const Axis& axis, bool far_end, int b, Real fastest) const;
     void update_side(const Side& side, const Axis& axis, bool far_end);
     void level_face(const Axis& axis, int a, int b, Real level);
 

@@ -99,3 +99,13 @@ TEST_CASE("cells that are not square are refused by name") {
     CHECK(refusal(R"({"nx": 8, "ny": 8, "dx": 1, "dy": 2})").find("dy") != std::string::npos);
     CHECK(refusal(R"({"nx": 8, "ny": 8, "dx": [1, 2]})").find("dx") != std::string::npos);
 }
+
+TEST_CASE("a side lets water and sand out at the clamp's speed at most, whatever a source or the first velocities say") {
+    auto scene = flat_scene(12, 6, 0.25, 0.02);
+    scene.settings.sides[SIDE_WEST].kind = scene.settings.sides[SIDE_EAST].kind = SideKind::outflow;
+    scene.settings.method.substeps = 1;
+    scene.settings.sources = {{SourceShape::disc, SourceMaterial::water, {0.2, 0.8}, 0.6, {}, {{{0, 0.1}}}, true, {-80, 0}}};
+    scene.fill(scene.fields.sand, [](double, double) { return 0.3; });
+    scene.fill(scene.fields.sand_velocity_x, [](double, double) { return 50; });
+    on_every_backend(scene, [](World& world) { step(world, 1); }); // the books include the clamp
+}
