@@ -26,10 +26,8 @@ void choose_method(Method& method, const std::string& name) {
         chosen.strain_transport = StrainTransport::polar;
         chosen.drag_friction = DragFriction::sequence;
         chosen.diffusion = Diffusion::laplacian;
-        // The one guard that the paper names is the velocity clamp. It gives no number: below 1/4 no cell can lose more than
-        // it holds through its four faces, which keeps heights positive without a limiter.
-        chosen.velocity_clamp = 0.24;
-        chosen.outflow_limiter = false;
+        // The one guard that the paper names is the velocity clamp, without a number: it stays that of robust. So does the
+        // outflow limiter, without which the paper's mass claim does not hold.
         chosen.quantum = 0;
         chosen.gravity_cap = chosen.gravity_cap_least = chosen.sand_gravity_cap = chosen.elastic_cap = 0;
         chosen.rest_surface = chosen.rest_velocity = 0;

@@ -80,7 +80,7 @@ void read_sides(ObjectReader& reader, Layer& layer) {
         shape.side_slope = layer.top / radius;
         if (reader.find("side_slope") != nullptr) reader.fail("", "give only one of \"radius\" or \"side_slope\"");
     } else {
-        if (cone) reader.require(radius_allowed ? "radius" : "side_slope");
+        if (cone && reader.find("side_slope") == nullptr) reader.require(radius_allowed ? "radius" : "side_slope");
         reader.number("side_slope", shape.side_slope, SIDE_SLOPE_LEAST, SIDE_SLOPE_MOST);
     }
     if (has_sloping_sides(shape) && layer.amount == Amount::height && !(layer.top > 0))

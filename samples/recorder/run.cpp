@@ -41,7 +41,6 @@ class Recording {
     Failure prepare_folder();
     Failure record();
     Failure advance(std::uint64_t target);
-    Failure sync();
     Failure sample_frame(bool last);
     Failure write_dumps();
     Failure finish();
@@ -49,7 +48,7 @@ class Recording {
     const Options& options_;
     World world_;
     Report report_;
-    wadi_world_stats stats_ = {};
+    double time_ = 0; // simulated so far [s]
     double seconds_ = 0;
     std::uint64_t steps_ = 0, done_ = 0;
     std::vector<std::uint64_t> frame_steps_; // increasing, first 0, last steps_
@@ -113,45 +112,38 @@ Failure Recording::prepare_folder() {
     return {};
 }
 
-/// Waits for the steps asked for.
-Failure Recording::sync() { return world_.read_stats(stats_); }
-
 Failure Recording::advance(std::uint64_t target) {
     while (done_ < target && !interrupted()) {
         const std::uint32_t count = static_cast<std::uint32_t>(std::min<std::uint64_t>(chunk_, target - done_));
         const Clock::time_point start = Clock::now();
         if (Failure failure = world_.step(count)) return failure;
-        if (Failure failure = sync()) return failure;
-        const double elapsed = seconds_since(start);
-        // The first reading waits for the steps and then reduces the state; a second one only reduces. Their difference is
-        // the steps' own time.
-        const Clock::time_point again = Clock::now();
-        if (Failure failure = sync()) return failure;
-        const double own = std::max(elapsed - seconds_since(again), 0.0);
+        if (Failure failure = world_.wait(time_)) return failure;
+        const double own = seconds_since(start);
         report_.stepping_seconds += own;
         report_.timed_steps += count;
         done_ += count;
         const double fitting = own > 0 ? count * CHUNK_SECONDS / own : 8.0 * count;
         chunk_ = static_cast<std::uint32_t>(std::clamp(fitting, 1.0, 8.0 * std::max(count, chunk_ / 8)));
-        progress_->show(done_, stats_.time, report_.stepping_seconds);
+        progress_->show(done_, time_, report_.stepping_seconds);
     }
     return {};
 }
 
 Failure Recording::sample_frame(bool last) {
-    if (Failure failure = sync()) return failure;
-    report_.sample(stats_);
+    wadi_world_stats stats;
+    if (Failure failure = world_.read_stats(stats)) return failure;
+    report_.sample(stats);
     if (!options_.frames) return {};
     MapFields fields;
     if (Failure failure = world_.read_map(scaling_.reduce, fields)) return failure;
     if (!look_) look_ = choose_look(fields, options_.water_scale);
     const Image map = render_map(fields, *look_, scaling_);
-    const Image frame = compose_frame(map, *look_, caption_, stats_.time, metres_per_pixel_);
+    const Image frame = compose_frame(map, *look_, caption_, time_, metres_per_pixel_);
     char name[32];
     std::snprintf(name, sizeof name, "frame_%05d.png", report_.frames);
     if (std::string error = write_file(out_ / name, encode_png(frame)); !error.empty()) return {EXIT_BAD_INPUT, error};
     ++report_.frames;
-    sheet_->add(map, stats_.time, last);
+    sheet_->add(map, time_, last);
     return {};
 }
 
@@ -165,7 +157,7 @@ Failure Recording::write_dumps() {
         if (!error.empty()) return {EXIT_BAD_INPUT, error};
         char text[128];
         std::snprintf(text, sizeof text, "dump %s at t = %.9g s (step %llu, asked for %s s): ", dump.field_name.c_str(),
-                      stats_.time, static_cast<unsigned long long>(done_), dump.time_text.c_str());
+                      time_, static_cast<unsigned long long>(done_), dump.time_text.c_str());
         progress_->note(text + path.string());
     }
     return {};

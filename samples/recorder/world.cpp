@@ -50,6 +50,13 @@ Failure World::create(const Options& options) {
 
 Failure World::step(std::uint32_t steps) { return wadi_world_step(id_, steps) == WADI_OK ? Failure{} : fault("stepping"); }
 
+Failure World::wait(double& time) {
+    const wadi_region one_cell = {0, 0, 1, 1};
+    float value = 0;
+    if (wadi_world_read_region(id_, WADI_FIELD_TERRAIN, &one_cell, &value, 1) != WADI_OK) return fault("stepping");
+    return wadi_world_get_time(id_, &time, nullptr) == WADI_OK ? Failure{} : fault("reading the time");
+}
+
 Failure World::read_stats(wadi_world_stats& stats) {
     stats = wadi_default_world_stats();
     return wadi_world_get_stats(id_, &stats) == WADI_OK ? Failure{} : fault("reading the state's extremes");

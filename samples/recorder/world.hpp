@@ -22,6 +22,8 @@ class World {
 
     Failure step(std::uint32_t steps);
     /// Waits for all steps so far.
+    /// Waits for the steps asked for; the simulated time [s].
+    Failure wait(double& time);
     Failure read_stats(wadi_world_stats& stats);
     Failure read_field(wadi_field field, std::vector<float>& values);
     /// The four fields of a picture, reduced by `factor`.

@@ -1,6 +1,7 @@
 // Layer 4: what must hold in any scene after many steps.
 #include "engine/world_params.hpp"
 #include "tests/conformance/compare.hpp"
+#include "tests/conformance/half_turn.hpp"
 #include "tests/conformance/masks.hpp"
 #include "tests/conformance/symmetry.hpp"
 #include "tests/conformance/worlds.hpp"
@@ -75,6 +76,7 @@ std::vector<CaseSpec> list() {
     }
     for (const char* variant : {"same_again", "same_without_replay", "same_with_full_barriers", "same_interleaved"})
         add(variant, "33x17", ALL, "random", "default", 30);
+    for (const char* strain : {"polar", "direct", "left_stretch"}) cases.push_back({"half_turn", {{"strain", strain}}});
     return cases;
 }
 
@@ -251,6 +253,7 @@ Verdict run_same(const Scene& scene, World& world, Session& session, const std::
 }
 
 Verdict run(const CaseSpec& spec, Session& session) {
+    if (spec.name == "half_turn") return run_half_turn(spec, session);
     auto scene = scene_of(spec);
     if (!scene) return verdict_of(scene.status());
     auto world = open_world(session, *scene);

@@ -1,0 +1,64 @@
+"""Line charts as SVG text: linear or logarithmic axes, a legend beside the plot. No packages."""
+import math
+from xml.sax.saxutils import escape
+
+COLOURS = ("#222222", "#0b6fa4", "#c8501e", "#3a8a3a", "#7a4fa3", "#a38a1e", "#b03070", "#2a9d9d")
+WIDTH, HEIGHT, LEFT, TOP, BOTTOM, LEGEND = 520, 320, 74, 40, 52, 190
+
+
+def ticks(low, high, log):
+    """Places of grid lines that cover low ... high."""
+    if log:
+        first, last = math.floor(math.log10(low) + 1e-9), math.ceil(math.log10(high) - 1e-9)
+        return [10.0**power for power in range(first, max(last, first + 1) + 1)]
+    size = 10 ** math.floor(math.log10((high - low) or 1))
+    step = next(size * part for part in (0.1, 0.2, 0.5, 1, 2) if (high - low) / (size * part) <= 8)
+    return [n * step for n in range(math.floor(low / step + 1e-9), math.ceil(high / step - 1e-9) + 1)]
+
+
+class Axis:
+    def __init__(self, values, log, start, length, marks=None):
+        self.log, self.start, self.length = log, start, length
+        self.marks = marks or ticks(min(values), max(values), log)
+        self.low, self.high = self.position(min(self.marks[0], min(values))), self.position(max(self.marks[-1], max(values)))
+
+    def position(self, value):
+        return math.log10(value) if self.log else value
+
+    def at(self, value):
+        return self.start + self.length * (self.position(value) - self.low) / ((self.high - self.low) or 1)
+
+
+def line_chart(title, x_label, y_label, series, *, x_log=False, y_log=False, x_marks=None):
+    """series: [(name, [(x, y), ...], style)], style "line", "dash" or "points"; logarithmic axes want values above 0."""
+    xs = [x for _, points, _ in series for x, _ in points]
+    ys = [y for _, points, _ in series for _, y in points]
+    across = Axis(xs, x_log, LEFT, WIDTH, x_marks)
+    up = Axis(ys, y_log, TOP + HEIGHT, -HEIGHT)
+    out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{LEFT + WIDTH + LEGEND}" height="{TOP + HEIGHT + BOTTOM}" '
+           'font-family="sans-serif" font-size="12"><rect width="100%" height="100%" fill="white"/>',
+           f'<text x="{LEFT}" y="22" font-size="15" font-weight="bold">{escape(title)}</text>']
+    for mark in up.marks:
+        y = up.at(mark)
+        out.append(f'<line x1="{LEFT}" x2="{LEFT + WIDTH}" y1="{y:.1f}" y2="{y:.1f}" stroke="#dddddd"/>'
+                   f'<text x="{LEFT - 6}" y="{y + 4:.1f}" text-anchor="end">{mark:.6g}</text>')
+    for mark in across.marks:
+        x = across.at(mark)
+        out.append(f'<line x1="{x:.1f}" x2="{x:.1f}" y1="{TOP}" y2="{TOP + HEIGHT}" stroke="#eeeeee"/>'
+                   f'<text x="{x:.1f}" y="{TOP + HEIGHT + 16}" text-anchor="middle">{mark:.6g}</text>')
+    out.append(f'<text x="{LEFT + WIDTH / 2}" y="{TOP + HEIGHT + 38}" text-anchor="middle">{escape(x_label)}</text>')
+    out.append(f'<text transform="translate(16 {TOP + HEIGHT / 2}) rotate(-90)" text-anchor="middle">{escape(y_label)}</text>')
+    for n, (name, points, style) in enumerate(series):
+        colour = COLOURS[n % len(COLOURS)]
+        places = [(across.at(x), up.at(y)) for x, y in points]
+        if style != "points":
+            dash = ' stroke-dasharray="6 4"' if style == "dash" else ""
+            path = " ".join(f"{x:.1f},{y:.1f}" for x, y in places)
+            out.append(f'<polyline points="{path}" fill="none" stroke="{colour}" stroke-width="1.8"{dash}/>')
+        if style == "points" or len(points) < 12:
+            out += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3" fill="{colour}"><title>{escape(name)}: {px:.4g}, {py:.4g}</title></circle>'
+                    for (x, y), (px, py) in zip(places, points)]
+        line = TOP + 12 + 18 * n
+        out.append(f'<rect x="{LEFT + WIDTH + 12}" y="{line - 9}" width="14" height="4" fill="{colour}"/>'
+                   f'<text x="{LEFT + WIDTH + 32}" y="{line - 3}">{escape(name)}</text>')
+    return "\n".join([*out, "</svg>", ""])

@@ -1,0 +1,87 @@
+"""Runs of the recorder: of shipped levels, or of levels made in a script, by method preset or with single choices changed."""
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+LEVELS = ROOT / "samples" / "levels"
+sys.path.insert(0, str(ROOT / "tests" / "levels"))
+import measures  # noqa: E402  fields of a recording and numbers taken from them
+
+
+class Failed(Exception):
+    """The recorder refused or broke off; the text is what it said."""
+
+
+class Recorder:
+    """One recorder program on one backend. Recordings live until the object is closed."""
+
+    def __init__(self, program, backend="cpu"):
+        self.program, self.backend = str(pathlib.Path(program).resolve()), backend
+        self.scratch = tempfile.TemporaryDirectory()
+        self.count = 0
+
+    def close(self):
+        self.scratch.cleanup()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def record(self, level, *, method=None, variant=None, size=None, dt=None, seconds=None, times=(), fields=("H", "hs", "W", "surface"),
+               pictures=0, profile=False, benchmark=False):
+        """level: a shipped level's name, or a level as a dict. times [s]: when `fields` are kept. pictures: how many on the contact
+        sheet. benchmark: figures of the state are taken at the end only. Returns (measures.Run, the recorder's summary)."""
+        self.count += 1
+        folder = pathlib.Path(self.scratch.name) / f"{self.count:04d}"
+        folder.mkdir()
+        if isinstance(level, dict):
+            where = folder / "level.json"
+            where.write_text(json.dumps(level))
+        else:
+            where = LEVELS / level
+        command = [self.program, str(where), "--backend", self.backend, "--out", str(folder), "--summary", str(folder / "summary.json")]
+        for key, value in (("method", method), ("variant", variant), ("dt", dt), ("seconds", seconds)):
+            if value is not None:
+                command += [f"--{key}", str(value)]
+        if size is not None:
+            command += ["--size", "{}x{}".format(*size)]
+        if times:
+            command += ["--dump", ",".join(fields) + "@" + ",".join(f"{time:g}" for time in times)]
+        if pictures:
+            command += ["--every", str(seconds / (pictures - 1))]
+        else:
+            command += ["--no-frames", *(["--every", str(seconds)] if benchmark else [])]
+        command += ["--profile"] if profile else []
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            raise Failed(f"{' '.join(command)}\n{done.stdout}{done.stderr}")
+        summary = json.loads((folder / "summary.json").read_text())
+        grid = summary["grid"]
+        return measures.Run(folder, grid["nx"], grid["ny"], grid["dx"], [float(f"{time:g}") for time in times]), summary
+
+
+def read_level(name):
+    """A shipped level as a dict, its // and /* */ comments left out (no string of a level contains them); its maps' paths are
+    absolute, so that it can be written elsewhere."""
+    folder = LEVELS / name
+    text = re.sub(r'("(?:\\.|[^"\\])*")|//[^\n]*|/\*.*?\*/', lambda m: m[1] or "", (folder / "level.json").read_text(), flags=re.S)
+
+    def absolute(value):
+        if isinstance(value, dict):
+            return {key: str(folder / inner) if key == "file" else absolute(inner) for key, inner in value.items()}
+        return [absolute(inner) for inner in value] if isinstance(value, list) else value
+
+    level = absolute(json.loads(text))
+    level.pop("$schema", None)
+    return level
+
+
+def choose(level, **choices):
+    """The level with these keys of `method` changed."""
+    return {**level, "method": {**level.get("method", {}), **choices}}

@@ -1,0 +1,196 @@
+#!/usr/bin/env python3
+"""The paper's tables from our own runs: time per stage and step of its six scenes (Table 2), time and memory by grid size (its supplement's
+Figure 4), and what several sand steps per water step save and cost (its supplement's section 2). Writes CSVs, charts and the generated
+part of samples/report/timings/README.md.
+
+usage: samples/report/timings.py BIN_FOLDER [--backends cuda,vulkan,cpu] [--largest 4096] [--steps 200] [--out DIR]
+"""
+import argparse
+import csv
+import math
+import pathlib
+import sys
+
+import charts
+import recordings
+from side_by_side import METHODS, number, table
+
+SCENES = {  # the paper's grids; its time steps do not fit our extents
+    "castle": (1024, 512), "spring": (1024, 1024), "dam_break": (512, 512), "seepage": (1024, 512), "flush": (1024, 1024), "canyon": (800, 1024)}
+PAPER = {  # Table 2: percent per row, then ms per step on the authors' GPU
+    "castle": (1.2, 1.1, 3.8, 6.2, 40.5, 5.7, 6.1, 2.1, 33.5, 0.73), "spring": (1.7, 1.1, 4.0, 4.8, 44.5, 5.4, 8.4, 1.8, 28.2, 2.16),
+    "dam_break": (1.4, 2.0, 3.0, 6.7, 44.1, 8.9, 6.7, 2.8, 24.6, 0.46), "seepage": (0.9, 1.0, 2.8, 6.2, 40.5, 6.0, 7.4, 2.1, 33.1, 3.54),
+    "flush": (1.3, 0.9, 4.0, 5.2, 45.5, 5.7, 6.7, 1.9, 28.6, 2.04), "canyon": (0.8, 0.9, 3.0, 4.8, 38.4, 5.2, 6.2, 1.8, 38.9, 0.61)}
+ROWS = {  # the paper's rows and the stages that do their work
+    "diffuse and integrate water": ("diffuse_mixed_water", "diffuse_mixed_velocity", "limit_water_outflow", "compute_water_flux",
+                                    "integrate_water_height"),
+    "integrate water velocity": ("integrate_water_velocity", "backtrace_water_velocity"),
+    "integrate sand height": ("limit_sand_outflow", "compute_sand_flux", "integrate_sand_height", "compute_bed_load"),
+    "integrate sand velocity": ("integrate_sand_velocity", "backtrace_sand_velocity"),
+    "project deformation gradient": ("project_deformation_gradient",),
+    "evolve deformation gradient": ("evolve_deformation_gradient", "advect_deformation_gradient", "stretch_deformation_gradient"),
+    "compute momentum exchange": ("compute_momentum_exchange", "apply_drag"),
+    "apply frictional force": ("apply_friction",),
+    "update boundary conditions": ("update_water_boundary_types", "update_sand_boundary_types", "extrapolate_velocity", "open_sides",
+                                   "open_sand_sides")}
+REST = "saturation, sources, ledger"  # no row of the paper's
+ASYNC = {"level": "spring", "size": (128, 128), "seconds": 4, "sand_step": 0.004, "ratios": (1, 2, 3, 4, 6), "baseline": 5e-4}
+BEGIN, END = "<!-- timings.py writes from here -->\n", "<!-- to here -->\n"
+
+
+def shares(summary):
+    """Percent of the stages' time by the paper's rows."""
+    stages = {stage["name"]: stage["ms"] for stage in summary["stages"]}
+    total = math.fsum(stages.values())
+    result = {row: 100 * math.fsum(stages.pop(name, 0) for name in names) / total for row, names in ROWS.items()}
+    return {**result, REST: 100 * math.fsum(stages.values()) / total}
+
+
+def steps_seconds(level, size, steps):
+    """What `steps` steps of the level at this size last [s]: dt follows the cells' size (samples/levels/README.md, Another size)."""
+    own = recordings.read_level(level)
+    return steps * own["dt"] * own["grid"]["nx"] / size[0]
+
+
+def table_two(recorders, steps):
+    """[(backend, method, level, shares, ms per step, device)]"""
+    rows = []
+    for backend, recorder in recorders.items():
+        for level, size in SCENES.items():
+            for method in METHODS:
+                count = steps if backend != "cpu" else max(5, steps // 20)
+                seconds = steps_seconds(level, size, count)
+                _, timed = recorder.record(level, size=size, method=method, seconds=seconds, benchmark=True)
+                _, profiled = recorder.record(level, size=size, method=method, seconds=seconds, profile=True, benchmark=True)
+                rows.append((backend, method, level, shares(profiled), timed["ms_per_step"], timed["device"]["name"]))
+                print(f"table 2: {backend} {level} {method}: {timed['ms_per_step']:.3f} ms per step", flush=True)
+    return rows
+
+
+def scaling(recorders, largest, steps):
+    """[(backend, method, n, ms per step, device bytes)] of dam_break on n x n cells."""
+    rows = []
+    for backend, recorder in recorders.items():
+        n = 128
+        while n <= largest:
+            for method in METHODS:
+                count = max(5, min(steps, steps // 20 * 1024 * 1024 // (n * n))) if backend == "cpu" else max(steps // 4, min(steps, steps * 2**20 // (n * n)))
+                seconds = steps_seconds("dam_break", (n, n), count)
+                _, summary = recorder.record("dam_break", size=(n, n), method=method, seconds=seconds, benchmark=True)
+                rows.append((backend, method, n, summary["ms_per_step"], summary["device_bytes"]))
+                print(f"scaling: {backend} {n} {method}: {summary['ms_per_step']:.3f} ms per step", flush=True)
+            n *= 2
+    return rows
+
+
+def mean_error(run, baseline, name, time):
+    """Mean absolute difference of a surface, in percent of the range over which the baseline moved it."""
+    now, then, start = run.field(name, time), baseline.field(name, time), baseline.field(name, 0)
+    moved = [b - a for a, b in zip(start, then)]
+    return 100 * math.fsum(abs(a - b) for a, b in zip(now, then)) / len(then) / (max(moved) - min(moved))
+
+
+def asynchronous(recorder, method):
+    """[(what is fixed, T, water step, sand step, MAE of sand, MAE of water, ms per simulated second)], the baseline's own error last."""
+    level = recordings.read_level(ASYNC["level"])
+    end = ASYNC["seconds"]
+
+    def run(dt, ratio):
+        made = recordings.choose(level, substeps=ratio)
+        return recorder.record(made, method=None if method == "robust" else method, size=ASYNC["size"], dt=dt, seconds=end, times=(0, end),
+                               fields=("hs", "surface"))
+
+    baseline, _ = run(ASYNC["baseline"], 1)
+    rows = []
+    for fixed in ("sand step", "water step"):
+        for ratio in ASYNC["ratios"]:
+            dt = ASYNC["sand_step"] * (ratio if fixed == "sand step" else 1)
+            recorded, summary = run(dt, ratio)
+            rows.append((fixed, ratio, dt, dt / ratio, mean_error(recorded, baseline, "hs", end), mean_error(recorded, baseline, "surface", end),
+                         1000 * summary["stepping_seconds"] / summary["simulated_seconds"]))
+            print(f"asynchronous: {method} {fixed} fixed, T = {ratio}: {rows[-1][4]:.2f} % sand, {rows[-1][5]:.2f} % water", flush=True)
+    coarser, summary = run(2 * ASYNC["baseline"], 1)
+    rows.append(("baseline at twice its step", 1, 2 * ASYNC["baseline"], 2 * ASYNC["baseline"], mean_error(coarser, baseline, "hs", end),
+                 mean_error(coarser, baseline, "surface", end), 1000 * summary["stepping_seconds"] / summary["simulated_seconds"]))
+    return rows
+
+
+def write_csv(path, head, rows):
+    with path.open("w", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(head)
+        writer.writerows(rows)
+
+
+def two_text(rows, out):
+    names = [*ROWS, REST]
+    write_csv(out / "table_2.csv", ["backend", "method", "level", *names, "ms_per_step", "device"],
+              [[b, m, level, *(f"{part[name]:.2f}" for name in names), f"{ms:.4f}", device] for b, m, level, part, ms, device in rows])
+    lines = ["## Table 2: share of each part of a step, time per step", ""]
+    lines += ["### paper", "", *table(["part [%]", *SCENES], [[name, *(f"{PAPER[level][n]:g}" for level in SCENES)] for n, name in enumerate(ROWS)]
+                                      + [["ms per step", *(f"{PAPER[level][-1]:g}" for level in SCENES)]]), ""]
+    for backend in dict.fromkeys(row[0] for row in rows):
+        for method in METHODS:
+            mine = {row[2]: row for row in rows if row[:2] == (backend, method)}
+            body = [[name, *(f"{mine[level][3][name]:.1f}" for level in SCENES)] for name in names]
+            body.append(["**ms per step**", *(f"**{number(mine[level][4])}**" for level in SCENES)])
+            lines += [f"### {method}, {backend}: {mine['castle'][5]}", "", *table(["part [%]", *SCENES], body), ""]
+    return lines
+
+
+def scaling_text(rows, out):
+    write_csv(out / "scaling.csv", ["backend", "method", "n", "ms_per_step", "device_bytes"], rows)
+    sizes = sorted({row[2] for row in rows})
+    series = [(f"{method}, {backend}", [(n, ms) for b, m, n, ms, _ in rows if (b, m) == (backend, method)], "line" if method == "robust" else "dash")
+              for backend in dict.fromkeys(row[0] for row in rows) for method in METHODS]
+    (out / "time.svg").write_text(charts.line_chart("Dam break: time per step", "cells along a side", "ms", series, x_log=True, y_log=True, x_marks=sizes))
+    first = rows[0][0]  # memory is the same on every backend
+    memory = [(method, [(n, size / 2**20) for b, m, n, _, size in rows if (b, m) == (first, method)], "line") for method in METHODS]
+    (out / "memory.svg").write_text(charts.line_chart("Dam break: memory of the world", "cells along a side", "MiB", memory, x_log=True, y_log=True, x_marks=sizes))
+    body = [[f"{n}²", *(next((f"{number(ms)} ms, {number(size / 2**20)} MiB" for b, m, k, ms, size in rows if (b, m, k) == (backend, method, n)), "")
+                        for backend in dict.fromkeys(row[0] for row in rows) for method in METHODS)] for n in sizes]
+    head = ["grid", *(f"{method}, {backend}" for backend in dict.fromkeys(row[0] for row in rows) for method in METHODS)]
+    return ["## Time and memory by grid size", "", "`dam_break`, T = 3.", "", *table(head, body), "", "![time](time.svg)", "", "![memory](memory.svg)", ""]
+
+
+def async_text(by_method, out):
+    head = ["method", "fixed", "T", "water_step_s", "sand_step_s", "mae_sand_percent", "mae_water_percent", "ms_per_second"]
+    write_csv(out / "asynchronous.csv", head, [[method, *row] for method, rows in by_method.items() for row in rows])
+    lines = ["## Several sand steps per water step", "",
+             f"`{ASYNC['level']}` on {ASYNC['size'][0]} x {ASYNC['size'][1]} cells, {ASYNC['seconds']} s. Mean absolute error against the same method at T = 1 with a step of "
+             f"{ASYNC['baseline']:g} s, in percent of the range over which the surface moved; time per simulated second, and what it saves against T = 1.", ""]
+    for method, rows in by_method.items():
+        first = {row[0]: row[6] for row in reversed(rows)}
+        lines += [f"### {method}", "", *table(["fixed", "T", "water step [s]", "sand step [s]", "sand [%]", "water surface [%]", "ms per second", "saved [%]"],
+                                              [[row[0], str(row[1]), f"{row[2]:.3g}", f"{row[3]:.3g}", f"{row[4]:.2f}", f"{row[5]:.2f}", number(row[6]),
+                                                f"{100 * (1 - row[6] / first[row[0]]):.0f}"] for row in rows]), ""]
+    return lines
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("programs", type=pathlib.Path)
+    parser.add_argument("--backends", default="cpu")
+    parser.add_argument("--largest", type=int, default=4096)
+    parser.add_argument("--steps", type=int, default=200, help="of the timed runs on GPUs; a twentieth on the CPU")
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent / "timings")
+    options = parser.parse_args()
+    options.out.mkdir(parents=True, exist_ok=True)
+    recorders = {backend: recordings.Recorder(options.programs / "wadi-recorder", backend) for backend in options.backends.split(",")}
+    try:
+        lines = two_text(table_two(recorders, options.steps), options.out)
+        lines += scaling_text(scaling(recorders, options.largest, options.steps), options.out)
+        first = next(iter(recorders.values()))
+        lines += async_text({method: asynchronous(first, method) for method in METHODS}, options.out)
+    finally:
+        for recorder in recorders.values():
+            recorder.close()
+    page = options.out / "README.md"
+    text = page.read_text() if page.exists() else f"# Timings\n\n{BEGIN}{END}"
+    start, end = text.index(BEGIN) + len(BEGIN), text.index(END)
+    page.write_text(text[:start] + "\n".join(lines) + text[end:])
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
