@@ -61,7 +61,7 @@ World& small_world() {
 /// The sum is mended, so that what lies behind it is reached.
 std::vector<std::byte> resealed(const Bytes& bytes) {
     std::vector<std::byte> copy(bytes.size());
-    std::memcpy(copy.data(), bytes.data(), bytes.size());
+    if (!bytes.empty()) std::memcpy(copy.data(), bytes.data(), bytes.size());
     if (copy.size() < sealed_header_bytes) return copy;
     std::size_t at = 16;
     put(std::span<std::byte>(copy), at, std::uint64_t{copy.size()});
