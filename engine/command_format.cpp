@@ -47,7 +47,8 @@ class Reader {
         return get<T>(bytes_, at_ - sizeof(T));
     }
     std::vector<float> floats(std::int64_t count) {
-        if (count < 0 || !has(static_cast<std::uint64_t>(count), sizeof(float))) return {};
+        if (count <= 0 || !has(static_cast<std::uint64_t>(count), sizeof(float)))
+            return {}; // memcpy takes no null, whatever the size
         std::vector<float> values(static_cast<std::size_t>(count));
         std::memcpy(values.data(), bytes_.data() + at_, values.size() * sizeof(float));
         at_ += values.size() * sizeof(float);
