@@ -1,6 +1,7 @@
 #include "engine/regions.hpp"
 #include "engine/ledger.hpp"
 #include "engine/level/text.hpp"
+#include "engine/quanta.hpp"
 #include "engine/world_params.hpp"
 #include <algorithm>
 #include <cmath>
@@ -147,8 +148,9 @@ Status write_region(WorldState& state, Stepper& stepper, EditLayer layer, const 
                 rounded[static_cast<std::size_t>(b) * static_cast<std::size_t>(region.nx) + static_cast<std::size_t>(a)];
             const float held = written.at(i, j);
             const std::int64_t change =
-                std::llrint(static_cast<double>(value) / quantum) - std::llrint(static_cast<double>(held) / quantum);
-            (change > 0 ? in : out) += std::abs(change);
+                add_quanta(to_quanta(static_cast<double>(value), quantum), -to_quanta(static_cast<double>(held), quantum));
+            auto& moved = change > 0 ? in : out;
+            moved = add_quanta(moved, std::abs(change));
             if (sand && value > held) {
                 for (Rows* rows : {&bands.xx, &bands.xy, &bands.yy, &bands.turn}) {
                     const float stretch = rows->at(i, j) * (held / value);

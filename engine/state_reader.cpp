@@ -1,4 +1,5 @@
 #include "engine/state_reader.hpp"
+#include "engine/quanta.hpp"
 #include "engine/world_params.hpp"
 #include <algorithm>
 #include <bit>
@@ -137,7 +138,8 @@ Result<WorldStats> StateReader::stats() {
             if (!std::isfinite(value)) {
                 ++s.not_finite;
             } else if (height) {
-                (sand ? s.sand_quanta : s.water_quanta) += std::llrint(x / quantum);
+                auto& sum = sand ? s.sand_quanta : s.water_quanta;
+                sum = add_quanta(sum, to_quanta(x, quantum));
                 auto& largest = sand ? s.largest_sand : s.largest_water;
                 largest = std::max(largest, x);
                 s.smallest_height = std::min(s.smallest_height, x);

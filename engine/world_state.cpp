@@ -1,4 +1,5 @@
 #include "engine/world_state.hpp"
+#include "engine/quanta.hpp"
 #include "engine/snapshot_format.hpp"
 #include "engine/step_inputs.hpp"
 #include "engine/world_params.hpp"
@@ -46,7 +47,7 @@ void round_heights(std::vector<float>& heights, double quantum) {
 
 std::int64_t count_quanta(const std::vector<float>& heights, double quantum) {
     std::int64_t sum = 0;
-    for (const float h : heights) sum += std::llrint(static_cast<double>(h) / quantum);
+    for (const float h : heights) sum = add_quanta(sum, to_quanta(static_cast<double>(h), quantum));
     return sum;
 }
 

@@ -1,4 +1,5 @@
 // Stepping, and reading the state.
+#include "engine/quanta.hpp"
 #include "plugin/abi.hpp"
 
 using namespace wadi;
@@ -68,6 +69,9 @@ wadi_result wadi_world_get_stats(wadi_world_id id, wadi_world_stats* stats) {
         if (!now) return report(now.status());
         const double dx = world.settings().grid.dx, volume = now->quantum * dx * dx;
         const auto cubic_metres = [&](std::int64_t quanta) { return static_cast<double>(quanta) * volume; };
+        const auto drift = [](std::int64_t held, std::int64_t initial, std::int64_t in, std::int64_t out) {
+            return add_quanta(held, -add_quanta(add_quanta(initial, in), -out));
+        };
         const auto& ledger = now->ledger;
         *stats = sized<wadi_world_stats>();
         stats->time = world.time();
@@ -81,8 +85,8 @@ wadi_result wadi_world_get_stats(wadi_world_id id, wadi_world_stats* stats) {
         stats->water_in = cubic_metres(ledger.water_in);
         stats->water_out = cubic_metres(ledger.water_out);
         stats->refused = cubic_metres(ledger.refused);
-        stats->sand_drift_quanta = now->sand_quanta - (now->sand_initial + ledger.sand_in - ledger.sand_out);
-        stats->water_drift_quanta = now->water_quanta - (now->water_initial + ledger.water_in - ledger.water_out);
+        stats->sand_drift_quanta = drift(now->sand_quanta, now->sand_initial, ledger.sand_in, ledger.sand_out);
+        stats->water_drift_quanta = drift(now->water_quanta, now->water_initial, ledger.water_in, ledger.water_out);
         stats->quantum = now->quantum;
         stats->largest_sand = now->largest_sand;
         stats->largest_water = now->largest_water;

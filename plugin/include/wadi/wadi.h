@@ -205,7 +205,7 @@ typedef struct wadi_world_stats {
     double sand_in, sand_out;     /* [m3] by sources, sinks, rain, evaporation and sides since creation */
     double water_in, water_out;
     double refused;               /* [m3] of sources and rain that found no room below the declared largest height */
-    int64_t sand_drift_quanta;    /* now - (initial + in - out) in quanta of height x cell area; 0 = exact */
+    int64_t sand_drift_quanta;    /* now - (initial + in - out) in quanta of height x cell area; 0 = exact; sums stop at 2^60 */
     int64_t water_drift_quanta;
     double quantum;               /* [m] */
     double largest_sand;          /* [m] */
