@@ -14,6 +14,41 @@ FN float advect_velocity(float u, float u_west, float u_east, float u_south, flo
     return height > dry ? moved : u;
 }
 
+// Monotonized central slope (van Leer 1977) of a value between its neighbours.
+FN float central_slope(float low, float mid, float high) {
+    float a = mid - low;
+    float b = high - mid;
+    return minmod(2.0f * minmod(a, b), 0.5f * (a + b));
+}
+
+// Velocities of the faces up to two away from one, of its own direction; beyond the grid the last one is repeated.
+struct NearFaces {
+    float ww, w, e, ee, ss, s, n, nn;
+};
+
+// What a flux between two control volumes carries, less u, per axis: u's neighbours are low and high, theirs far_low and far_high; the
+// fluxes come in from low and leave to high (NUMERICS 2.16).
+FN float second_order_gain(float u, float far_low, float low, float high, float far_high, float flux_low, float flux_high, float inv_height) {
+    float own = central_slope(low, u, high);
+    float share_low = 0.5f * (1.0f - wmin(wabs(flux_low) * inv_height, 1.0f));
+    float share_high = 0.5f * (1.0f - wmin(wabs(flux_high) * inv_height, 1.0f));
+    float from_low = flux_low > 0.0f ? (low - u) + share_low * central_slope(far_low, low, u) : -share_low * own;
+    float from_high = flux_high < 0.0f ? (high - u) - share_high * central_slope(u, high, far_high) : share_high * own;
+    return flux_low * from_low - flux_high * from_high;
+}
+
+// advect_velocity with limited slopes; kept between the five velocities, so no new extremum at any time step.
+FN float advect_velocity_second_order(float u, NearFaces near, float flux_west, float flux_east, float flux_south, float flux_north, float height,
+                                      float dry) {
+    float inv_height = divide_or_zero(1.0f, height);
+    float along = second_order_gain(u, near.ww, near.w, near.e, near.ee, flux_west, flux_east, inv_height);
+    float across = second_order_gain(u, near.ss, near.s, near.n, near.nn, flux_south, flux_north, inv_height);
+    float moved = u + (along + across) * inv_height;
+    float least = wmin(u, wmin(wmin(near.w, near.e), wmin(near.s, near.n)));
+    float most = wmax(u, wmax(wmax(near.w, near.e), wmax(near.s, near.n)));
+    return height > dry ? wclamp(moved, least, most) : u;
+}
+
 // Viscous flux of a cell that is compressed along one axis (NUMERICS 2.3, after von Neumann and Richtmyer 1950), 0 elsewhere: growth
 // is the difference of its two face velocities. 0.12 keeps the explicit step stable at a step of the depth.
 FN float shock_flux(float growth, float height, float viscosity) {
