@@ -9,22 +9,39 @@ FN float upwind_flux(float velocity, float height_low, float height_high, float 
     return k * (wmax(velocity, 0.0f) * height_low + wmin(velocity, 0.0f) * height_high);
 }
 
-// The same by the depth that the donor's limited slope gives half a cell and half a step downstream (NUMERICS 2.16). The slope
-// is the least of depth and free surface over both of the donor's faces; none beside dry cells. far_*: the cells behind.
-FN float second_order_flux(float velocity, float far_low, float low, float high, float far_high, float surface_far_low, float surface_low,
-                           float surface_high, float surface_far_high, float k, float dry) {
-    bool east = velocity > 0.0f;
-    float behind = east ? far_low : far_high;
-    float donor = east ? low : high;
-    float ahead = east ? high : low;
-    float surface_behind = east ? surface_far_low : surface_far_high;
-    float surface_donor = east ? surface_low : surface_high;
-    float surface_ahead = east ? surface_high : surface_low;
-    float rise = minmod(minmod(donor - behind, surface_donor - surface_behind), minmod(ahead - donor, surface_ahead - surface_donor));
-    float share = 0.5f * (1.0f - wmin(k * wabs(velocity), 1.0f));
-    bool wet = both(both(behind > dry, ahead > dry), donor > dry);
-    float depth = wet ? donor + share * rise : donor;
-    return k * (velocity * depth);
+// Depth and free surface of one layer in a cell.
+struct Column {
+    float depth, surface;
+};
+
+// Half-time profile of a layer in a cell along one axis: its limited slope up the axis, and k times the growth of the velocity over it,
+// by which it thins; both 0 beside dry cells. A factor chooses: g++ would sink loads behind a condition.
+struct Profile {
+    float depth, slope, growth;
+};
+
+FN float column_rise(Column low, Column high) { return minmod(high.depth - low.depth, high.surface - low.surface); }
+
+FN Profile profile(Column low, Column mid, Column high, float velocity_low, float velocity_high, float k, float dry) {
+    float wet = wmin(wmin(low.depth, high.depth), mid.depth) > dry ? 1.0f : 0.0f;
+    Profile p;
+    p.depth = mid.depth;
+    p.slope = wet * minmod(column_rise(low, mid), column_rise(mid, high));
+    p.growth = wet * wclamp(k * (velocity_high - velocity_low), -1.0f, 1.0f);
+    return p;
+}
+
+// The depth at the face that lies half a cell downstream; slope is counted downstream, courant = k times the face's speed.
+FN float face_depth(float depth, float slope, float growth, float courant) {
+    return depth + (0.5f * (1.0f - wmin(courant, 1.0f)) * slope - 0.5f * growth * depth);
+}
+
+// upwind_flux by these depths (NUMERICS 2.16), in its two parts: what leaves a donor up the axis, and down the axis.
+FN float flux_up(float velocity, Profile donor, float k) {
+    return k * (wmax(velocity, 0.0f) * face_depth(donor.depth, donor.slope, donor.growth, k * wabs(velocity)));
+}
+FN float flux_down(float velocity, Profile donor, float k) {
+    return k * (wmin(velocity, 0.0f) * face_depth(donor.depth, -donor.slope, donor.growth, k * wabs(velocity)));
 }
 
 // What leaves a cell through its four faces; west and south fluxes leave where negative.

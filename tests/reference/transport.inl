@@ -37,7 +37,10 @@ template <class Real> Real Solver<Real>::face_depth(Layer layer, const Axis& ax,
         return minmod(to.depth - from.depth, to.surface - from.surface);
     };
     const Real courant = std::min(Real(1), P.k * std::abs(u));
-    return own.depth + (Real(1) - courant) / Real(2) * minmod(rise(before, own), rise(own, after));
+    const Field<Real>& velocity = (layer == Layer::pure ? pure_velocity : mixed_velocity).along(ax);
+    const Real growth = velocity[ax.face(donor + 1, b)] - velocity[ax.face(donor, b)];
+    const Real thinned = own.depth * std::clamp(P.k * growth, Real(-1), Real(1));
+    return own.depth + ((Real(1) - courant) * minmod(rise(before, own), rise(own, after)) - thinned) / Real(2);
 }
 
 /// Raw upwind flux q [m2/s] of a layer, diffusion included. Outside an open side only the pure layer has depth.
