@@ -1,4 +1,4 @@
-// A command log as bytes. Little-endian, version 1, behind the header of sealed_bytes.hpp:
+// A command log as bytes. Little-endian, version 2, behind the header of sealed_bytes.hpp:
 //     12  u32      number of stamps
 //     32  u64      digest of the level's settings
 //     40  u64      number of commands
@@ -6,7 +6,9 @@
 //      .  per command: u32 kind, u32 layer, u64 step, then
 //         edit:   u32 kind, capsule, stamp, 0; f64 x0, y0, x1, y1, radius, softness, amount, strength, velocity x, y
 //         region: i32 i0, j0, nx, ny; f32 values
+//         material: u32 index of material_keys(), 0; f64 value
 #include "engine/command_log.hpp"
+#include "engine/material_keys.hpp"
 #include "engine/sealed_bytes.hpp"
 
 namespace wadi {
@@ -14,9 +16,9 @@ namespace wadi {
 namespace {
 
 constexpr char magic[] = "WADICMDS";
-constexpr std::uint32_t version = 1;
+constexpr std::uint32_t version = 2;
 constexpr std::size_t stamps_at = 12, lists_at = 48;
-enum class Kind : std::uint32_t { edit, region, trim };
+enum class Kind : std::uint32_t { edit, region, trim, material };
 
 constexpr double Edit::*numbers[] = {&Edit::x0,       &Edit::y0,     &Edit::x1,       &Edit::y1,         &Edit::radius,
                                      &Edit::softness, &Edit::amount, &Edit::strength, &Edit::velocity_x, &Edit::velocity_y};
@@ -45,7 +47,8 @@ class Reader {
         return get<T>(bytes_, at_ - sizeof(T));
     }
     std::vector<float> floats(std::int64_t count) {
-        if (count < 0 || !has(static_cast<std::uint64_t>(count), sizeof(float))) return {};
+        if (count <= 0 || !has(static_cast<std::uint64_t>(count), sizeof(float)))
+            return {}; // memcpy takes no null, whatever the size
         std::vector<float> values(static_cast<std::size_t>(count));
         std::memcpy(values.data(), bytes_.data() + at_, values.size() * sizeof(float));
         at_ += values.size() * sizeof(float);
@@ -87,6 +90,13 @@ void write(Writer& to, const RegionWrite& region) {
 
 void write(Writer& to, const Trim& trim) { write(to, Kind::trim, EditLayer::terrain, trim.step); }
 
+void write(Writer& to, const MaterialChange& change) {
+    write(to, Kind::material, EditLayer::terrain, change.step);
+    to.add(static_cast<std::uint32_t>(change.key));
+    to.add(std::uint32_t{0});
+    to.add(change.value);
+}
+
 Edit read_edit(Reader& from, EditLayer layer, std::uint64_t step) {
     Edit edit;
     edit.layer = layer;
@@ -104,6 +114,14 @@ RegionWrite read_region(Reader& from, EditLayer layer, std::uint64_t step) {
     for (int* n : {&write.region.i0, &write.region.j0, &write.region.nx, &write.region.ny}) *n = from.next<std::int32_t>();
     write.values = from.floats(std::int64_t{write.region.nx} * write.region.ny);
     return write;
+}
+
+MaterialChange read_material(Reader& from, std::uint64_t step) {
+    MaterialChange change{step, 0, 0};
+    change.key = static_cast<int>(from.next<std::uint32_t>() % material_keys().size());
+    from.next<std::uint32_t>();
+    change.value = from.next<double>();
+    return change;
 }
 
 } // namespace
@@ -149,6 +167,8 @@ Result<CommandList> read_commands(std::span<const std::byte> bytes) {
             list.commands.emplace_back(read_edit(from, layer, step));
         } else if (kind == Kind::region) {
             list.commands.emplace_back(read_region(from, layer, step));
+        } else if (kind == Kind::material) {
+            list.commands.emplace_back(read_material(from, step));
         } else {
             list.commands.emplace_back(Trim{step});
         }

@@ -1,5 +1,5 @@
 #include "engine/command_log.hpp"
-#include "engine/snapshot_format.hpp"
+#include "engine/material_keys.hpp"
 #include <algorithm>
 
 namespace wadi {
@@ -34,21 +34,29 @@ Status CommandLog::trim() {
     return status;
 }
 
+Status CommandLog::set_material(int key, double value) {
+    if (auto status = check_material_change("set_material", state_.settings(), key, value); !status) return status;
+    Material material = state_.settings().material;
+    set_material_value(material, key, value);
+    auto status = stepper_.set_material(material);
+    if (status) note(MaterialChange{state_.steps, key, value});
+    return status;
+}
+
 void CommandLog::remember(bool on) {
     remember_ = on;
     remembered_.clear();
 }
 
-std::vector<std::byte> CommandLog::bytes() const {
-    return write_commands(level_digest(state_.settings()), edits_.stamps(), remembered_);
-}
+std::vector<std::byte> CommandLog::bytes() const { return write_commands(state_.level(), edits_.stamps(), remembered_); }
 
 Status CommandLog::check(const CommandList& list) const {
-    if (list.level != level_digest(state_.settings()))
+    if (list.level != state_.level())
         return error(Code::bad_argument, "play_commands: the log is of a level with other settings");
     for (const auto& stamp : list.stamps) {
         if (auto status = check_stamp("play_commands", stamp.nx, stamp.ny, stamp.values); !status) return status;
     }
+    Settings settings = state_.settings(); // as the commands before leave them
     for (const auto& command : list.commands) {
         if (step_of(command) < edits_.next_step()) {
             return error(Code::bad_argument, "play_commands: the log has a command for step " + std::to_string(step_of(command)) +
@@ -59,6 +67,10 @@ Status CommandLog::check(const CommandList& list) const {
         } else if (const auto* write = std::get_if<RegionWrite>(&command)) {
             const auto& grid = state_.settings().grid;
             if (auto status = check_region("play_commands", write->region, grid, write->values.size()); !status) return status;
+        } else if (const auto* change = std::get_if<MaterialChange>(&command)) {
+            if (auto status = check_material_change("play_commands", settings, change->key, change->value); !status)
+                return status;
+            set_material_value(settings.material, change->key, change->value);
         }
     }
     return ok_status();
@@ -89,6 +101,7 @@ Status CommandLog::play(std::span<const std::byte> bytes) {
 
 Status CommandLog::run(const Command& command) {
     if (const auto* write = std::get_if<RegionWrite>(&command)) return write_region(write->layer, write->region, write->values);
+    if (const auto* change = std::get_if<MaterialChange>(&command)) return set_material(change->key, change->value);
     return trim();
 }
 

@@ -15,8 +15,13 @@ struct RegionWrite {
 struct Trim {
     std::uint64_t step = 0;
 };
+struct MaterialChange {
+    std::uint64_t step = 0;
+    int key = 0; // of material_keys()
+    double value = 0;
+};
 /// A command and the step ahead of which it counts. Edits run with that step, the others as soon as the one before is done.
-using Command = std::variant<Edit, RegionWrite, Trim>;
+using Command = std::variant<Edit, RegionWrite, Trim, MaterialChange>;
 std::uint64_t step_of(const Command& command);
 
 /// What the bytes of a log hold.
@@ -39,6 +44,8 @@ class CommandLog {
     /// Between two steps only; errors: regions.hpp.
     Status write_region(EditLayer layer, const Region& region, std::span<const float> values);
     Status trim();
+    /// Errors, nothing changed: check_material_change(), Stepper::set_material().
+    Status set_material(int key, double value);
 
     /// Begins an empty log, or drops it.
     void remember(bool on);
@@ -62,7 +69,7 @@ class CommandLog {
     Edits& edits_;
     bool remember_ = false;
     std::vector<Command> remembered_;
-    std::vector<Command> played_; // region writes and trims that wait for their step, in order
+    std::vector<Command> played_; // all but edits: they wait for their step, in order
 };
 
 } // namespace wadi

@@ -95,6 +95,10 @@ Result<std::uint64_t> RollBack::go_back(std::uint64_t step) {
         return error(Code::bad_argument, "roll_back: no step up to " + std::to_string(step) + " is kept" +
                                              (kept.empty() ? "" : "; the oldest is " + std::to_string(kept.front())));
     }
+    if (newest->material != state_.settings().material) {
+        if (auto status = stepper_.set_material(newest->material); !status) return status;
+        if (auto status = fit(); !status) return status; // effects may have changed with it
+    }
     if (auto ticket = newest->restore->submit(); !ticket) return ticket.status();
     stepper_.set_totals(newest->totals);
     for (auto& frame : frames_) frame.kept &= frame.totals.steps <= newest->totals.steps;
@@ -111,6 +115,7 @@ Status RollBack::keep() {
     if (auto ticket = frame.keep->submit(); !ticket) return ticket.status();
     frame.totals = stepper_.totals();
     frame.effects = state_.plan().effects;
+    frame.material = state_.settings().material;
     frame.kept = true;
     return ok_status();
 }

@@ -17,7 +17,8 @@ class RollBack {
     /// Steps that can be gone back to, oldest first.
     std::vector<std::uint64_t> steps() const;
     /// Goes to the newest kept step <= `step`, which it returns, and forgets the later ones. Parts of a step are given up.
-    /// Never waits. Errors: bad_argument (nothing so old is kept).
+    /// Waits only where the material was another then. Errors: bad_argument (nothing so old is kept), those of
+    /// Stepper::set_material().
     Result<std::uint64_t> go_back(std::uint64_t step);
     /// Keeps the state if its step is due.
     Status after_step();
@@ -28,6 +29,7 @@ class RollBack {
     struct Frame {
         bool kept = false;
         std::uint32_t effects = 0;
+        Material material;
         HostTotals totals;
         std::map<std::string, MemoryItem> fields;
         std::unique_ptr<StateProgram> keep, restore;

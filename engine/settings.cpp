@@ -50,21 +50,6 @@ Status check_grid(const Settings& settings) {
     return check_range("gravity", settings.gravity, 0, GRAVITY_MOST);
 }
 
-Status check_material(const Material& material) {
-    if (Status status = check_fields("material.", material, MATERIAL_FIELDS); !status) return status;
-    double below = 0;
-    for (std::size_t n = 0; n < material.saturation.size(); ++n) {
-        const std::string path = "material.saturation[" + std::to_string(n) + "]";
-        const double value = material.saturation[n];
-        if (Status status = check_range(path, value, 0, 1); !status) return status;
-        if (!(value - below >= SATURATION_GAP))
-            return refuse(path + ": " + number_text(value) + " must be at least " + number_text(SATURATION_GAP) + " above " +
-                          (n == 0 ? "0" : "saturation[" + std::to_string(n - 1) + "], " + number_text(below)));
-        below = value;
-    }
-    return ok_status();
-}
-
 Status check_method(const Method& method) {
     const auto& names = method_names();
     if (std::find(names.begin(), names.end(), method.name) == names.end())
@@ -212,9 +197,24 @@ double TimeSeries::at(double time) const {
     return v0 + (v1 - v0) * ((time - t0) / (t1 - t0));
 }
 
+Status validate(const Material& material) {
+    if (Status status = check_fields("material.", material, MATERIAL_FIELDS); !status) return status;
+    double below = 0;
+    for (std::size_t n = 0; n < material.saturation.size(); ++n) {
+        const std::string path = "material.saturation[" + std::to_string(n) + "]";
+        const double value = material.saturation[n];
+        if (Status status = check_range(path, value, 0, 1); !status) return status;
+        if (!(value - below >= SATURATION_GAP))
+            return refuse(path + ": " + number_text(value) + " must be at least " + number_text(SATURATION_GAP) + " above " +
+                          (n == 0 ? "0" : "saturation[" + std::to_string(n - 1) + "], " + number_text(below)));
+        below = value;
+    }
+    return ok_status();
+}
+
 Status validate(const Settings& settings) {
     if (Status status = check_grid(settings); !status) return status;
-    if (Status status = check_material(settings.material); !status) return status;
+    if (Status status = validate(settings.material); !status) return status;
     if (Status status = check_method(settings.method); !status) return status;
     for (std::size_t n = 0; n < settings.sides.size(); ++n)
         if (Status status = check_side(settings, n); !status) return status;

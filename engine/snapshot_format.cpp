@@ -1,4 +1,5 @@
 #include "engine/snapshot_format.hpp"
+#include "engine/material_keys.hpp"
 #include <cstring>
 
 namespace wadi {
@@ -6,12 +7,14 @@ namespace wadi {
 namespace {
 
 constexpr char magic[] = "WADISNAP";
-constexpr std::size_t fields_at = 12, fixed_bytes = 80, name_bytes = 32, field_bytes = name_bytes + 8, total_bytes = 16;
+constexpr std::size_t fields_at = 12, material_at = 80, name_bytes = 32, field_bytes = name_bytes + 8, total_bytes = 16;
+
+std::size_t fixed_bytes() { return material_at + 8 * material_keys().size(); }
 
 } // namespace
 
 std::uint64_t SnapshotHeader::begin_of(std::size_t field) const {
-    std::uint64_t at = fixed_bytes + total_bytes * totals.inputs.size() + field_bytes * fields.size();
+    std::uint64_t at = fixed_bytes() + total_bytes * totals.inputs.size() + field_bytes * fields.size();
     for (std::size_t n = 0; n < field; ++n) at += fields[n].bytes;
     return at;
 }
@@ -113,6 +116,7 @@ void write_header(const SnapshotHeader& header, std::span<std::byte> to) {
     put(to, at, header.totals.steps);
     put(to, at, header.totals.sand_initial);
     put(to, at, header.totals.water_initial);
+    for (int key = 0; key < static_cast<int>(material_keys().size()); ++key) put(to, at, material_value(header.material, key));
     for (const auto& total : header.totals.inputs) {
         put(to, at, total.metres);
         put(to, at, total.quanta);
@@ -128,7 +132,7 @@ void write_header(const SnapshotHeader& header, std::span<std::byte> to) {
 
 Result<SnapshotHeader> read_header(std::span<const std::byte> snapshot) {
     const auto broken = [](const std::string& what) { return error(Code::bad_file, "snapshot: " + what); };
-    if (auto status = check_sealed("snapshot", snapshot, magic, snapshot_version, fixed_bytes); !status) return status;
+    if (auto status = check_sealed("snapshot", snapshot, magic, snapshot_version, fixed_bytes()); !status) return status;
     const std::uint64_t bytes = snapshot.size();
     SnapshotHeader header;
     header.nx = get<std::int32_t>(snapshot, 32);
@@ -137,8 +141,11 @@ Result<SnapshotHeader> read_header(std::span<const std::byte> snapshot) {
     header.level = get<std::uint64_t>(snapshot, 48);
     header.totals = {get<std::uint64_t>(snapshot, 56), get<std::int64_t>(snapshot, 64), get<std::int64_t>(snapshot, 72), {}};
     const std::uint64_t totals = get<std::uint32_t>(snapshot, 44), fields = get<std::uint32_t>(snapshot, fields_at);
-    if (fixed_bytes + totals * total_bytes + fields * field_bytes > bytes) return broken("its lists pass its end");
-    std::size_t at = fixed_bytes;
+    std::size_t at = material_at;
+    for (int key = 0; key < static_cast<int>(material_keys().size()); ++key, at += 8)
+        set_material_value(header.material, key, get<double>(snapshot, at));
+    if (auto status = validate(header.material); !status) return broken(status.message);
+    if (at + totals * total_bytes + fields * field_bytes > bytes) return broken("its lists pass its end");
     for (std::uint64_t n = 0; n < totals; ++n, at += total_bytes)
         header.totals.inputs.push_back({get<double>(snapshot, at), get<double>(snapshot, at + 8)});
     std::uint64_t end = at + fields * field_bytes;

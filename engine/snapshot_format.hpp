@@ -1,6 +1,6 @@
 // A snapshot as bytes: what lies where, the checksum, and for which level it is.
 //
-// Little-endian, version 1:
+// Little-endian, version 2:
 //      0  char[8]  "WADISNAP"
 //      8  u32      version
 //     12  u32      number of fields
@@ -12,7 +12,8 @@
 //     48  u64      digest of the level's settings
 //     56  u64      steps
 //     64  i64[2]   quanta of sand and water that the books began with
-//     80  f64[2]   per running total: metres, whole quanta
+//     80  f64      per number of material_keys(): its value
+//      .  f64[2]   per running total: metres, whole quanta
 //      .  per field: char[32] name, u64 bytes
 //      .  the fields in that order, as they lie on the device, ghosts included
 #pragma once
@@ -23,12 +24,13 @@
 
 namespace wadi {
 
-constexpr std::uint32_t snapshot_version = 1;
+constexpr std::uint32_t snapshot_version = 2;
 
 struct SnapshotHeader {
     int nx = 0, ny = 0;
     std::uint32_t effects = 0;
     std::uint64_t level = 0; // level_digest()
+    Material material;       // the level's, as the host changed it since
     HostTotals totals;
     std::vector<KeptField> fields;
 

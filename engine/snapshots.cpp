@@ -14,8 +14,8 @@ Content operator|(Content a, Content b) { return {a.sand || b.sand, a.water || b
 } // namespace
 
 SnapshotHeader Snapshots::header() const {
-    return {state_.layout().nx, state_.layout().ny,  state_.plan().effects, level_digest(state_.settings()),
-            stepper_.totals(),  state_.kept_fields()};
+    return {state_.layout().nx,         state_.layout().ny, state_.plan().effects, state_.level(),
+            state_.settings().material, stepper_.totals(),  state_.kept_fields()};
 }
 
 Status Snapshots::save(std::span<std::byte> to) {
@@ -43,10 +43,12 @@ Status Snapshots::check(const SnapshotHeader& header) const {
                                              std::to_string(header.ny) + " cells, the world has " + std::to_string(layout.nx) +
                                              " x " + std::to_string(layout.ny));
     }
-    if (header.level != level_digest(state_.settings()))
+    if (header.level != state_.level())
         return error(Code::bad_argument, "load: the snapshot is of a level with other settings (dt, material, method, sides or "
                                          "sources)");
-    auto effects = effects_required(state_.settings(), content_under(header.effects) | state_.content);
+    Settings settings = state_.settings();
+    settings.material = header.material;
+    auto effects = effects_required(settings, content_under(header.effects) | state_.content);
     if (!effects) return effects.status();
     if (const auto lacking = header.effects & ~(effects->mask | state_.plan().effects); lacking != 0) {
         return error(Code::bad_argument,
@@ -94,8 +96,14 @@ Status Snapshots::load(std::span<const std::byte> from) {
     if (!header) return header.status();
     if (auto status = check(*header); !status) return status;
     if (!state_.lost()) return state_.lost();
+    const Material before = state_.settings().material;
+    if (auto status = stepper_.set_material(header->material); !status) return status;
     if ((header->effects & ~state_.plan().effects) != 0) {
-        if (auto status = stepper_.hold(content_under(header->effects) | state_.content); !status) return status;
+        auto status = stepper_.hold(content_under(header->effects) | state_.content);
+        if (!status) {
+            if (auto back = stepper_.set_material(before); !back) return back;
+            return status;
+        }
     }
     stepper_.set_totals(header->totals);
     return write_fields(*header, from);

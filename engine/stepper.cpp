@@ -40,14 +40,19 @@ Result<compute::Program> Stepper::record_step(Parity& parity, bool timestamps) {
 
 // A step flips each ping-pong field a fixed number of times, so two steps bring every field back: two programs suffice.
 Status Stepper::record() {
-    drop_programs();
+    std::array<compute::Program, 2> fresh{};
     Parity parity;
     for (int turn = 0; turn < 2; ++turn) {
         state_.set_start_parity(turn, parity);
         auto program = record_step(parity, false);
-        if (!program) return state_.note(program.status());
-        programs_[static_cast<std::size_t>(turn)] = *program;
+        if (!program) {
+            state_.device().destroy_program(fresh[0]);
+            return state_.note(program.status());
+        }
+        fresh[static_cast<std::size_t>(turn)] = *program;
     }
+    drop_programs();
+    programs_ = fresh;
     if (!profiling_) return ok_status();
     profiling_ = false;
     return set_profiling(true);
@@ -70,6 +75,28 @@ Status Stepper::hold(Content content) {
     }
     state_.content = content;
     return ok_status();
+}
+
+Status Stepper::set_material(const Material& material) {
+    const Material before = state_.settings().material;
+    if (material == before) return ok_status();
+    state_.set_material(material);
+    auto choice = effects_required(state_.settings(), state_.content);
+    if (!choice) {
+        state_.set_material(before);
+        return choice.status();
+    }
+    const bool same = choice->mask == state_.effects().mask;
+    const auto status = same ? record() : hold(state_.content);
+    if (status) {
+        state_.set_reasons(*choice);
+        return status;
+    }
+    state_.set_material(before);
+    if (!same) { // hold() went back to the effects, but recorded them with the new numbers
+        if (auto back = record(); !back) return back;
+    }
+    return status;
 }
 
 Status Stepper::prepare() {

@@ -41,6 +41,10 @@ class Stepper {
     /// allocated and freed and everything is recorded anew, the state kept to the bit. Errors: out_of_memory, nothing changed.
     Status hold(Content content);
 
+    /// Other numbers for sand and water from the next step on; between two steps only. Effects follow as in hold(); waits for the
+    /// device, but builds no pipeline where they stay. Errors: out_of_memory, not_ready (inside a recording), nothing changed.
+    Status set_material(const Material& material);
+
     /// Compiles what any hold() that the level allows would need.
     Status prepare();
 

@@ -87,6 +87,11 @@ Status World::trim() {
     return status ? commands_.trim() : status;
 }
 
+Status World::set_material(int key, double value) {
+    auto status = finish_step();
+    return status ? commands_.set_material(key, value) : status;
+}
+
 Status World::load(std::span<const std::byte> from) {
     auto status = finish_step();
     if (status) status = snapshots_.load(from);

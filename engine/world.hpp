@@ -61,6 +61,8 @@ class World {
     Status edit(std::span<const Edit> edits) { return commands_.edit(edits); }
     Status write_region(EditLayer layer, const Region& region, std::span<const float> values);
     Status trim();
+    /// A number of the material, by its index in material_keys(), from the next step on.
+    Status set_material(int key, double value);
     /// Compiles now what edits of new materials would need later.
     Status prepare() { return stepper_.prepare(); }
     Edits& edits() { return edits_; }

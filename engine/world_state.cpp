@@ -1,4 +1,5 @@
 #include "engine/world_state.hpp"
+#include "engine/snapshot_format.hpp"
 #include "engine/step_inputs.hpp"
 #include "engine/world_params.hpp"
 #include <algorithm>
@@ -55,7 +56,7 @@ std::span<const std::byte> bytes_of(const auto& values) { return std::as_bytes(s
 
 WorldState::WorldState(const Settings& settings, std::unique_ptr<compute::Device> device, compute::GroupSize group)
     : settings_(settings), layout_{settings.grid.nx, settings.grid.ny}, params_(derive_params(settings)),
-      device_(std::move(device)), group_(group) {}
+      level_(level_digest(settings)), device_(std::move(device)), group_(group) {}
 
 Status WorldState::open(const EffectChoice& effects) {
     effects_ = effects;
@@ -68,6 +69,11 @@ Status WorldState::open(const EffectChoice& effects) {
                                               " MiB");
     }
     return allocate(plan_, buffers_, scratch_);
+}
+
+void WorldState::set_material(const Material& material) {
+    settings_.material = material;
+    params_ = derive_params(settings_);
 }
 
 Result<compute::Buffer> WorldState::make_buffer(const compute::BufferDesc& desc) {

@@ -52,6 +52,12 @@ class WorldState {
     const Settings& settings() const { return settings_; }
     const FieldLayout& layout() const { return layout_; }
     const WorldParams& params() const { return params_; }
+    /// Of the settings that the world was made with: its level.
+    std::uint64_t level() const { return level_; }
+    /// Other numbers for sand and water. The step programs must be recorded anew; no other program reads what depends on them.
+    void set_material(const Material& material);
+    /// Other reasons for the same mask.
+    void set_reasons(const EffectChoice& effects) { effects_.reasons = effects.reasons; }
     const EffectChoice& effects() const { return effects_; }
     const StepPlan& plan() const { return plan_; }
     compute::Device& device() const { return *device_; }
@@ -106,9 +112,10 @@ class WorldState {
     void free_others(const FieldBuffers& buffers, const std::vector<compute::Buffer>& scratch,
                      const std::vector<compute::Buffer>& kept);
 
-    const Settings settings_;
+    Settings settings_;
     const FieldLayout layout_;
-    const WorldParams params_;
+    WorldParams params_;
+    const std::uint64_t level_;
     EffectChoice effects_;
     StepPlan plan_;
     std::unique_ptr<compute::Device> device_;

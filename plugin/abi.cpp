@@ -10,6 +10,15 @@ thread_local std::string last;
 
 const std::string& last_error() { return last; }
 
+wadi_result report_out_of_memory(const char* function) noexcept {
+    try {
+        last = std::string(function) + ": out of memory";
+    } catch (const std::bad_alloc&) {
+        last.clear();
+    }
+    return WADI_ERROR_OUT_OF_MEMORY;
+}
+
 wadi_result report(const Status& status) {
     last = status ? std::string() : status.message;
     switch (status.code) {

@@ -13,6 +13,9 @@ namespace wadi::plugin {
 wadi_result report(const Status& status);
 const std::string& last_error();
 
+/// WADI_ERROR_OUT_OF_MEMORY, with a text where there is memory for one.
+wadi_result report_out_of_memory(const char* function) noexcept;
+
 inline wadi_result bad_argument(const std::string& message) { return report(error(Code::bad_argument, message)); }
 
 // No exception may reach a host: what the standard library throws becomes an error.
@@ -20,7 +23,7 @@ template <class Call> wadi_result guarded(const char* function, Call call) {
     try {
         return call();
     } catch (const std::bad_alloc&) {
-        return report(error(Code::out_of_memory, std::string(function) + ": out of memory"));
+        return report_out_of_memory(function);
     } catch (const std::exception& e) {
         return report(error(Code::internal, std::string(function) + ": " + e.what()));
     }
@@ -38,7 +41,15 @@ inline wadi_result refused(const char* function, Entry entry) {
 template <class Call> wadi_result with_world(const char* function, wadi_world_id id, Call call) {
     return guarded(function, [&] {
         const EnteredWorld entered(worlds(), id);
-        return entered.hosted() == nullptr ? refused(function, entered.entry()) : call(*entered.hosted());
+        HostedWorld* hosted = entered.hosted();
+        if (hosted == nullptr) return refused(function, entered.entry());
+        if (hosted->spoiled) return report_out_of_memory(function);
+        try {
+            return call(*hosted);
+        } catch (const std::bad_alloc&) {
+            hosted->spoiled = true;
+            throw;
+        }
     });
 }
 

@@ -1,4 +1,5 @@
 // Devices, and worlds made from levels or arrays.
+#include "engine/accuracy_presets.hpp"
 #include "engine/level/level.hpp"
 #include "plugin/abi.hpp"
 #include "plugin/vulkan_host.hpp"
@@ -46,6 +47,7 @@ LevelOverrides to_overrides(const wadi_level_overrides* o) {
     if (o->dt != 0) overrides.dt = o->dt;
     if (o->method != nullptr) overrides.method = o->method;
     if (o->variant != nullptr) overrides.variant = o->variant;
+    if (o->accuracy != nullptr) overrides.accuracy = o->accuracy;
     return overrides;
 }
 
@@ -98,6 +100,21 @@ wadi_device_options wadi_default_device_options(void) {
 
 wadi_level_overrides wadi_default_level_overrides(void) { return sized<wadi_level_overrides>(); }
 wadi_world_arrays wadi_default_world_arrays(void) { return sized<wadi_world_arrays>(); }
+
+wadi_result wadi_list_accuracy_presets(wadi_accuracy_preset* presets, uint32_t* count) {
+    return guarded(__func__, [&] {
+        if (count == nullptr) return bad_argument("wadi_list_accuracy_presets: count is NULL");
+        const uint32_t capacity = presets != nullptr ? *count : 0;
+        uint32_t found = 0;
+        for (const AccuracyPreset& preset : accuracy_presets()) {
+            if (found < capacity)
+                presets[found] = {preset.name, preset.cells, preset.substeps, preset.error, preset.gpu_cost, preset.cpu_cost};
+            ++found;
+        }
+        *count = found;
+        return report(ok_status());
+    });
+}
 
 wadi_result wadi_list_devices(wadi_device_info* infos, uint32_t* count, char* notes, size_t notes_size) {
     return guarded(__func__, [&] {

@@ -1,4 +1,6 @@
-// Brushes, stamps, pushes and written regions; effects that follow them.
+// Brushes, stamps, pushes, written regions and changes of the material; effects that follow them.
+#include "engine/level/text.hpp"
+#include "engine/material_keys.hpp"
 #include "plugin/abi.hpp"
 
 using namespace wadi;
@@ -113,6 +115,34 @@ wadi_result wadi_world_prepare_effects(wadi_world_id id) {
 
 wadi_result wadi_world_trim(wadi_world_id id) {
     return with_world(__func__, id, [&](HostedWorld& hosted) { return report(hosted.world->trim()); });
+}
+
+wadi_result wadi_world_get_material(wadi_world_id id, wadi_material_info* infos, uint32_t* count) {
+    return with_world(__func__, id, [&](HostedWorld& hosted) {
+        if (count == nullptr) return bad_argument("wadi_world_get_material: count is NULL");
+        const auto keys = material_keys();
+        const uint32_t capacity = infos != nullptr ? *count : 0;
+        *count = static_cast<uint32_t>(keys.size());
+        for (uint32_t n = 0; n < std::min(capacity, *count); ++n) {
+            copy_text(infos[n].name, keys[n].name);
+            infos[n].value = material_value(hosted.world->settings().material, static_cast<int>(n));
+            infos[n].least = keys[n].least;
+            infos[n].most = keys[n].most;
+        }
+        return report(ok_status());
+    });
+}
+
+wadi_result wadi_world_set_material(wadi_world_id id, const char* name, double value) {
+    return with_world(__func__, id, [&](HostedWorld& hosted) {
+        if (name == nullptr) return bad_argument("wadi_world_set_material: name is NULL");
+        const int key = find_material_key(name);
+        if (key >= 0) return report(hosted.world->set_material(key, value));
+        std::vector<std::string> known;
+        for (const auto& k : material_keys()) known.push_back(k.name);
+        return report(error(Code::not_found, std::string("wadi_world_set_material: the material has no number \"") + name + "\"" +
+                                                 suggestion(name, known)));
+    });
 }
 
 wadi_result wadi_world_set_command_log(wadi_world_id id, int32_t on) {

@@ -17,6 +17,7 @@ struct HostedWorld {
     double duration = 0;
     std::vector<std::string> warnings;
     std::vector<Edit> edits; // of the last wadi_world_edit: its room is used again
+    bool spoiled = false;    // the host's memory ran out in the middle of a call: what that left undone is not known
 };
 
 enum class Entry { entered, unknown, busy };

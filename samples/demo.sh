@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# From a fresh clone to pictures: installs what is missing, builds the recorder, records a level. Usage: demo.sh [LEVEL]
+# From a fresh clone to pictures: installs what is missing, builds the recorder, records a level, shows it in 3D where it can. Usage: demo.sh [LEVEL]
 set -euo pipefail
 
 level=${1:-canyon}
@@ -26,7 +26,26 @@ every=()
 [[ $level == canyon ]] && every=(--every 6.5)
 phase "4/4 record $level" build/release/bin/wadi-recorder "$level" "${every[@]}" --out "out/$level"
 
+# Three moments in three dimensions, where the viewer can be built and a Vulkan device (a software one will do) draws them.
+viewer=build/release/bin/wadi-viewer
+draw() {
+    cmake --build --preset release --target wadi-viewer && [[ -n $("$viewer" --list-gpus) ]] &&
+        samples/levels/gallery.py "$viewer" "$level" --moments 3 --quality low --size 640x360 --coarse 2 --backend cpu --out "out/$level/viewer"
+}
+pictures=
+if grep -q "WADI_HAS_VIEWER:INTERNAL=ON" build/release/CMakeCache.txt; then
+    start=$SECONDS
+    echo "== viewer"
+    draw && pictures="out/$level/viewer"
+    echo "== viewer: ended after $((SECONDS - start)) s"
+fi
+
 echo
 echo "Ready in $SECONDS s. Look at"
 echo "  $root/out/$level/contact_sheet.png"
 echo "  $root/out/$level/frame_*.png"
+if [[ -n $pictures ]]; then
+    echo "  $root/$pictures/*.png (build/release/bin/wadi-viewer $level is a window)"
+else
+    echo "(no pictures in three dimensions: see the line \"Viewer\" of the configure report, or the viewer's message above)"
+fi

@@ -9,8 +9,8 @@ packages=(
     glslang-tools spirv-tools libvulkan-dev libvulkan-volk-dev libvulkan1 mesa-vulkan-drivers vulkan-validationlayers
     # NVIDIA's Vulkan driver loads these
     libegl1 libglvnd0 libgl1 libopengl0 libglx0 libgles2
-    # the viewer; xvfb and xdotool for its tests in a window, ffmpeg for its videos
-    libglfw3-dev libimgui-dev xvfb xdotool ffmpeg
+    # the viewer; xvfb, twm and xdotool for its tests in a window, ffmpeg for its videos
+    libglfw3-dev libimgui-dev xvfb twm xdotool ffmpeg
     # header libraries
     libglm-dev doctest-dev nlohmann-json3-dev libcli11-dev libstb-dev
 )

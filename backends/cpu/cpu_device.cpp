@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cstring>
 #include <exception>
+#include <functional>
 #include <new>
 
 namespace wadi::cpu {
@@ -232,7 +233,8 @@ Result<compute::Ticket> CpuDevice::submit(compute::Program program, const StepIn
     if (found == programs_.end()) return error(Code::bad_argument, "submit of a program that does not exist");
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return queue_.size() < most_in_flight; });
-    queue_.push_back({++submitted_, found->second.get(), input});
+    queue_.push_back({submitted_ + 1, found->second.get(), input}); // may throw: nothing is counted then
+    ++submitted_;
     ++counters_.submits;
     lock.unlock();
     changed_.notify_all();
@@ -326,7 +328,7 @@ void CpuDevice::execute(Recorded& program, const StepInput& input, std::vector<c
     if (program.small || pool_.size() == 1) {
         work();
     } else {
-        pool_.run(work);
+        pool_.run(std::ref(work)); // allocates nothing: nobody could catch it here
     }
     for (std::size_t n = 1; n < stamps.size(); ++n) {
         timings.push_back(

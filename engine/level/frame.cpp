@@ -1,9 +1,13 @@
 #include "engine/level/frame.hpp"
+#include "engine/accuracy_presets.hpp"
 #include "engine/level/setting_fields.hpp"
 #include "engine/level/text.hpp"
 #include "engine/method_presets.hpp"
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <optional>
+#include <utility>
 
 namespace wadi {
 namespace {
@@ -19,7 +23,18 @@ Status check(const LevelOverrides& overrides) {
     if (overrides.method && std::find(names.begin(), names.end(), *overrides.method) == names.end())
         return error(Code::bad_argument,
                      "method: \"" + *overrides.method + "\" is not known" + suggestion(*overrides.method, names));
+    if (overrides.accuracy && find_accuracy_preset(*overrides.accuracy) == nullptr)
+        return error(Code::bad_argument, "accuracy: \"" + *overrides.accuracy + "\" is not known" +
+                                             suggestion(*overrides.accuracy, accuracy_names()));
     return ok_status();
+}
+
+std::optional<std::pair<int, int>> chosen_size(const LevelOverrides& overrides, const Grid& grid) {
+    if (overrides.size || !overrides.accuracy) return overrides.size;
+    const double factor = find_accuracy_preset(*overrides.accuracy)->cells;
+    if (factor == 1) return std::nullopt;
+    const auto scaled = [&](int cells) { return std::max(1, static_cast<int>(std::lround(cells * factor))); };
+    return std::pair{scaled(grid.nx), scaled(grid.ny)};
 }
 
 void stretch(Settings& settings, double factor) {
@@ -45,16 +60,17 @@ void stretch(Settings& settings, double factor) {
 Result<Frame> apply_overrides(const LevelOverrides& overrides, Settings& settings) {
     if (Status status = check(overrides); !status) return status;
     Frame frame;
-    if (overrides.size) {
+    if (const auto size = chosen_size(overrides, settings.grid)) {
         Grid& grid = settings.grid;
-        const double dx = grid.nx * grid.dx / overrides.size->first;
-        frame.stretch_y = overrides.size->second * dx / (grid.ny * grid.dx);
+        const double dx = grid.nx * grid.dx / size->first;
+        frame.stretch_y = size->second * dx / (grid.ny * grid.dx);
         settings.dt *= dx / grid.dx;
-        grid = {overrides.size->first, overrides.size->second, dx};
+        grid = {size->first, size->second, dx};
         stretch(settings, frame.stretch_y);
     }
     if (overrides.dt) settings.dt = *overrides.dt;
     if (overrides.method && *overrides.method != settings.method.name) choose_method(settings.method, *overrides.method);
+    if (overrides.accuracy) settings.method.substeps = find_accuracy_preset(*overrides.accuracy)->substeps;
     frame.nx = settings.grid.nx;
     frame.ny = settings.grid.ny;
     frame.dx = settings.grid.dx;

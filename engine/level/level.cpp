@@ -1,4 +1,5 @@
 #include "engine/level/level.hpp"
+#include "engine/accuracy_presets.hpp"
 #include "engine/image/map.hpp"
 #include "engine/level/frame.hpp"
 #include "engine/level/settings_reader.hpp"
@@ -29,7 +30,7 @@ void read_version(ObjectReader& root) {
                   std::to_string(version) + " is newer than this build reads, " + std::to_string(FORMAT_VERSION));
 }
 
-Status read_root(const Json& json, const FileReader& files, Level& level, Layers& layers) {
+Status read_root(const Json& json, const FileReader& files, Level& level, Layers& layers, LevelOverrides& overrides) {
     Status status;
     ObjectReader root(json, "", status);
     read_version(root);
@@ -39,6 +40,10 @@ Status read_root(const Json& json, const FileReader& files, Level& level, Layers
     root.string("name", level.name);
     root.string("description", level.description);
     root.number("duration", level.duration, 0, DURATION_MOST);
+    const auto accuracies = accuracy_names();
+    int accuracy = -1;
+    root.choice("accuracy", accuracies, accuracy);
+    if (accuracy >= 0 && !overrides.accuracy) overrides.accuracy = accuracies[static_cast<std::size_t>(accuracy)];
     read_settings(root, files, level.settings);
     if (const Json* list = root.find("terrain")) layers.terrain = read_layers(*list, "terrain", LayerTarget::terrain, status);
     if (const Json* list = root.find("sand")) layers.sand = read_layers(*list, "sand", LayerTarget::sand, status);
@@ -63,7 +68,7 @@ Status draw(const Layers& layers, const Frame& frame, const FileReader& files, L
     return ok_status();
 }
 
-Result<Level> parse(const std::string& text, const FileReader& files, const LevelOverrides& overrides) {
+Result<Level> parse(const std::string& text, const FileReader& files, LevelOverrides overrides) {
     auto json = parse_json(text);
     if (!json) return json.status();
     Level level;
@@ -71,7 +76,7 @@ Result<Level> parse(const std::string& text, const FileReader& files, const Leve
     auto variants = take_variant(*json, overrides.variant);
     if (!variants) return variants.status();
     level.variants = std::move(*variants);
-    if (Status status = read_root(*json, files, level, layers); !status) return status;
+    if (Status status = read_root(*json, files, level, layers, overrides); !status) return status;
     if (overrides.variant) level.name += ", " + *overrides.variant;
     if (Status status = validate(level.settings); !status) return error(Code::bad_file, status.message);
     auto frame = apply_overrides(overrides, level.settings);

@@ -1,20 +1,20 @@
 #!/usr/bin/env python3
-"""Makes the gallery: a contact sheet of six pictures for every level and variant, preview.png and preview_VARIANT.png beside the level,
-and the list of them in samples/levels/README.md.
+"""Makes the gallery: a picture of every level and variant by wadi-viewer, picture.png and picture_VARIANT.png beside the level,
+and the list of them in samples/levels/README.md. Moment and camera are those of the level's picture.json.
 
-usage: samples/levels/gallery.py RECORDER [LEVEL ...] [--backend auto]
+usage: samples/levels/gallery.py VIEWER [LEVEL ...] [--backend auto] [--quality high] [--size 960x540] [--coarse 1] [--moments 1] [--out DIR]
 """
 import argparse
 import json
 import pathlib
 import re
-import shutil
 import subprocess
+import sys
 import tempfile
 
 LEVELS = pathlib.Path(__file__).resolve().parent
 BEGIN, END = "<!-- gallery.py writes from here -->\n", "<!-- to here -->\n"
-PICTURES = 6
+KEYS = {"time", "camera", "variants"}
 
 
 def read_level(folder):
@@ -36,27 +36,54 @@ def merged(level, patch):
     return result
 
 
-def sheets(folder):
+def read_picture(folder, variant):
+    """Time [s] and camera: of the level's picture.json, or what its entry for the variant says instead."""
+    file = folder / "picture.json"
+    entry = json.loads(file.read_text()) if file.exists() else {}
+    chosen = {**entry, **entry.get("variants", {}).get(variant, {})}
+    unknown = (set(entry) | set(chosen)) - KEYS
+    if unknown:
+        sys.exit(f"{file}: unknown keys {sorted(unknown)}; known: {sorted(KEYS)}")
+    camera = chosen.get("camera")
+    return chosen.get("time"), "overview" if camera is None else ",".join(map(str, camera))
+
+
+def shots(folder):
     """(variant or None, level as JSON, picture) of a level."""
     level = read_level(folder)
-    yield None, level, folder / "preview.png"
+    yield None, level, folder / "picture.png"
     for variant, patch in sorted(level.get("variants", {}).items()):
-        yield variant, merged(level, patch), folder / f"preview_{variant}.png"
+        yield variant, merged(level, patch), folder / f"picture_{variant}.png"
 
 
-def record(recorder, backend, folder, variant, level, picture):
+def take(options, folder, variant, level, picture):
+    time, camera = read_picture(folder, variant)
+    grid, duration = level["grid"], level.get("duration", 10)
+    if options.moments > 1:
+        time = duration / options.moments
+    elif time is None:
+        time = duration / 2
+    # "--camera=": a value that begins with a minus sign is no option of its own
+    command = [options.viewer, str(folder), "--offscreen", "--start", time, f"--camera={camera}",
+               "--frames", options.moments, "--every", duration / options.moments, "--backend", options.backend, "--quality", options.quality, "--size", options.size]
+    if options.coarse > 1:
+        command += ["--grid", f"{max(grid['nx'] // options.coarse, 1)}x{max(grid['ny'] // options.coarse, 1)}"]
+    if variant is not None:
+        command += ["--variant", variant]
     with tempfile.TemporaryDirectory() as scratch:
-        command = [recorder, str(folder), "--backend", backend, "--out", scratch, "--every", str(level.get("duration", 10) / (PICTURES - 1))]
-        if variant is not None:
-            command += ["--variant", variant]
-        subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        shutil.copy(pathlib.Path(scratch) / "contact_sheet.png", picture)
+        done = subprocess.run([*map(str, command), "--out", scratch], capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            sys.exit(f"{' '.join(map(str, command))}: {done.stderr.splitlines()[-1]}")
+        picture.parent.mkdir(parents=True, exist_ok=True)
+        for n in range(options.moments):
+            to = picture if options.moments == 1 else picture.with_stem(f"{picture.stem}_{n + 1}")
+            to.write_bytes((pathlib.Path(scratch) / f"frame_{n:05}.png").read_bytes())
 
 
 def gallery(folders):
     lines = []
     for folder in folders:
-        for variant, level, picture in sheets(folder):
+        for variant, level, picture in shots(folder):
             title = folder.name if variant is None else f"{folder.name}, `--variant {variant}`"
             lines += [f"**{title}**: {level.get('description', '')}\n", f"![{title}]({folder.name}/{picture.name})\n"]
     return "\n".join(lines)
@@ -64,17 +91,31 @@ def gallery(folders):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("recorder")
+    parser.add_argument("viewer")
     parser.add_argument("levels", nargs="*", help="default: all")
-    parser.add_argument("--backend", default="auto")
+    parser.add_argument("--backend", default="auto", help="of the simulation")
+    parser.add_argument("--quality", default="high", help="low, medium, high")
+    parser.add_argument("--size", default="960x540")
+    parser.add_argument("--coarse", type=int, default=1, help="cells N times as wide: to try cameras on slow machines")
+    parser.add_argument("--moments", type=int, default=1, help="N pictures over the level's length, without its variants; wants --out")
+    parser.add_argument("--out", type=pathlib.Path, help="pictures go into this folder, and the README stays as it is")
     options = parser.parse_args()
+    if min(options.coarse, options.moments) < 1 or (options.moments > 1 and options.out is None):
+        parser.error("--coarse and --moments: allowed are 1 or more; --moments wants --out")
     folders = sorted(path.parent for path in LEVELS.glob("*/level.json"))
+    unknown = set(options.levels) - {folder.name for folder in folders}
+    if unknown:
+        parser.error(f"no level {', '.join(sorted(unknown))}")
     for folder in folders:
         if options.levels and folder.name not in options.levels:
             continue
-        for variant, level, picture in sheets(folder):
+        for variant, level, picture in shots(folder):
+            if variant is not None and options.moments > 1:
+                continue
             print(folder.name, variant or "", flush=True)
-            record(options.recorder, options.backend, folder, variant, level, picture)
+            take(options, folder, variant, level, options.out / f"{folder.name}_{picture.name}" if options.out else picture)
+    if options.out:
+        return
     readme = LEVELS / "README.md"
     text = readme.read_text()
     start, end = text.index(BEGIN) + len(BEGIN), text.index(END)

@@ -37,6 +37,7 @@ struct Options {
     double dt = 0;               // [s], 0 = the level's
     std::string method;          // empty = the level's
     std::string variant;         // empty = the level as it is
+    std::string accuracy;        // empty = what the level says
 
     double seconds = -1;    // simulated time, -1 = the level's duration
     double every = 0;       // between frames [s], 0 = a tenth of the recording

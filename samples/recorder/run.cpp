@@ -156,8 +156,8 @@ Failure Recording::write_dumps() {
         const std::string error = write_file(path, encode_npy(values, world_.info().nx, world_.info().ny));
         if (!error.empty()) return {EXIT_BAD_INPUT, error};
         char text[128];
-        std::snprintf(text, sizeof text, "dump %s at t = %.9g s (step %llu, asked for %s s): ", dump.field_name.c_str(),
-                      time_, static_cast<unsigned long long>(done_), dump.time_text.c_str());
+        std::snprintf(text, sizeof text, "dump %s at t = %.9g s (step %llu, asked for %s s): ", dump.field_name.c_str(), time_,
+                      static_cast<unsigned long long>(done_), dump.time_text.c_str());
         progress_->note(text + path.string());
     }
     return {};

@@ -35,6 +35,7 @@ Failure World::create(const Options& options) {
     overrides.dt = options.dt;
     overrides.method = options.method.empty() ? nullptr : options.method.c_str();
     overrides.variant = options.variant.empty() ? nullptr : options.variant.c_str();
+    overrides.accuracy = options.accuracy.empty() ? nullptr : options.accuracy.c_str();
 
     if (wadi_create_world_from_level(options.level_file.c_str(), &overrides, &device, &id_) != WADI_OK) {
         return {EXIT_BAD_INPUT, wadi_get_last_error()};

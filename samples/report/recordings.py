@@ -1,4 +1,5 @@
 """Runs of the recorder: of shipped levels, or of levels made in a script, by method preset or with single choices changed."""
+import array
 import json
 import pathlib
 import re
@@ -34,15 +35,18 @@ class Recorder:
         self.close()
 
     def record(self, level, *, method=None, variant=None, size=None, dt=None, seconds=None, times=(), fields=("H", "hs", "W", "surface"),
-               pictures=0, profile=False, benchmark=False):
+               pictures=0, profile=False, benchmark=False, files=None):
         """level: a shipped level's name, or a level as a dict. times [s]: when `fields` are kept. pictures: how many on the contact
-        sheet. benchmark: figures of the state are taken at the end only. Returns (measures.Run, the recorder's summary)."""
+        sheet. benchmark: figures of the state are taken at the end only.
+        files: {name: (nx, ny, values)}, NPY maps beside a level given as a dict. Returns (measures.Run, the recorder's summary)."""
         self.count += 1
         folder = pathlib.Path(self.scratch.name) / f"{self.count:04d}"
         folder.mkdir()
         if isinstance(level, dict):
             where = folder / "level.json"
             where.write_text(json.dumps(level))
+            for name, (nx, ny, values) in (files or {}).items():
+                write_npy(folder / name, nx, ny, values)
         else:
             where = LEVELS / level
         command = [self.program, str(where), "--backend", self.backend, "--out", str(folder), "--summary", str(folder / "summary.json")]
@@ -64,6 +68,13 @@ class Recorder:
         summary = json.loads((folder / "summary.json").read_text())
         grid = summary["grid"]
         return measures.Run(folder, grid["nx"], grid["ny"], grid["dx"], [float(f"{time:g}") for time in times]), summary
+
+
+def write_npy(path, nx, ny, values):
+    """float32, row 0 in the south."""
+    head = f"{{'descr': '<f4', 'fortran_order': False, 'shape': ({ny}, {nx}), }}"
+    head += " " * (-(len(head) + 11) % 64) + "\n"
+    path.write_bytes(b"\x93NUMPY\x01\x00" + len(head).to_bytes(2, "little") + head.encode() + array.array("f", values).tobytes())
 
 
 def read_level(name):

@@ -35,6 +35,7 @@ void App::frame(double seconds, const Submission& swapchain, const std::function
 
 int run_scripted(const Options& options) {
     const Gpu gpu({.device = options.gpu, .validate = options.validate, .graphics = true, .instance_extensions = {}});
+    std::printf("drawn by %s, queue family %u of %u\n", gpu.name.c_str(), gpu.family, gpu.families);
     {
         App app(gpu, options, nullptr, options.width, options.height);
         std::filesystem::create_directories(options.out);

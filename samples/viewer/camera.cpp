@@ -1,6 +1,7 @@
 #include "camera.hpp"
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
@@ -49,6 +50,15 @@ void fit(Camera& camera, const Block& block, float share, float aspect) {
     }
 }
 
+Camera placed(const Preset& preset, const Block& block, float aspect) {
+    Camera camera;
+    camera.yaw = glm::radians(preset.yaw_degrees);
+    camera.pitch = glm::radians(preset.pitch_degrees);
+    camera.target = glm::mix(block.low, block.high, glm::vec3(preset.east, preset.north, 0.35f));
+    fit(camera, block, preset.share, aspect);
+    return camera;
+}
+
 } // namespace
 
 glm::vec3 Camera::forward() const { return {std::sin(yaw) * std::cos(pitch), std::cos(yaw) * std::cos(pitch), std::sin(pitch)}; }
@@ -87,17 +97,23 @@ const std::vector<std::string>& camera_presets() {
 
 Camera camera_preset(const std::string& name, const Block& block, float aspect) {
     for (const Preset& preset : presets) {
-        if (name != preset.name) continue;
-        Camera camera;
-        camera.yaw = glm::radians(preset.yaw_degrees);
-        camera.pitch = glm::radians(preset.pitch_degrees);
-        camera.target = glm::mix(block.low, block.high, glm::vec3(preset.east, preset.north, 0.35f));
-        fit(camera, block, preset.share, aspect);
-        return camera;
+        if (name == preset.name) return placed(preset, block, aspect);
+    }
+    Preset own{};
+    char rest = 0;
+    if (std::sscanf(name.c_str(), "%f,%f,%f,%f,%f%c", &own.yaw_degrees, &own.pitch_degrees, &own.share, &own.east, &own.north,
+                    &rest) == 5) {
+        // Written so that NaN is refused.
+        if (!(own.pitch_degrees >= -89 && own.pitch_degrees <= -1 && own.share >= 0.01f && own.share <= 2 &&
+              std::abs(own.yaw_degrees) <= 360 && std::abs(own.east - 0.5f) <= 1.5f && std::abs(own.north - 0.5f) <= 1.5f))
+            throw std::runtime_error("camera: \"" + name +
+                                     "\": allowed are yaw -360 ... 360, pitch -89 ... -1 degrees, share 0.01 ... 2, "
+                                     "east and north -1 ... 2");
+        return placed(own, block, aspect);
     }
     std::string message = "camera: \"" + name + "\" is none of";
     for (const std::string& known : camera_presets()) message += " " + known;
-    throw std::runtime_error(message);
+    throw std::runtime_error(message + ", nor five numbers YAW,PITCH,SHARE,EAST,NORTH");
 }
 
 } // namespace viewer

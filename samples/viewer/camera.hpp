@@ -31,7 +31,9 @@ struct Block {
 };
 
 const std::vector<std::string>& camera_presets();
-/// Throws std::runtime_error naming the presets. `aspect`: width of the picture over its height.
+/// A preset, or "YAW,PITCH,SHARE,EAST,NORTH": where to look, from north to east and above the horizon [degrees]; the share of the
+/// block that fills the picture; what of it is in the middle, 0 ... 1 from west to east and from south to north.
+/// Throws std::runtime_error naming presets or ranges. `aspect`: width of the picture over its height.
 Camera camera_preset(const std::string& name, const Block& block, float aspect);
 
 } // namespace viewer

@@ -129,23 +129,22 @@ Gpu::Gpu(const GpuChoice& choice) {
     vkGetPhysicalDeviceProperties(physical, &properties);
     name = properties.deviceName;
 
-    uint32_t count = 0;
-    vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, nullptr);
-    std::vector<VkQueueFamilyProperties> families(count);
-    vkGetPhysicalDeviceQueueFamilyProperties(physical, &count, families.data());
-    family = count;
+    vkGetPhysicalDeviceQueueFamilyProperties(physical, &families, nullptr);
+    std::vector<VkQueueFamilyProperties> found(families);
+    vkGetPhysicalDeviceQueueFamilyProperties(physical, &families, found.data());
+    family = families;
     for (const VkQueueFlags wanted :
          {VkQueueFlags{VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT}, VkQueueFlags{VK_QUEUE_COMPUTE_BIT}}) {
-        for (uint32_t n = 0; n < count && family == count; ++n) {
-            if ((families[n].queueFlags & wanted) == wanted) family = n;
+        for (uint32_t n = 0; n < families && family == families; ++n) {
+            if ((found[n].queueFlags & wanted) == wanted) family = n;
         }
     }
-    if (family == count) throw std::runtime_error(name + " has no queue that computes");
-    graphics = (families[family].queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0;
+    if (family == families) throw std::runtime_error(name + " has no queue that computes");
+    graphics = (found[family].queueFlags & VK_QUEUE_GRAPHICS_BIT) != 0;
     if (choice.graphics && !graphics)
         throw std::runtime_error(
             name + " has no queue that draws and computes, which window and panel need; --offscreen without --panel works");
-    if (families[family].timestampValidBits > 0) nanoseconds_per_tick = static_cast<double>(properties.limits.timestampPeriod);
+    if (found[family].timestampValidBits > 0) nanoseconds_per_tick = static_cast<double>(properties.limits.timestampPeriod);
 
     std::vector<const char*> extensions;
     if (choice.swapchain) extensions.push_back(VK_KHR_SWAPCHAIN_EXTENSION_NAME);

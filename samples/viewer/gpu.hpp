@@ -29,7 +29,7 @@ class Gpu {
     VkInstance instance = VK_NULL_HANDLE;
     VkPhysicalDevice physical = VK_NULL_HANDLE;
     VkDevice device = VK_NULL_HANDLE;
-    uint32_t family = 0;
+    uint32_t family = 0, families = 0; // of the one queue that all work goes to; how many the device has
     VkQueue queue = VK_NULL_HANDLE;
     VkCommandPool pool = VK_NULL_HANDLE;
     std::string name;

@@ -29,12 +29,8 @@ LevelSettings::LevelSettings(const std::filesystem::path& level_file) {
     const Json schema = read_schema();
     if (!level.is_object() || !schema.is_object()) return;
     level_ = level.dump();
-    const Json given = level.value("material", Json::object());
-    for (const auto& [key, property] : schema["properties"]["material"]["properties"].items()) {
-        if (property.value("type", "") != "number") continue;
-        materials.push_back({key, property.value("description", ""), property.value("minimum", 0.0f),
-                             property.value("maximum", 0.0f), given.value(key, property.value("default", 0.0f))});
-    }
+    for (const auto& [key, property] : schema["properties"]["material"]["properties"].items())
+        material_help[key] = property.value("description", "");
     const Json forced = level.value("effects", Json::object());
     for (const auto& entry : schema["properties"]["effects"]["properties"].items()) {
         const std::string force = forced.value(entry.key(), "auto");
@@ -45,10 +41,9 @@ LevelSettings::LevelSettings(const std::filesystem::path& level_file) {
 }
 
 std::string LevelSettings::text() const {
+    if (effects.empty()) return {};
     Json level = Json::parse(level_);
-    const LevelSettings& now = *this;
-    for (const MaterialSetting& material : now.materials) level["material"][material.key] = material.value;
-    for (const EffectSetting& effect : now.effects) level["effects"][effect.name] = effect_forces[effect.force];
+    for (const EffectSetting& effect : effects) level["effects"][effect.name] = effect_forces[effect.force];
     return level.dump();
 }
 

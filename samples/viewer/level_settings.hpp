@@ -1,15 +1,13 @@
-// A level file's materials and effects, to change and start again with. Ranges, units and defaults come from level.schema.json.
+// What of a level file can be changed from outside: effects, to start again with, and what its numbers mean, from
+// level.schema.json.
 #pragma once
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
 namespace viewer {
 
-struct MaterialSetting {
-    std::string key, description; // the description begins or ends with the unit
-    float least, most, value;
-};
 struct EffectSetting {
     std::string name;
     int force; // index into effect_forces
@@ -19,11 +17,11 @@ inline constexpr const char* effect_forces[] = {"auto", "on", "off"};
 class LevelSettings {
   public:
     LevelSettings() = default;
-    /// Empty for a level that is no JSON file (a terrain map) or where the schema is not found.
+    /// Without effects for a level that is no JSON file (a terrain map) or where the schema is not found.
     explicit LevelSettings(const std::filesystem::path& level_file);
-    std::vector<MaterialSetting> materials;
     std::vector<EffectSetting> effects;
-    /// The level file's text with these values.
+    std::map<std::string, std::string> material_help; // by key; begins or ends with the unit
+    /// The level file's text with these effects; empty where there are none.
     std::string text() const;
 
   private:

@@ -38,10 +38,11 @@ const Quality& quality_preset(const std::string& name) {
 }
 
 const std::vector<View>& views() {
-    static const std::vector<View> list = {{"picture", "", 0, 1},       {"depth", "m", 0, 5},  {"speed", "m/s", 0, 6},
-                                           {"saturation", "", 0, 0.5f}, {"froude", "", 0, 2},  {"sand", "m", 0, 4},
-                                           {"sand-speed", "m/s", 0, 3}, {"foam", "", 0, 1},    {"height", "m", 0, 20},
-                                           {"sky", "", 0, 1},           {"slope", "", 0, 1.5f}};
+    static const std::vector<View> list = {{"picture", "", 0, 1},       {"depth", "m", 0, 5},   {"speed", "m/s", 0, 6},
+                                           {"saturation", "", 0, 0.5f}, {"froude", "", 0, 2},   {"sand", "m", 0, 4},
+                                           {"sand-speed", "m/s", 0, 3}, {"foam", "", 0, 1},     {"height", "m", 0, 20},
+                                           {"sky", "", 0, 1},           {"slope", "", 0, 1.5f}, {"strain", "", 0, 0.05f},
+                                           {"stress", "kPa", 0, 40},    {"active", "", 0, 1}};
     return list;
 }
 
@@ -77,8 +78,8 @@ FrameParams frame_params(const Picture& picture, const Grid& grid, int width, in
     p.sun = glm::vec4(sun, look.sun_softness);
     p.sunlight = glm::vec4(glm::mix(glm::vec3(2.60f, 2.35f, 2.00f), glm::vec3(2.6f, 1.6f, 0.85f), low_sun), look.exposure);
     p.zenith = glm::vec4(0.20f, 0.36f, 0.72f, look.ambient);
-    p.horizon = glm::vec4(0.72f, 0.80f, 0.90f, picture.time);
-    p.plinth = glm::vec4(0.30f, 0.295f, 0.29f, grid.block.low.z);
+    p.horizon = glm::vec4(0.62f, 0.76f, 0.94f, picture.time);
+    p.plinth = glm::vec4(0.335f, 0.315f, 0.285f, grid.block.low.z);
     p.domain = glm::vec4(grid.dx, extent.x, extent.y, 0);
     const bool one = quality.samples == 1;
     p.lens = glm::vec4(one ? 0.0f : halton(sample + 1, 2) - 0.5f, one ? 0.0f : halton(sample + 1, 3) - 0.5f,

@@ -34,20 +34,22 @@ int main_checked(int argc, char** argv) {
     bool only_list_levels = false, only_list_gpus = false;
     CLI::App app("Shows a Wadi level in three dimensions: in a window, or as PNG pictures without one.", "wadi-viewer");
     app.add_option("level", level,
-                   "level name (--list-levels), level file (.json), level folder or terrain map (.png, .r16, .npy)");
+                   "level name (--list-levels), level file (.json), level folder or terrain map (.png, .r16, .npy, .asc)");
     app.add_option("--backend", options.simulation.backend, "of the simulation: auto, cpu, vulkan or cuda")
         ->capture_default_str();
     app.add_option("--threads", options.simulation.threads, "threads of the cpu backend; 0 = all cores")
         ->check(CLI::Range(0, 256));
     app.add_option("--gpu", options.gpu, "Vulkan device that draws (--list-gpus); -1 = a real GPU first")
         ->check(CLI::Range(-1, 64));
+    app.add_option("--variant", options.simulation.variant, "one of the level's variants");
     app.add_option("--grid", grid, "grid NxM instead of the level's; keeps the x extent");
     app.add_option("--size", size, "WIDTHxHEIGHT of the picture or window, default 1280x720");
-    app.add_option("--camera", options.camera, "overview, opposite, top, close or low")->capture_default_str();
+    app.add_option("--camera", options.camera, "overview, opposite, top, close, low, or YAW,PITCH,SHARE,EAST,NORTH (README.md)")
+        ->capture_default_str();
     app.add_option("--quality", options.quality, "low, medium or high")->capture_default_str();
     app.add_option("--view", options.view,
                    "picture, or a quantity as false colour: depth, speed, saturation, froude, sand, sand-speed, "
-                   "foam, height, sky, slope")
+                   "foam, height, sky, slope, strain, stress, active")
         ->capture_default_str();
     app.add_flag("--arrows", options.arrows, "arrows of velocity");
     app.add_flag("--offscreen", options.offscreen, "no window: writes pictures");
@@ -82,7 +84,7 @@ int main_checked(int argc, char** argv) {
     if (!grid.empty()) parse_size("--grid", grid, 1, 16384, options.simulation.nx, options.simulation.ny);
     if (level.empty()) throw std::runtime_error("name a level (--list-levels shows the levels, --help the options)");
     const std::string extension = std::filesystem::path(level).extension().string();
-    if (extension == ".png" || extension == ".r16" || extension == ".npy") {
+    if (extension == ".png" || extension == ".r16" || extension == ".npy" || extension == ".asc") {
         options.level_name = std::filesystem::path(level).stem().string();
         options.simulation.level_file = level;
     } else {

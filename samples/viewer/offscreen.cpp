@@ -25,8 +25,9 @@ int run_offscreen(const Options& options) {
         Renderer renderer(gpu, options.width, options.height);
         std::printf("level      %s, %d x %d cells of %g m, dt %g s\n", options.level_name.c_str(), simulation.info.nx,
                     simulation.info.ny, simulation.info.dx, simulation.info.dt);
-        std::printf("simulated  %s: %s\ndrawn      %s, %u x %u, quality %s\n", simulation.info.backend,
-                    simulation.info.device_name, gpu.name.c_str(), options.width, options.height, options.quality.c_str());
+        std::printf("simulated  %s: %s\n", simulation.info.backend, simulation.info.device_name);
+        std::printf("drawn      %s (queue family %u of %u), %u x %u, quality %s\n", gpu.name.c_str(), gpu.family, gpu.families,
+                    options.width, options.height, options.quality.c_str());
 
         Picture picture;
         picture.camera = camera_preset(options.camera, simulation.grid.block,
@@ -39,9 +40,12 @@ int run_offscreen(const Options& options) {
         picture.arrows = options.arrows;
 
         simulation.set_recording(true);
+        simulation.show(host_field_of(picture.view));
         const auto first_steps = static_cast<uint64_t>(std::llround(options.start / simulation.info.dt));
-        for (uint64_t done = 0; done < first_steps; done += 256)
-            simulation.step(static_cast<uint32_t>(std::min<uint64_t>(256, first_steps - done)));
+        for (uint64_t done = 0; done + 1 < first_steps; done += 256)
+            simulation.step(static_cast<uint32_t>(std::min<uint64_t>(256, first_steps - 1 - done)));
+        simulation.update(0); // what the last step changed shows in the view of active tiles
+        if (first_steps > 0) simulation.step(1);
         simulation.update(0);
         gpu.wait_idle();
 

@@ -45,7 +45,8 @@ void Panel::draw(Session& session, double frame_seconds) {
         if (ImGui::CollapsingHeader("Tools", ImGuiTreeNodeFlags_DefaultOpen)) tools(session);
         if (ImGui::CollapsingHeader("Picture", ImGuiTreeNodeFlags_DefaultOpen)) quality(session);
         if (ImGui::CollapsingHeader("Costs", ImGuiTreeNodeFlags_DefaultOpen)) costs(session);
-        if (ImGui::CollapsingHeader("Materials and effects")) level_changes(session);
+        if (ImGui::CollapsingHeader("Material")) material(session);
+        if (ImGui::CollapsingHeader("Effects")) effects(session);
         if (ImGui::CollapsingHeader("Ledger")) ledger(session, frame_seconds);
         if (ImGui::CollapsingHeader("Back in time")) time_travel(session);
     } catch (const std::exception& error) {
@@ -72,6 +73,7 @@ void Panel::simulation(Session& session) {
         SimulationChoice choice = session.choice();
         choice.level_file = levels[static_cast<std::size_t>(level)].file.string();
         choice.text.clear();
+        choice.variant.clear();
         choice.nx = choice.ny = 0;
         session.open(levels[static_cast<std::size_t>(level)].name, choice);
     }
@@ -202,31 +204,48 @@ void Panel::costs(Session& session) {
     for (const wadi_stage_timing& stage : stages) bar(stage.name, stage.milliseconds, all, "ms");
 }
 
-void Panel::level_changes(Session& session) {
-    LevelSettings& settings = session.settings;
-    if (settings.materials.empty()) {
-        ImGui::TextWrapped("No level file or no level.schema.json: nothing to change here.");
-        return;
+void Panel::material(Session& session) {
+    const std::vector<wadi_material_info>& first = session.level_material();
+    const std::vector<wadi_material_info> now = session.material();
+    if (ImGui::Button("as the level has it")) {
+        for (const wadi_material_info& info : first) session.set_material(info.name, info.value);
     }
-    ImGui::TextWrapped("Counts from the next start of the level.");
-    if (ImGui::Button("restart with these")) session.restart();
-    for (MaterialSetting& material : settings.materials) {
-        const bool wide = material.most > 1000;
-        // A slider over all that is allowed would have no resolution: up to 10 times the value, still within the range.
-        const float most = wide ? std::min(material.most, 10 * std::max(material.value, 1.0f)) : material.most;
-        ImGui::SliderFloat(material.key.c_str(), &material.value, material.least, most, "%.4g", ImGuiSliderFlags_AlwaysClamp);
-        if (ImGui::IsItemHovered())
-            ImGui::SetTooltip("%s; %g ... %g", material.description.c_str(), static_cast<double>(material.least),
-                              static_cast<double>(material.most));
+    for (std::size_t n = 0; n < now.size(); ++n) {
+        const wadi_material_info& info = now[n];
+        // A slider over all that is allowed would have no resolution: up to 10 times the level's value, still within the range.
+        const double most = info.most > 100 ? std::min(info.most, 10 * std::max(first[n].value, 100.0)) : info.most;
+        const bool small = info.most <= 1e6 && first[n].value < 0.05 * info.most;
+        double value = info.value;
+        if (ImGui::SliderScalar(info.name, ImGuiDataType_Double, &value, &info.least, &most, "%.4g",
+                                ImGuiSliderFlags_AlwaysClamp | (small ? ImGuiSliderFlags_Logarithmic : 0)))
+            session.set_material(info.name, value);
+        const auto help = session.settings.material_help.find(std::string(info.name).substr(0, std::string(info.name).find('[')));
+        if (ImGui::IsItemHovered() && help != session.settings.material_help.end())
+            ImGui::SetTooltip("%s; %g ... %g", help->second.c_str(), info.least, info.most);
     }
+}
+
+void Panel::effects(Session& session) {
     uint32_t count = 0;
     check(wadi_world_get_effects(session.simulation().world, nullptr, &count), "effects");
     std::vector<wadi_effect_info> effects(count);
     check(wadi_world_get_effects(session.simulation().world, effects.data(), &count), "effects");
-    for (EffectSetting& effect : settings.effects) {
+    ImGui::TextWrapped("At once, by the number of the material that is 0 without:");
+    for (const wadi_effect_info& now : effects) {
+        if (Session::switch_of(now.name) == nullptr) continue;
+        bool on = now.on != 0;
+        if (ImGui::Checkbox(now.name, &on)) session.switch_effect(now.name, on);
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", now.why);
+    }
+    if (session.settings.effects.empty()) return;
+    ImGui::TextWrapped("Forced from the next start of the level:");
+    if (ImGui::Button("restart with these")) session.restart();
+    for (EffectSetting& effect : session.settings.effects) {
+        ImGui::PushID("forced");
         choose(
             effect.name.c_str(), [](int n) { return effect_forces[n]; }, static_cast<int>(std::size(effect_forces)),
             effect.force);
+        ImGui::PopID();
         for (const wadi_effect_info& now : effects) {
             if (effect.name != now.name) continue;
             ImGui::SameLine();

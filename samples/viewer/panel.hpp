@@ -21,7 +21,8 @@ class Panel {
     void tools(Session& session);
     void quality(Session& session);
     void costs(Session& session);
-    void level_changes(Session& session);
+    void material(Session& session);
+    void effects(Session& session);
     void ledger(Session& session, double seconds);
     void time_travel(Session& session);
     void profile(const Session& session);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <span>
 #include <stdexcept>
 
 namespace viewer {
@@ -13,7 +14,8 @@ constexpr uint32_t GROUP = 8; // local size of the passes
 
 // Bindings of shaders/frame.glsl and of the passes.
 constexpr std::array<uint32_t, 7> sampled_bindings = {1, 2, 3, 4, 5, 6, 25};
-constexpr uint32_t first_source = 7, first_storage = 14, storage_count = 11, summit_storage = 26;
+constexpr uint32_t first_storage = 14, storage_count = 11, summit_storage = 26;
+constexpr std::array<uint32_t, 8> source_bindings = {7, 8, 9, 10, 11, 12, 13, 27};
 
 template <std::size_t N> VkPipeline make_pipeline(const Gpu& gpu, VkPipelineLayout layout, const uint32_t (&words)[N]) {
     VkShaderModuleCreateInfo module_info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};
@@ -96,7 +98,7 @@ void Renderer::make_layouts() {
     };
     add(0, VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC);
     for (uint32_t binding : sampled_bindings) add(binding, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER);
-    for (uint32_t n = 0; n < Sources{}.size(); ++n) add(first_source + n, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
+    for (uint32_t binding : source_bindings) add(binding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
     for (uint32_t n = 0; n < storage_count; ++n) add(first_storage + n, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
     add(summit_storage, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
     VkDescriptorSetLayoutCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
@@ -201,7 +203,7 @@ void Renderer::bind_sources(const Sources& sources) {
         const VkDescriptorBufferInfo buffer{sources[n].buffer, 0, VK_WHOLE_SIZE};
         VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
         write.dstSet = set_;
-        write.dstBinding = first_source + n;
+        write.dstBinding = source_bindings[n];
         write.descriptorCount = 1;
         write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
         write.pBufferInfo = &buffer;
@@ -270,8 +272,8 @@ void Renderer::draw(const Picture& what, const Grid& grid, const Sources& source
     ahead.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
     ahead.dstAccessMask = VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
     std::vector<VkBufferMemoryBarrier> acquired;
-    if (foreign_memory) { // what another API wrote is acquired
-        for (const Source& source : sources) {
+    if (foreign_memory) {                                                           // what another API wrote is acquired
+        for (const Source& source : std::span(sources).first(sources.size() - 1)) { // the last is the host's
             VkBufferMemoryBarrier acquire{VK_STRUCTURE_TYPE_BUFFER_MEMORY_BARRIER};
             acquire.dstAccessMask = VK_ACCESS_SHADER_READ_BIT;
             acquire.srcQueueFamilyIndex = VK_QUEUE_FAMILY_EXTERNAL;

@@ -11,10 +11,11 @@ namespace {
 
 /// Commands and how many words follow.
 const std::map<std::string, std::size_t> commands = {
-    {"pointer", 2},  {"press", 1}, {"release", 1},     {"wheel", 1},  {"key", 1},     {"tool", 1},     {"radius", 1},
-    {"strength", 1}, {"speed", 1}, {"pause", 0},       {"resume", 0}, {"step", 0},    {"restart", 0},  {"screenshot", 0},
-    {"record", 1},   {"view", 1},  {"quality", 1},     {"arrows", 0}, {"section", 4}, {"backend", 1},  {"level", 2},
-    {"keep", 2},     {"back", 1},  {"determinism", 1}, {"print", 0},  {"resize", 2},  {"minimise", 0}, {"restore", 0},
+    {"pointer", 2}, {"press", 1},      {"release", 1},  {"wheel", 1},   {"key", 1},      {"tool", 1},
+    {"radius", 1},  {"strength", 1},   {"speed", 1},    {"pause", 0},   {"resume", 0},   {"step", 0},
+    {"restart", 0}, {"screenshot", 0}, {"record", 1},   {"view", 1},    {"quality", 1},  {"arrows", 0},
+    {"section", 4}, {"backend", 1},    {"level", 2},    {"keep", 2},    {"back", 1},     {"determinism", 1},
+    {"print", 0},   {"resize", 2},     {"minimise", 0}, {"restore", 0}, {"material", 2}, {"effect", 2},
 };
 
 std::size_t button_number(const std::string& name) {
@@ -75,8 +76,12 @@ void run(const Script::Line& line, Session& session) {
     if (command == "level") {
         SimulationChoice choice = session.choice();
         choice.level_file = line.words[1];
+        choice.text.clear();
+        choice.variant.clear();
         session.open(line.words[0], choice);
     }
+    if (command == "material") session.set_material(line.words[0], std::stod(line.words[1]));
+    if (command == "effect") session.switch_effect(line.words[0], line.words[1] == "on");
     if (command == "keep") session.set_rollback(static_cast<uint32_t>(number(0)), static_cast<uint32_t>(number(1)));
     if (command == "back") session.roll_back(std::stoull(line.words[0]));
     if (command == "determinism")

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <stdexcept>
 
 namespace viewer {
 namespace {
@@ -27,8 +28,10 @@ Session::Session(const Gpu& device, Renderer& picture_renderer, const Options& o
 void Session::open(const std::string& name, const SimulationChoice& choice) {
     renderer.wait();
     auto made = std::make_unique<Simulation>(gpu, choice); // throws before anything of the old world is touched
+    const bool other_level = !simulation_ || choice.level_file != choice_.level_file;
+    const std::vector<wadi_material_info> kept = other_level ? std::vector<wadi_material_info>() : material();
     simulation_ = std::move(made);
-    const bool other_level = choice.level_file != choice_.level_file || settings.materials.empty();
+    take_over(kept);
     choice_ = choice;
     level_name = name;
     if (other_level) {
@@ -38,6 +41,7 @@ void Session::open(const std::string& name, const SimulationChoice& choice) {
         picture.look.clarity = default_clarity(simulation_->grid);
         picture.section = {};
         sources.clear();
+        switched_off_.clear();
         const glm::vec2 extent = simulation_->grid.extent();
         brush_radius = 0.04f * std::max(extent.x, extent.y);
         brush_strength = 0.5f * brush_radius;
@@ -52,8 +56,59 @@ void Session::open(const std::string& name, const SimulationChoice& choice) {
 
 void Session::restart() {
     SimulationChoice choice = choice_;
-    choice.text = settings.materials.empty() ? std::string() : settings.text();
+    choice.text = settings.text();
     open(level_name, choice);
+}
+
+std::vector<wadi_material_info> Session::material() const {
+    uint32_t count = 0;
+    check(wadi_world_get_material(simulation_->world, nullptr, &count), "the material");
+    std::vector<wadi_material_info> infos(count);
+    check(wadi_world_get_material(simulation_->world, infos.data(), &count), "the material");
+    return infos;
+}
+
+void Session::set_material(const std::string& name, double value) {
+    check(wadi_world_set_material(simulation_->world, name.c_str(), value), "changing the material");
+}
+
+// Numbers that must stay in order may need another turn.
+void Session::take_over(const std::vector<wadi_material_info>& kept) {
+    level_material_ = material();
+    for (int turn = 0; turn < 3; ++turn) {
+        for (const wadi_material_info& info : kept) wadi_world_set_material(simulation_->world, info.name, info.value);
+    }
+}
+
+const char* Session::switch_of(const std::string& effect) {
+    static const std::map<std::string, const char*> numbers = {{"elastoplastic", "young_modulus"},
+                                                               {"drag", "exchange_rate"},
+                                                               {"diffusion", "diffusion_rate"},
+                                                               {"bed_friction", "bed_friction"},
+                                                               {"bed_shear", "bed_shear"}};
+    const auto found = numbers.find(effect);
+    return found == numbers.end() ? nullptr : found->second;
+}
+
+void Session::switch_effect(const std::string& effect, bool on) {
+    static const std::map<std::string, double> usual = {
+        {"elastoplastic", 2e5}, {"drag", 1e5}, {"diffusion", 0.01}, {"bed_friction", 0.02}, {"bed_shear", 0.01}};
+    const char* number = switch_of(effect);
+    if (number == nullptr) throw std::runtime_error("effect \"" + effect + "\" cannot be switched while the world runs");
+    const auto value_in = [&](const std::vector<wadi_material_info>& infos) {
+        for (const wadi_material_info& info : infos) {
+            if (info.name == std::string(number)) return info.value;
+        }
+        return 0.0;
+    };
+    double value = 0;
+    if (on) {
+        value = switched_off_.contains(effect) ? switched_off_.at(effect) : value_in(level_material_);
+        if (value <= 0) value = usual.at(effect);
+    } else if (const double now = value_in(material()); now > 0) {
+        switched_off_[effect] = now;
+    }
+    set_material(number, value);
 }
 
 void Session::queue_edits(double simulated_seconds, double seconds) {
@@ -104,6 +159,7 @@ void Session::advance(double seconds) {
     queue_edits(paused ? steps_due_ * simulation_->info.dt : simulated, seconds);
     if (paused && steps_due_ > 0) simulation_->step(steps_due_);
     steps_due_ = 0;
+    simulation_->show(host_field_of(picture.view));
     simulation_->update(static_cast<uint64_t>(simulated * 1e9));
     count_rates(seconds);
     follow_section();
@@ -123,6 +179,7 @@ void Session::count_rates(double seconds) {
 
 void Session::draw(const Submission& swapchain, const std::function<void(VkCommandBuffer)>& after) {
     picture.time = static_cast<float>(simulation_->frame.time + simulation_->frame.interpolation * simulation_->info.dt);
+    renderer.wait(); // the last picture reads what is filled now
     const Sources& outputs = simulation_->sources(recording_);
     Submission submission = simulation_->next_submission();
     submission.wait = swapchain.wait;

@@ -32,7 +32,7 @@ class Session {
 
     /// Replaces the world; keeps the old one and throws where the new one cannot be made.
     void open(const std::string& level_name, const SimulationChoice& choice);
-    void restart(); // the same level as at its start, with changed settings
+    void restart(); // the same level as at its start, with the forced effects of `settings` and the material as it is now
     Simulation& simulation() { return *simulation_; }
     const SimulationChoice& choice() const { return choice_; }
 
@@ -44,6 +44,16 @@ class Session {
     /// The pointer at a pixel of the picture, with the tool's button down or not.
     void point(uint32_t x, uint32_t y, bool pressed);
     void point_away();
+
+    /// The material's numbers now, and as the level has them.
+    std::vector<wadi_material_info> material() const;
+    const std::vector<wadi_material_info>& level_material() const { return level_material_; }
+    /// From the next step on; throws std::runtime_error naming number and range.
+    void set_material(const std::string& name, double value);
+    /// The number whose 0 switches an effect off while the world runs; null for an effect without one.
+    static const char* switch_of(const std::string& effect);
+    /// By that number: 0, or what it was before, or the level's, or a usual value.
+    void switch_effect(const std::string& effect, bool on);
 
     std::string check_determinism(uint32_t steps);
     void set_rollback(uint32_t frames, uint32_t interval);
@@ -78,6 +88,8 @@ class Session {
     Options options_;
     SimulationChoice choice_;
     std::unique_ptr<Simulation> simulation_;
+    std::vector<wadi_material_info> level_material_;
+    std::map<std::string, double> switched_off_; // by effect: the value that switch_effect() took away
     uint32_t steps_due_ = 0;
     std::optional<glm::vec3> pointed_, last_pointed_;
     bool pressed_ = false;
@@ -89,6 +101,7 @@ class Session {
     double host_seconds_ = 0, simulated_at_ = 0; // of the rates
     uint64_t steps_at_ = 0;
 
+    void take_over(const std::vector<wadi_material_info>& material);
     void queue_edits(double simulated_seconds, double seconds);
     void follow_section();
     void count_rates(double seconds);

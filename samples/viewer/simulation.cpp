@@ -53,6 +53,14 @@ int32_t read_beside(void* user, const char* name, void* data, std::size_t* size)
 
 } // namespace
 
+HostField host_field_of(int view) {
+    const std::string name = views()[static_cast<std::size_t>(view)].name;
+    return name == "strain"   ? HostField::strain
+           : name == "stress" ? HostField::stress
+           : name == "active" ? HostField::activity
+                              : HostField::none;
+}
+
 void check(wadi_result result, const char* what) {
     if (result != WADI_OK) throw std::runtime_error(std::string(what) + ": " + wadi_get_last_error());
 }
@@ -80,6 +88,7 @@ Simulation::Simulation(const Gpu& gpu, const SimulationChoice& choice) : gpu_(gp
     wadi_level_overrides overrides = wadi_default_level_overrides();
     overrides.nx = choice.nx;
     overrides.ny = choice.ny;
+    overrides.variant = choice.variant.empty() ? nullptr : choice.variant.c_str();
     std::filesystem::path folder = std::filesystem::path(choice.level_file).parent_path();
     check(choice.text.empty()
               ? wadi_create_world_from_level(choice.level_file.c_str(), &overrides, &options, &world)
@@ -104,6 +113,8 @@ Simulation::Simulation(const Gpu& gpu, const SimulationChoice& choice) : gpu_(gp
         grid.block.low = {0, 0, lowest - 0.03f * longest};
         grid.block.high = {grid.extent().x, grid.extent().y, std::max(highest, lowest + 0.02f * longest)};
         choose_outputs();
+        make_buffers();
+        set_recording(false);
         update(0);
     } catch (...) {
         wadi_destroy_world(world);
@@ -120,18 +131,93 @@ Simulation::~Simulation() {
 void Simulation::choose_outputs() {
     uint32_t mask = 0;
     for (wadi_output output : outputs) mask |= WADI_OUTPUT_BIT(output);
+    const uint32_t tiles = host_field_ == HostField::activity ? WADI_OUTPUT_TILES_BIT : 0;
+    if (on_host_) check(wadi_world_set_host_outputs(world, mask), "asking for outputs");
+    check(wadi_world_set_outputs(world, (on_host_ ? 0 : mask) | tiles), "asking for outputs");
+}
+
+void Simulation::make_buffers() {
+    const auto row = static_cast<VkDeviceSize>(info.nx) * sizeof(float);
+    host_field_buffer_ = Buffer(gpu_, row, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, true);
+    std::memset(host_field_buffer_.mapped, 0, row);
+    sources_[outputs.size()] = {host_field_buffer_.handle, 0, 0};
     if (on_host_) {
-        check(wadi_world_set_host_outputs(world, mask), "asking for outputs");
         for (std::size_t n = 0; n < outputs.size(); ++n) {
-            const auto bytes = static_cast<VkDeviceSize>(info.nx) * static_cast<VkDeviceSize>(info.ny) * sizeof(float) *
-                               static_cast<VkDeviceSize>(floats[n]);
+            const auto bytes = row * static_cast<VkDeviceSize>(info.ny) * static_cast<VkDeviceSize>(floats[n]);
             staging_[n] = Buffer(gpu_, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, true);
             sources_[n] = {staging_[n].handle, 0, info.nx * floats[n]};
         }
-    } else {
-        check(wadi_world_set_outputs(world, mask), "asking for outputs");
     }
-    set_recording(false);
+}
+
+void Simulation::show(HostField field) {
+    if (field == host_field_) return;
+    vkQueueWaitIdle(gpu_.queue); // the last picture may read the buffer
+    if (host_field_ == HostField::none) {
+        const auto bytes = static_cast<VkDeviceSize>(info.nx) * static_cast<VkDeviceSize>(info.ny) * sizeof(float);
+        host_field_buffer_ = Buffer(gpu_, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, true);
+        sources_[outputs.size()] = {host_field_buffer_.handle, 0, info.nx};
+    }
+    const bool tiles = field == HostField::activity, had_tiles = host_field_ == HostField::activity;
+    host_field_ = field;
+    std::memset(host_field_buffer_.mapped, 0, host_field_buffer_.bytes);
+    if (tiles != had_tiles) choose_outputs();
+}
+
+void Simulation::fill_host_field(bool whole) {
+    if (host_field_ == HostField::strain || host_field_ == HostField::stress) read_strain();
+    if (host_field_ == HostField::activity) read_activity(whole);
+}
+
+// Of the left stretch V in the plane: the size of ln V, or that of the stress that material of these numbers answers with, in
+// kPa.
+void Simulation::read_strain() {
+    const std::size_t cells = static_cast<std::size_t>(info.nx) * static_cast<std::size_t>(info.ny);
+    std::vector<float> xx(cells), xy(cells), yy(cells);
+    check(wadi_world_read_field(world, WADI_FIELD_STRETCH_XX, xx.data(), cells), "reading the strain");
+    check(wadi_world_read_field(world, WADI_FIELD_STRETCH_XY, xy.data(), cells), "reading the strain");
+    check(wadi_world_read_field(world, WADI_FIELD_STRETCH_YY, yy.data(), cells), "reading the strain");
+    std::array<wadi_material_info, 64> material{};
+    auto count = static_cast<uint32_t>(material.size());
+    check(wadi_world_get_material(world, material.data(), &count), "the material");
+    const auto number = [&](const char* name) {
+        for (const wadi_material_info& known : material) {
+            if (std::strcmp(known.name, name) == 0) return static_cast<float>(known.value);
+        }
+        return 0.0f;
+    };
+    const float young = 1e-3f * number("young_modulus"), poisson = number("poisson_ratio");
+    const float lambda = young * poisson / ((1 + poisson) * (1 - 2 * poisson)), shear = young / (2 * (1 + poisson));
+    auto* to = static_cast<float*>(host_field_buffer_.mapped);
+    for (std::size_t n = 0; n < cells; ++n) {
+        const float mean = 0.5f * (xx[n] + yy[n]), radius = std::hypot(0.5f * (xx[n] - yy[n]), xy[n]);
+        const float a = std::log1p(std::max(mean + radius, -0.99f)), b = std::log1p(std::max(mean - radius, -0.99f));
+        const float trace = lambda * (a + b), area = std::exp(a + b);
+        to[n] =
+            host_field_ == HostField::strain ? std::hypot(a, b) : std::hypot(trace + 2 * shear * a, trace + 2 * shear * b) / area;
+    }
+}
+
+// 1 in tiles whose surface changed in the newest publish.
+void Simulation::read_activity(bool whole) {
+    uint32_t count = 0;
+    uint64_t step = 0;
+    wadi_result result = WADI_NOT_READY;
+    for (;;) {
+        result = wadi_world_get_tiles(world, nullptr, &count, &step);
+        if (!whole || (result == WADI_OK && step == frame.published_step)) break;
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        update(0);
+    }
+    if (result == WADI_NOT_READY) return;
+    std::vector<wadi_tile> tiles(count);
+    check(wadi_world_get_tiles(world, tiles.data(), &count, &step), "tiles");
+    auto* to = static_cast<float*>(host_field_buffer_.mapped);
+    for (const wadi_tile& tile : tiles) {
+        const float active = static_cast<int64_t>(step) == tile.changed_step ? 1.0f : 0.0f;
+        for (int j = tile.j; j < tile.j + tile.ny; ++j)
+            std::fill_n(to + static_cast<std::size_t>(j) * static_cast<std::size_t>(info.nx) + tile.i, tile.nx, active);
+    }
 }
 
 void Simulation::set_recording(bool on) {
@@ -185,6 +271,7 @@ bool Simulation::stage() {
 }
 
 const Sources& Simulation::sources(bool whole) {
+    fill_host_field(whole);
     if (on_host_) {
         while (!stage() || (whole && staged_step_ != frame.total_steps)) {
             std::this_thread::sleep_for(std::chrono::milliseconds(1));

@@ -11,7 +11,8 @@ namespace viewer {
 
 struct SimulationChoice {
     std::string level_file;
-    std::string text; // not empty: instead of the file's own; maps are still found beside it
+    std::string text;    // not empty: instead of the file's own; maps are still found beside it
+    std::string variant; // empty = the level as it is
     std::string backend = "auto";
     int device = -1;
     int threads = 0;
@@ -23,7 +24,7 @@ struct Source {
     VkBuffer buffer = VK_NULL_HANDLE;
     int offset = 0, row_pitch = 0; // [floats]
 };
-using Sources = std::array<Source, 7>;
+using Sources = std::array<Source, 8>;
 
 /// Throws std::runtime_error with the plugin's message.
 void check(wadi_result result, const char* what);
@@ -34,6 +35,11 @@ struct Submission {
     VkSemaphore timeline = VK_NULL_HANDLE;                      // waits for timeline_value, signals timeline_value + 1
     uint64_t timeline_value = 0;
 };
+
+/// A quantity per cell that the plugin does not publish: read or made on the host for each picture, which waits for the world.
+enum class HostField { none, strain, stress, activity };
+/// What a view (views() in look.hpp) needs.
+HostField host_field_of(int view);
 
 class Simulation {
   public:
@@ -49,6 +55,8 @@ class Simulation {
 
     /// Nothing is dropped: for recordings, where a picture may take longer than it shows.
     void set_recording(bool on);
+    /// To be called ahead of update().
+    void show(HostField field);
     void update(uint64_t nanoseconds);
     /// Whole steps beside the clock; outputs follow with the next update.
     void step(uint32_t steps);
@@ -66,12 +74,18 @@ class Simulation {
     const Gpu& gpu_;
     Sources sources_{};
     std::array<Buffer, 7> staging_; // CPU backend
+    Buffer host_field_buffer_;      // one row of zeros while there is none
+    HostField host_field_ = HostField::none;
     bool on_host_ = false;
     VkSemaphore timeline_ = VK_NULL_HANDLE;
     uint64_t timeline_value_ = 0;
     uint64_t staged_step_ = UINT64_MAX;
 
     void choose_outputs();
+    void make_buffers();
+    void fill_host_field(bool whole);
+    void read_strain();
+    void read_activity(bool whole);
     bool stage();
 };
 

@@ -48,6 +48,7 @@ int run_window(const Options& options) {
         App app(gpu, options, window.get(), options.width, options.height);
         auto last = std::chrono::steady_clock::now();
         const bool scripted = !app.script.empty();
+        uint64_t minimised_frames = 0;
         while (glfwWindowShouldClose(window.get()) == GLFW_FALSE && !(scripted && app.frames() >= options.frames)) {
             glfwPollEvents();
             int width = 0, height = 0;
@@ -61,6 +62,7 @@ int run_window(const Options& options) {
             if (!minimised &&
                 (static_cast<uint32_t>(width) != app.renderer.width() || static_cast<uint32_t>(height) != app.renderer.height()))
                 app.resize(static_cast<uint32_t>(width), static_cast<uint32_t>(height));
+            minimised_frames += minimised ? 1 : 0;
             // The last picture is done before an image is asked for: its semaphores are free again.
             app.renderer.wait();
             if (!minimised) swapchain.acquire(app.renderer.width(), app.renderer.height());
@@ -77,8 +79,9 @@ int run_window(const Options& options) {
             if (!app.script.lines(frame, "restore").empty()) glfwRestoreWindow(window.get());
         }
         app.renderer.wait();
-        std::printf("frames %llu, t = %.3f s, window %u x %u\n", static_cast<unsigned long long>(app.frames()),
-                    app.session.simulation().frame.time, app.renderer.width(), app.renderer.height());
+        std::printf("frames %llu, t = %.3f s, window %u x %u, minimised for %llu frames\n",
+                    static_cast<unsigned long long>(app.frames()), app.session.simulation().frame.time, app.renderer.width(),
+                    app.renderer.height(), static_cast<unsigned long long>(minimised_frames));
     }
     if (options.validate) std::printf("validation %u messages\n", validation_messages());
     return validation_messages() == 0 ? 0 : 3;

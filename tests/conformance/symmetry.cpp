@@ -1,5 +1,6 @@
 #include "tests/conformance/symmetry.hpp"
 #include <algorithm>
+#include <cstdio>
 
 namespace wadi::conformance {
 
@@ -7,6 +8,13 @@ namespace {
 
 std::size_t at(int i, int j, int nx) {
     return static_cast<std::size_t>(j) * static_cast<std::size_t>(nx) + static_cast<std::size_t>(i);
+}
+
+// All digits of a float.
+std::string number(float value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.9g", static_cast<double>(value));
+    return text;
 }
 
 // The image of a cell field, or of one component of a vector field with its sign.
@@ -108,8 +116,8 @@ Verdict compare_images(World& world, World& image, Symmetry symmetry) {
                                          : symmetry == Symmetry::mirror_x ? to.index(mirrored_i, j)
                                                                           : to.index(i, mirrored_j)];
                 if (value <= (odd ? -other : other) && value >= (odd ? -other : other)) continue;
-                return failed(field.name + "(" + std::to_string(i) + ", " + std::to_string(j) + ") is " + std::to_string(value) +
-                              ", its image " + std::to_string(other));
+                return failed(field.name + "(" + std::to_string(i) + ", " + std::to_string(j) + ") is " + number(value) +
+                              ", its image " + number(other));
             }
         }
     }

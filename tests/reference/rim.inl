@@ -106,12 +106,12 @@ template <class Real> bool Solver<Real>::in_span(const Side& side, int b) const 
     return centre >= side.from && centre <= side.to;
 }
 
-/// Outflow: the outer face takes the next face's outward velocity; a domain one cell wide has no inner face.
-template <class Real> void Solver<Real>::leave(Faces<Real>& velocity, const Axis& ax, bool far_end, int b) const {
+/// Outflow: the outer face takes the next face's outward velocity, `fastest` at most; a domain one cell wide has no inner face.
+template <class Real> void Solver<Real>::leave(Faces<Real>& velocity, const Axis& ax, bool far_end, int b, Real fastest) const {
     const Real outward = far_end ? Real(1) : Real(-1);
     Field<Real>& u = velocity.along(ax);
     const Real next = ax.along() > 1 ? u[ax.face(far_end ? ax.along() - 1 : 1, b)] : Real(0);
-    u[ax.face(far_end ? ax.along() : 0, b)] = outward * std::max(outward * next, Real(0));
+    u[ax.face(far_end ? ax.along() : 0, b)] = outward * std::clamp(outward * next, Real(0), fastest);
 }
 
 /// The water's velocities and outer depths of one side's faces. Positive `outward` points out of the domain.
@@ -138,10 +138,10 @@ template <class Real> void Solver<Real>::update_side(const Side& side, const Axi
             if (depth > Real(0)) pure_velocity.along(ax)[f] = -outward * q / depth;
         } else if (side.kind == SideKind::level) {
             level_face(ax, a, b, static_cast<Real>(value));
-            if (has(EFFECT_MIXTURE)) leave(mixed_velocity, ax, far_end, b);
+            if (has(EFFECT_MIXTURE)) leave(mixed_velocity, ax, far_end, b, P.clamp);
         } else {
-            leave(pure_velocity, ax, far_end, b);
-            if (has(EFFECT_MIXTURE)) leave(mixed_velocity, ax, far_end, b);
+            leave(pure_velocity, ax, far_end, b, P.clamp);
+            if (has(EFFECT_MIXTURE)) leave(mixed_velocity, ax, far_end, b, P.clamp);
         }
     }
 }
@@ -164,7 +164,7 @@ template <class Real> void Solver<Real>::update_open_sand_sides() {
     if (!has(EFFECT_OPEN_SIDES) || !has(EFFECT_SAND)) return;
     for_sides([&](const Side& side, const Axis& ax, bool far_end) {
         for (int b = 0; b < ax.across(); ++b)
-            if (side.kind == SideKind::outflow && in_span(side, b)) leave(sand_velocity, ax, far_end, b);
+            if (side.kind == SideKind::outflow && in_span(side, b)) leave(sand_velocity, ax, far_end, b, P.clamp_sand);
     });
 }
 

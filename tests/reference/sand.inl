@@ -44,6 +44,11 @@ template <class Real> void Solver<Real>::add_stress_and_gravity() {
     const auto corner = [&](const Axis& ax, int a, int b) {
         if (b == 0 || b == ax.across()) return Real(0);
         const std::array<std::size_t, 4> c = {ax.cell(a - 1, b - 1), ax.cell(a, b), ax.cell(a, b - 1), ax.cell(a - 1, b)};
+        if (mean_corner_shear) {
+            Real sum(0);
+            for (const std::size_t n : c) sum += sand[n] * sxy[n];
+            return sum / Real(4);
+        }
         const Real thinnest = std::min(std::min(sand[c[0]], sand[c[1]]), std::min(sand[c[2]], sand[c[3]]));
         return thinnest * (((sxy[c[0]] + sxy[c[1]]) + (sxy[c[2]] + sxy[c[3]])) / Real(4));
     };

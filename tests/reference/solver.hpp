@@ -122,7 +122,8 @@ template <class Real> class Solver {
     // What sources, rain and open sides added, as sums of depths [m]: exact in double with a quantum.
     double water_added = 0;
     double sand_added = 0;
-    std::int64_t refused = 0; // cell additions that would have passed the declared largest height
+    bool mean_corner_shear = false; // negative control of 2.7: shear at corners from mean heights
+    std::int64_t refused = 0;       // cell additions that would have passed the declared largest height
 
   private:
     using Side = wadi::Side;
@@ -159,7 +160,7 @@ template <class Real> class Solver {
     /// f(side, axis, far end) for the four sides.
     template <class F> void for_sides(F f);
     bool in_span(const Side& side, int b) const;
-    void leave(Faces<Real>& velocity, const Axis& axis, bool far_end, int b) const;
+    void leave(Faces<Real>& velocity, const Axis& axis, bool far_end, int b, Real fastest) const;
     void update_side(const Side& side, const Axis& axis, bool far_end);
     void level_face(const Axis& axis, int a, int b, Real level);
 

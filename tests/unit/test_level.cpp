@@ -311,6 +311,26 @@ TEST_CASE("level: a method preset is a set of choices; keys beside it and an ove
     CHECK(back.outflow_limiter);
 }
 
+TEST_CASE("level: an accuracy preset scales cells and time step and sets the substeps; an override wins, so does a size") {
+    const Level plain = must(parse(R"("method": {"substeps": 5})"));
+    const Level draft = must(parse(R"("accuracy": "draft", "method": {"substeps": 5})"));
+    CHECK(draft.settings.grid.nx == (plain.settings.grid.nx + 1) / 2);
+    CHECK(draft.settings.grid.nx * draft.settings.grid.dx == doctest::Approx(plain.settings.grid.nx * plain.settings.grid.dx));
+    CHECK(draft.settings.dt / draft.settings.grid.dx == doctest::Approx(plain.settings.dt / plain.settings.grid.dx));
+    CHECK(plain.settings.method.substeps == 5);
+    CHECK(draft.settings.method.substeps == 2);
+    LevelOverrides overrides;
+    overrides.accuracy = "accurate";
+    const Level accurate = must(parse(R"("accuracy": "draft")", "", overrides));
+    CHECK(accurate.settings.grid.nx == 2 * plain.settings.grid.nx);
+    overrides.size = {12, 8};
+    CHECK(must(parse(R"("accuracy": "draft")", "", overrides)).settings.grid.nx == 12);
+    overrides.accuracy = "exact";
+    const auto refused = parse("", "", overrides);
+    REQUIRE_FALSE(refused);
+    CHECK(refused.status().message.find("\"exact\" is not known") != std::string::npos);
+}
+
 TEST_CASE("level: variants are merged in by name") {
     const std::string rest = R"("material": {"friction": 0.4, "young_modulus": 1e5}, "sand": [{"shape": "plane", "height": 1}],
         "variants": {"slippery": {"material": {"friction": 0.1}}, "bare": {"sand": [], "material": null}})";

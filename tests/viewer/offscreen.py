@@ -9,8 +9,9 @@ from pathlib import Path
 from pictures import alike, black_pixels, blue, difference, pixels, read_png, sandy, share
 
 IMAGES = Path(__file__).parent / "images"
-# Level and time [s]: early enough for a slow machine.
-SCENES = {"beach": 1.0, "canyon": 6.0, "castle": 2.0, "dam_break": 3.0, "flush": 1.5, "letters": 0.5, "piles": 0.5, "seepage": 1.0, "spring": 0.5, "wadi": 1.0}
+# Time [s] and grid of a level: half as fine as its own and early, for slow machines.
+SCENES = {"beach": (1.0, "160x128"), "canyon": (6.0, "100x128"), "castle": (2.0, "128x64"), "dam_break": (3.0, "96x96"), "flush": (1.5, "128x128"),
+          "letters": (0.5, "160x80"), "piles": (0.5, "168x112"), "seepage": (1.0, "128x64"), "spring": (0.5, "128x128"), "wadi": (1.0, "224x144")}
 
 
 class Viewer:
@@ -39,8 +40,8 @@ def test_checks_can_fail():
 
 def test_levels(viewer, store):
     shots = {}
-    for level, start in SCENES.items():
-        shot = shots[level] = viewer.picture(level, level, "--backend", "cpu", "--start", start, "--size", "240x135")
+    for level, (start, grid) in SCENES.items():
+        shot = shots[level] = viewer.picture(level, level, "--backend", "cpu", "--start", start, "--grid", grid, "--size", "192x108")
         assert black_pixels(shot) == 0, f"{level}: {black_pixels(shot)} black pixels"
         if store:
             (IMAGES / f"{level}.png").write_bytes((viewer.folder / level / "frame_00000.png").read_bytes())
@@ -56,7 +57,7 @@ def test_levels(viewer, store):
 def test_water_is_where_water_is(viewer):
     """Seen from above at the start, dam_break has water on 39 m x 40 m of 96 m x 96 m, in the south-west."""
     for backend in ("cpu", "vulkan"):
-        shot = viewer.picture(f"top_{backend}", "dam_break", "--backend", backend, "--camera", "top", "--size", "200x200")
+        shot = viewer.picture(f"top_{backend}", "dam_break", "--backend", backend, "--camera", "top", "--grid", "96x96", "--size", "200x200")
         width, height, rows = shot
         corner = (0, 0, [row[:3 * (width // 2)] for row in rows[height // 2:]])
         south_west = (width // 2, height - height // 2, corner[2])
@@ -71,10 +72,22 @@ def test_water_is_where_water_is(viewer):
 
 def test_backends_agree(viewer):
     """The outputs read in place on the device and those that came through host memory make the same picture."""
-    one, other = (viewer.picture(f"same_{b}", "dam_break", "--backend", b, "--start", 1, "--size", "240x135") for b in ("cpu", "vulkan"))
+    one, other = (viewer.picture(f"same_{b}", "dam_break", "--backend", b, "--start", 1, "--grid", "96x96", "--size", "192x108") for b in ("cpu", "vulkan"))
     mean, most = difference(one, other)
     print(f"backends: {mean:.3f}, {most:.3f}")
     assert mean < 1 and most < 12 # the outputs of one are interpolated in time, one step late
+
+
+def part(picture, left, top, right, bottom):
+    """A rectangle in shares of the whole."""
+    width, height, rows = picture
+    x0, x1, y0, y1 = int(left * width), int(right * width), int(top * height), int(bottom * height)
+    return x1 - x0, y1 - y0, [row[3 * x0:3 * x1] for row in rows[y0:y1]]
+
+
+def above_lowest(r, g, b):
+    """Of the false colours: the lowest is dark blue with less green than red."""
+    return g > r + 6 or r > b
 
 
 def test_views(viewer):
@@ -83,8 +96,15 @@ def test_views(viewer):
     reds = share(depth, lambda r, g, b: r > 120 and g < 110 and b < 100)
     print(f"view depth: {reds:.3f} of the picture in the highest colour")
     assert 0.05 < reds < 0.3
-    plain = viewer.picture("plain", "dam_break", "--backend", "cpu", "--camera", "top", "--size", "120x120", "--start", 2)
-    arrows = viewer.picture("arrows", "dam_break", "--backend", "cpu", "--camera", "top", "--size", "120x120", "--start", 2, "--arrows")
+    for view, start in (("strain", 2), ("stress", 2), ("active", 1)): # not outputs: read on the host
+        shot = viewer.picture(view, "dam_break", "--backend", "cpu", "--camera", "top", "--size", "120x120", "--grid", "96x96", "--start", start, "--view", view)
+        north_west, south_west, east = part(shot, 0.1, 0.1, 0.3, 0.3), part(shot, 0.1, 0.7, 0.3, 0.9), part(shot, 0.55, 0.1, 0.9, 0.9)
+        print(f"view {view}: above the lowest colour {share(north_west, above_lowest):.3f} north-west, {share(south_west, above_lowest):.3f} south-west, {share(east, above_lowest):.3f} east")
+        assert share(north_west, above_lowest) == 0 # dry rock
+        assert (share(south_west, above_lowest) > 0.9) == (view == "active") # water
+        assert share(east, above_lowest) > 0.05 # two heaps of sand
+    plain = viewer.picture("plain", "dam_break", "--backend", "cpu", "--camera", "top", "--size", "120x120", "--grid", "96x96", "--start", 2)
+    arrows = viewer.picture("arrows", "dam_break", "--backend", "cpu", "--camera", "top", "--size", "120x120", "--grid", "96x96", "--start", 2, "--arrows")
     changed = sum(1 for p, q in zip(pixels(plain), pixels(arrows)) if p != q)
     assert changed > 50, f"arrows change {changed} pixels"
 
@@ -95,13 +115,17 @@ def test_qualities_and_cameras(viewer):
         assert black_pixels(read_png(viewer.folder / quality / "frame_00000.png")) == 0, quality
     for camera in ("opposite", "top", "close", "low"):
         assert black_pixels(viewer.picture(camera, "canyon", "--backend", "cpu", "--camera", camera, "--size", "96x54")) == 0, camera
+    for grid in ("1x40", "40x1"):
+        thin = viewer.picture(f"thin_{grid}", "dam_break", "--backend", "cpu", "--grid", grid, "--size", "61x47")
+        assert black_pixels(thin) == 0, grid
     odd = viewer.picture("odd", "dam_break", "--backend", "cpu", "--grid", "37x5", "--size", "61x47")
     assert odd[:2] == (61, 47) and black_pixels(odd) == 0
 
 
 def test_refusals(viewer):
     for words, says in ((["nowhere"], "nowhere"), (["piles", "--size", "9x9"], "16 ... 8192"), (["piles", "--quality", "best"], "low medium high"),
-                        (["piles", "--view", "mood"], "froude"), (["piles", "--camera", "front"], "overview"), (["piles", "--gpu", "40"], "--list-gpus"),
+                        (["piles", "--view", "mood"], "froude"), (["piles", "--camera", "front"], "overview"), (["piles", "--camera", "0,-100,1,0.5,0.5"], "-89 ... -1"),
+                        (["piles", "--camera", "0,nan,1,0.5,0.5"], "-89 ... -1"), (["piles", "--variant", "wet"], "undamped"), (["piles", "--gpu", "40"], "--list-gpus"),
                         (["piles", "--backend", "abacus"], "abacus"), (["piles", "--frames", "0"], "--frames")):
         done = viewer.run(*words, "--offscreen", code=2)
         assert says in done.stderr, f"{words}: \"{says}\" is not in: {done.stderr}"
@@ -109,8 +133,9 @@ def test_refusals(viewer):
 
 def test_validated(viewer):
     """No message of the validation layers, synchronization included, with the world on the viewer's own device."""
-    done = viewer.run("dam_break", "--offscreen", "--out", "validated", "--backend", "vulkan", "--frames", 3, "--size", "96x54", "--validate")
-    assert "validation 0 messages" in done.stdout, done.stdout
+    for view in ("picture", "strain", "active"):
+        done = viewer.run("dam_break", "--offscreen", "--out", "validated", "--backend", "vulkan", "--grid", "48x48", "--frames", 3, "--size", "96x54", "--view", view, "--validate")
+        assert "validation 0 messages" in done.stdout, done.stdout
 
 
 def main():

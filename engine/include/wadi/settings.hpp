@@ -35,6 +35,7 @@ struct Material {
     double bed_shear = 0;         // c of the stress rho_w c |u|^2 of pure water on sand, 0 ... 10; 0 = off
     double grain_size = 1e-3;     // [m], 1e-6 ... 1: how much stress bed load needs
     double bed_friction = 0;      // c of u/(1 + dt c |u|/h) for pure water, dimensionless, 0 ... 10; 0 = off
+    friend bool operator==(const Material&, const Material&) = default;
 };
 
 /// How velocities move with the flow (NUMERICS 2.3): by the mass fluxes, or traced back along the velocity as the paper does.
@@ -145,6 +146,7 @@ double height_quantum(const Method& method);
 
 /// Checks every number; the message names the field as the level file writes it, its value and its range.
 Status validate(const Settings& settings);
+Status validate(const Material& material);
 /// Checks sizes and finiteness (the message gives the first bad cell), non-negative depths, the declared largest height.
 Status validate(const InitialFields& fields, const Settings& settings);
 

@@ -97,8 +97,21 @@ typedef struct wadi_level_overrides {
     double dt;                 /* [s] */
     const char* method;        /* "robust" or "published" */
     const char* variant;       /* one of the level's variants; NULL = the level as it is. Not for terrain maps */
+    const char* accuracy;      /* "draft", "balanced" or "accurate": half, all or twice the level's cells along x and y (nx, ny win) and
+                                  two sand steps per water step; NULL = what the level says. samples/report has errors and costs */
 } wadi_level_overrides;
 WADI_API wadi_level_overrides wadi_default_level_overrides(void);
+
+/** An accuracy preset, with what it was measured to err and to cost against "balanced" (samples/report, full runs). */
+typedef struct wadi_accuracy_preset {
+    const char* name;
+    double cells;              /* factor on the level's cells along x and y */
+    int32_t substeps;          /* sand steps per water step */
+    double error;              /* mean absolute error, factor */
+    double gpu_cost, cpu_cost; /* time per simulated second, factor: one H100, two CPU cores */
+} wadi_accuracy_preset;
+/** Fills up to *count presets by rising accuracy and sets *count to their number; presets may be NULL to ask for it. */
+WADI_API wadi_result wadi_list_accuracy_presets(wadi_accuracy_preset* presets, uint32_t* count);
 
 /** Creates a world from a level file (.json) or from a terrain map (.png, .r16, .npy, .asc).
  *  Errors: NOT_FOUND, BAD_FILE, BAD_ARGUMENT, OUT_OF_MEMORY, NOT_SUPPORTED. */
@@ -362,7 +375,7 @@ WADI_API wadi_result wadi_world_get_dirty_regions(wadi_world_id world, int64_t s
 WADI_API wadi_result wadi_world_save(wadi_world_id world, void* data, size_t* size);
 /** Goes to a saved state: the world continues as the saved one would have, in every bit, on any backend that passes the
  *  exact-float test. The snapshot must be of a world of the same level settings (grid, dt, material, method, sides, sources, rain);
- *  initial fields may differ; effects that only this world has start from zero, and the world is promoted to those that only the
+ *  its material is taken as it was changed by then; initial fields may differ; effects that only this world has start from zero, and the world is promoted to those that only the
  *  snapshot has. Edits that wait and steps kept for roll-back are forgotten. Waits for the device.
  *  Errors, all leaving the world unchanged: BAD_FILE (no snapshot, a newer version, truncated, changed), BAD_ARGUMENT (of another
  *  level, or with effects that this world's level forces off), OUT_OF_MEMORY, DEVICE_LOST. */
@@ -390,8 +403,9 @@ WADI_API wadi_result wadi_world_set_rollback(wadi_world_id world, uint32_t frame
 /** Steps that can be gone back to, oldest first. *count: capacity in, steps out; steps may be NULL to ask the number. */
 WADI_API wadi_result wadi_world_get_rollback_steps(wadi_world_id world, uint64_t* steps, uint32_t* count);
 /** Goes back to the newest kept step <= `step`, written to *reached (may be NULL); later kept steps and edits that wait are forgotten. The world goes on
- *  from there as it did the first time, in every bit, given the same input. Does not wait. Errors: BAD_ARGUMENT (no step that old
- *  is kept; world unchanged), DEVICE_LOST. */
+ *  from there as it did the first time, in every bit, given the same input. Waits only where the material was another then. Steps
+ *  with an effect that the world has lost since are forgotten. Errors: BAD_ARGUMENT (no step that old is kept; world unchanged),
+ *  DEVICE_LOST. */
 WADI_API wadi_result wadi_world_roll_back(wadi_world_id world, uint64_t step, uint64_t* reached);
 
 /** 64-bit hash of the state, ghosts and terrain excluded: wadi_world_stats.hash without the rest. Equal states have equal hashes on
@@ -538,6 +552,24 @@ WADI_API wadi_result wadi_world_prepare_effects(wadi_world_id world);
  *  the steps asked for and reads the heights. */
 WADI_API wadi_result wadi_world_trim(wadi_world_id world);
 
+/** One number of the material. */
+typedef struct wadi_material_info {
+    char name[32];                /* as level files write it: "friction", "cohesion_wet", "saturation[0]" */
+    double value;                 /* now; units as in level files */
+    double least, most;           /* what wadi_world_set_material takes */
+} wadi_material_info;
+/** The numbers of the material and their present values. *count: capacity in, numbers out; infos may be NULL to ask the number. Does
+ *  not wait. */
+WADI_API wadi_result wadi_world_get_material(wadi_world_id world, wadi_material_info* infos, uint32_t* count);
+/** Changes one of them from the next whole step on, in the level's units. Effects follow as for a level with that value: 0 in
+ *  young_modulus, exchange_rate, diffusion_rate, bed_friction or bed_shear drops its effect (and the strain of the sand with
+ *  elastoplastic), a value above 0 brings it, which allocates. Where effects stay, no pipeline is made: the step is recorded anew, once
+ *  per change. Waits for the device. The command log has it; snapshots and kept steps hold the values of their moment and bring them
+ *  back. The level's warnings are not asked again.
+ *  Errors, nothing changed: NOT_FOUND (name), BAD_ARGUMENT (out of range, NaN, saturations out of order, or a number of an effect
+ *  that the level forces off: the message says which), OUT_OF_MEMORY, NOT_READY (inside a recording), DEVICE_LOST. */
+WADI_API wadi_result wadi_world_set_material(wadi_world_id world, const char* name, double value);
+
 /** Reads a field in a region within the grid, count = nx * ny floats; waits for the steps asked for. Errors: BAD_ARGUMENT. */
 WADI_API wadi_result wadi_world_read_region(wadi_world_id world, wadi_field field, const wadi_region* region, float* values, size_t count);
 /** Overwrites terrain, sand height or water height [m] in a region at once, after the steps asked for, which it waits for. Values
@@ -549,7 +581,7 @@ WADI_API wadi_result wadi_world_write_region(wadi_world_id world, wadi_field fie
 
 /* ---- Command log ---- */
 
-/** 1 = from now on remember every edit, written region and trim with its step, in host memory that grows; 0 = stop and drop the log.
+/** 1 = from now on remember every edit, written region, trim and change of the material with its step, in host memory that grows; 0 = stop and drop the log.
  *  Off at first. Going back in time drops what was remembered for later steps. Does not wait. */
 WADI_API wadi_result wadi_world_set_command_log(wadi_world_id world, int32_t on);
 /** The log as bytes, with all stamps of the world: a few dozen bytes per edit, versioned and checksummed. *size: bytes at `data` in,

@@ -6,7 +6,7 @@ vec3 ramp(float x) {
     return y < 1.0 ? mix(a, b, y) : y < 2.0 ? mix(b, c, y - 1.0) : y < 3.0 ? mix(c, d, y - 2.0) : mix(d, e, y - 3.0);
 }
 
-// The numbers are those of the list in views.cpp.
+// The numbers are those of the list in look.cpp.
 float quantity_at(int view, vec2 xy) {
     vec2 uv = texture_of(xy);
     vec4 h = heights_at(xy), m = textureLod(matter, uv, 0.0), v = textureLod(flow, uv, 0.0);
@@ -20,7 +20,8 @@ float quantity_at(int view, vec2 xy) {
     if (view == 7) return m.y;
     if (view == 8) return max(h.x, h.y);
     if (view == 9) return textureLod(light, uv, 0.0).y;
-    return length(textureLod(slopes, uv, 0.0).xy);
+    if (view == 10) return length(textureLod(slopes, uv, 0.0).xy);
+    return h.z;
 }
 
 float stroke(vec2 xy, vec2 a, vec2 b, float half_width, float pixel) {

@@ -10,11 +10,24 @@ layout(std430, set = 0, binding = 10) readonly buffer Saturation { float saturat
 layout(std430, set = 0, binding = 11) readonly buffer Foam { float foam[]; };
 layout(std430, set = 0, binding = 12) readonly buffer Flow { float water_velocity[]; };
 layout(std430, set = 0, binding = 13) readonly buffer SandVelocity { float sand_velocity[]; };
+layout(std430, set = 0, binding = 27) readonly buffer HostField { float host_field[]; };
 layout(set = 0, binding = 14, rgba32f) writeonly uniform image2D to_heights;
 layout(set = 0, binding = 15, rgba16f) writeonly uniform image2D to_matter;
 layout(set = 0, binding = 16, rgba16f) writeonly uniform image2D to_flow;
 
 int at(int source, ivec2 c, int floats) { return F.source[source].x + c.y * F.source[source].y + c.x * floats; }
+
+// The plugin's foam is that of fast water and of breaking fronts. A wide, even, fast sheet would be white all over by the first:
+// it keeps a share, and a front, where the water runs together, all of it.
+float seen_foam(ivec2 c, float depth) {
+    ivec2 low = max(c - 1, ivec2(0)), high = min(c + 1, F.grid.xy - 1);
+    vec2 run = F.domain.x * vec2(max(high - low, ivec2(1)));
+    float divergence = (water_velocity[at(5, ivec2(high.x, c.y), 2)] - water_velocity[at(5, ivec2(low.x, c.y), 2)]) / run.x +
+                       (water_velocity[at(5, ivec2(c.x, high.y), 2) + 1] - water_velocity[at(5, ivec2(c.x, low.y), 2) + 1]) / run.y;
+    float rising = -divergence * sqrt(depth / 9.81);
+    float breaking = clamp((rising - 0.1) / 0.4, 0.0, 1.0) * clamp(10.0 * depth / F.domain.x, 0.0, 1.0);
+    return max(breaking, 0.45 * foam[at(4, c, 1)]);
+}
 
 void main() {
     ivec2 c = ivec2(gl_GlobalInvocationID.xy);
@@ -43,10 +56,10 @@ void main() {
         level /= wet_weight;
         surface = depth > 0.25 * film ? max(level, solid + min(depth, film)) : min(level, below);
     }
-    imageStore(to_heights, c, vec4(solid, surface, 0.0, sand));
+    imageStore(to_heights, c, vec4(solid, surface, host_field[at(7, c, 1)], sand));
 
     vec2 water_speed = vec2(water_velocity[at(5, c, 2)], water_velocity[at(5, c, 2) + 1]);
     vec2 sand_speed = vec2(sand_velocity[at(6, c, 2)], sand_velocity[at(6, c, 2) + 1]);
-    imageStore(to_matter, c, vec4(saturation[at(3, c, 1)], foam[at(4, c, 1)], depth, length(sand_speed)));
+    imageStore(to_matter, c, vec4(saturation[at(3, c, 1)], seen_foam(c, depth), depth, length(sand_speed)));
     imageStore(to_flow, c, vec4(water_speed, sand_speed));
 }

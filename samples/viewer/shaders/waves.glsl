@@ -38,8 +38,10 @@ float foam_cover(Carried c, float foam, float depth, float pixel) {
             pattern += c.weight[n] * noise_slopes(p / size).x;
             WHERE (resolved(0.31 * size, pixel) > 0.0)
                 pattern += c.weight[n] * 0.7 * resolved(0.31 * size, pixel) * noise_slopes(q / (0.31 * size)).x;
+            WHERE (resolved(0.09 * size, pixel) > 0.0)
+                pattern += c.weight[n] * 0.7 * resolved(0.09 * size, pixel) * noise_slopes(p / (0.09 * size)).x;
         }
-        cover = foam * smoothstep(0.6 - 0.6 * foam, 1.7 - 0.6 * foam, 0.6 + 0.4 * pattern);
+        cover = smoothstep(0.02, 0.12, foam) * (0.25 + 0.65 * foam) * smoothstep(0.75 - 0.65 * foam, 1.6 - 0.65 * foam, 0.6 + 0.4 * pattern);
     }
     return 0.7 * cover;
 }

@@ -1,0 +1,25 @@
+// Accuracy presets: draft, balanced, accurate, chosen from the measured frontier of error against time (samples/report).
+#pragma once
+#include <span>
+#include <string>
+#include <vector>
+
+namespace wadi {
+
+/// What a preset changes, and what that bought and cost in the full report, each against `balanced` on the same scenes.
+struct AccuracyPreset {
+    const char* name;
+    double cells;    // factor on the level's cells along x and y; dt follows the cells' size
+    int substeps;    // sand steps per water step
+    double error;    // mean absolute error of sand and water surface
+    double gpu_cost; // time per simulated second, one H100
+    double cpu_cost; // the same, two cores
+};
+
+/// By rising accuracy.
+std::span<const AccuracyPreset> accuracy_presets();
+/// Null for an unknown name.
+const AccuracyPreset* find_accuracy_preset(const std::string& name);
+std::vector<std::string> accuracy_names();
+
+} // namespace wadi

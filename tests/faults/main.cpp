@@ -1,0 +1,241 @@
+// wadi-test-faults: a library whose host runs out of memory at every allocation in turn, is killed while it saves, or has a full
+// disk. Usage: wadi-test-faults memory | save | disk; "saver PATH" is the child that is killed.
+#include <atomic>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <new>
+#include <string>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+#include <vector>
+#include <wadi/wadi.h>
+
+namespace {
+
+// Allocation number `fail_at` of the process fails, and all later ones where `for_ever`.
+std::atomic<long> allocations{0}, live{0}, fail_at{0};
+std::atomic<bool> for_ever{false};
+
+// Not inlined: the compiler would take them for mismatched pairs.
+__attribute__((noinline)) void* allocate(std::size_t size) noexcept {
+    const long number = ++allocations, at = fail_at;
+    if (at > 0 && (number == at || (for_ever && number > at))) return nullptr;
+    void* memory = std::malloc(size == 0 ? 1 : size);
+    if (memory != nullptr) ++live;
+    return memory;
+}
+__attribute__((noinline)) void release(void* memory) noexcept {
+    if (memory != nullptr) --live;
+    std::free(memory);
+}
+
+} // namespace
+
+void* operator new(std::size_t size) {
+    void* memory = allocate(size);
+    if (memory == nullptr) throw std::bad_alloc();
+    return memory;
+}
+void* operator new[](std::size_t size) { return operator new(size); }
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return allocate(size); }
+void* operator new[](std::size_t size, const std::nothrow_t&) noexcept { return allocate(size); }
+void operator delete(void* memory) noexcept { release(memory); }
+void operator delete[](void* memory) noexcept { release(memory); }
+void operator delete(void* memory, std::size_t) noexcept { release(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { release(memory); }
+
+namespace {
+
+const char* const LEVEL = R"({ "format_version": 1, "name": "faults", "grid": { "nx": 6, "ny": 5, "dx": 0.5 }, "dt": 0.02,
+    "terrain": [ { "shape": "plane", "height": 0.1, "slope_x": 0.05 } ], "water": [ { "shape": "box", "from": [0, 0], "to": [1, 2], "height": 1 } ],
+    "sources": [ { "shape": "disc", "center": [1, 1], "radius": 0.6, "rate": [[0, 0.1], [1, 0.2]] } ], "sides": { "east": { "kind": "outflow" } } })";
+
+int wrong = 0;
+
+void expect(bool good, const std::string& what) {
+    if (good) return;
+    ++wrong;
+    std::fprintf(stderr, "WRONG: %s (%s)\n", what.c_str(), wadi_get_last_error());
+}
+
+wadi_world_id make_world() {
+    auto options = wadi_default_device_options();
+    options.backend = "cpu";
+    options.threads = 2;
+    wadi_world_id world{};
+    return wadi_create_world_from_level_text(LEVEL, nullptr, nullptr, nullptr, &options, &world) == WADI_OK ? world
+                                                                                                            : wadi_world_id{};
+}
+
+/// A host's session; true when every call succeeded. Failures must say that memory ran out. Allocations count from the world's
+/// making on: the JSON library allocates where it frees a level's text, and ends the process when it cannot.
+bool session(long fail = 0) {
+    fail_at = 0;
+    bool good = true;
+    const auto note = [&](wadi_result result, const char* call) {
+        if (result == WADI_OK || result == WADI_NOT_READY) return;
+        good = false;
+        if (result == WADI_ERROR_OUT_OF_MEMORY) return;
+        fail_at = 0; // for the text
+        expect(false, std::string(call) + " answered " + std::to_string(result));
+    };
+    auto options = wadi_default_device_options();
+    options.backend = "cpu";
+    options.threads = 2;
+    wadi_world_id world{};
+    note(wadi_create_world_from_level_text(LEVEL, nullptr, nullptr, nullptr, &options, &world), "create");
+    if (!good) return false;
+    allocations = 0;
+    fail_at = fail;
+    note(wadi_world_set_command_log(world, 1), "set_command_log");
+    note(wadi_world_set_rollback(world, 2, 1), "set_rollback");
+    note(wadi_world_set_outputs(world, 1), "set_outputs");
+    note(wadi_world_step(world, 2), "step");
+    auto edit = wadi_default_edit();
+    edit.layer = WADI_LAYER_SAND;
+    edit.x0 = edit.y0 = 1.2;
+    edit.radius = 1;
+    edit.amount = 0.3;
+    note(wadi_world_edit(world, &edit, 1), "edit");
+    note(wadi_world_step(world, 1), "step that promotes");
+    auto frame = wadi_default_frame();
+    note(wadi_world_update(world, 45'000'000, &frame), "update");
+    size_t bytes = 0;
+    note(wadi_world_save(world, nullptr, &bytes), "save: size");
+    static unsigned char snapshot[1 << 20];
+    size_t room = sizeof snapshot;
+    const auto saved = wadi_world_save(world, snapshot, &room);
+    note(saved, "save");
+    if (saved == WADI_OK) note(wadi_world_load(world, snapshot, room), "load");
+    const float xy[4] = {1, 1, 2, 2};
+    uint64_t ticket = 0;
+    note(wadi_world_query(world, xy, 2, &ticket), "query");
+    static float cells[30];
+    note(wadi_world_read_field(world, WADI_FIELD_WATER_HEIGHT, cells, 30), "read_field");
+    auto stats = wadi_default_world_stats();
+    const auto known = wadi_world_get_stats(world, &stats);
+    note(known, "get_stats");
+    if (known == WADI_OK && (stats.water_drift_quanta != 0 || stats.sand_drift_quanta != 0)) ++wrong;
+    size_t log_bytes = 0;
+    note(wadi_world_get_commands(world, nullptr, &log_bytes), "get_commands");
+    note(wadi_world_trim(world), "trim");
+    wadi_destroy_world(world);
+    return good;
+}
+
+/// One allocation fails, or all from one on; each in turn until a session needs no more.
+int memory() {
+    session();
+    const long before = live + 4; // what is made once and stays: the thread's last error, the table of worlds
+    expect(session(), "a session without faults");
+    const long needed = allocations;
+    expect(live <= before, "a session leaves nothing");
+    std::printf("%ld allocations in a session\n", needed);
+    for (const bool lasting : {false, true}) {
+        int failed = 0;
+        for (long n = 1; n <= needed && wrong < 10; ++n) {
+            for_ever = lasting;
+            if (!session(n)) ++failed;
+            fail_at = 0;
+            expect(live <= before, "allocation " + std::to_string(n) + (lasting ? " and all later ones" : "") +
+                                       " failed: " + std::to_string(live - before) +
+                                       " too many are left"); // leaks add up from session to session
+        }
+        std::printf("%s: %d sessions ended with an error\n", lasting ? "all from one on" : "one alone", failed);
+        expect(failed > needed / 2, "most failures are told");
+    }
+    expect(session(), "a session afterwards");
+    return wrong;
+}
+
+std::string path_of(const char* name) {
+    return (std::filesystem::temp_directory_path() / (std::string("wadi-") + name + "-" + std::to_string(getpid()))).string();
+}
+
+/// Saves again and again; the first file is there before the parent may kill it.
+int saver(const char* path) {
+    const auto world = make_world();
+    for (;;) {
+        if (wadi_world_step(world, 1) != WADI_OK || wadi_world_save_file(world, path) != WADI_OK) return 1;
+    }
+}
+
+/// Kills a process that saves, at random moments: the file is always whole.
+int save(const char* self) {
+    const std::string path = path_of("killed");
+    int loaded = 0;
+    for (int round = 0; round < 40; ++round) {
+        const pid_t child = fork();
+        if (child == 0) {
+            execl(self, self, "saver", path.c_str(), static_cast<char*>(nullptr));
+            _exit(127);
+        }
+        for (int n = 0; n < 5000 && !std::filesystem::exists(path); ++n)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        std::this_thread::sleep_for(std::chrono::microseconds(3000 + 977 * round));
+        kill(child, SIGKILL);
+        int status = 0;
+        waitpid(child, &status, 0);
+        expect(WIFSIGNALED(status), "the child was killed, not done");
+        const auto world = make_world();
+        const bool good = wadi_world_load_file(world, path.c_str()) == WADI_OK;
+        expect(good, "the file is a whole snapshot");
+        if (good) ++loaded;
+        wadi_destroy_world(world);
+    }
+    // Negative control: half a file is refused.
+    std::filesystem::resize_file(path, std::filesystem::file_size(path) / 2);
+    const auto world = make_world();
+    expect(wadi_world_load_file(world, path.c_str()) == WADI_ERROR_BAD_FILE, "half a file is refused");
+    wadi_destroy_world(world);
+    std::filesystem::remove(path);
+    std::filesystem::remove(path + ".part");
+    std::printf("killed 40 times while saving, %d whole files\n", loaded);
+    return wrong;
+}
+
+/// Files may grow to a part of a snapshot only: the old one survives, nothing else is left.
+int disk() {
+    const std::string path = path_of("full");
+    const auto world = make_world();
+    expect(wadi_world_save_file(world, path.c_str()) == WADI_OK, "saved while there is room");
+    std::uint64_t old_hash = 0, hash = 0;
+    expect(wadi_world_get_hash(world, &old_hash) == WADI_OK, "hash");
+    expect(wadi_world_step(world, 3) == WADI_OK, "step");
+    std::signal(SIGXFSZ, SIG_IGN);
+    rlimit limit{};
+    getrlimit(RLIMIT_FSIZE, &limit);
+    const rlimit small{std::filesystem::file_size(path) / 2, limit.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+    expect(wadi_world_save_file(world, path.c_str()) == WADI_ERROR_BAD_FILE, "a full disk is told");
+    expect(std::string(wadi_get_last_error()).find("writing") != std::string::npos, "by what failed");
+    setrlimit(RLIMIT_FSIZE, &limit);
+    expect(!std::filesystem::exists(path + ".part"), "no part of a file is left");
+    expect(wadi_world_load_file(world, path.c_str()) == WADI_OK && wadi_world_get_hash(world, &hash) == WADI_OK &&
+               hash == old_hash,
+           "the old snapshot is whole");
+    expect(wadi_world_save_file(world, path.c_str()) == WADI_OK, "saved once there is room again");
+    wadi_destroy_world(world);
+    std::filesystem::remove(path);
+    return wrong;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    const std::string what = argc > 1 ? argv[1] : "";
+    if (what == "saver" && argc > 2) return saver(argv[2]);
+    if (what != "memory" && what != "save" && what != "disk") {
+        std::fprintf(stderr, "wadi-test-faults memory | save | disk\n");
+        return 2;
+    }
+    const int failures = what == "memory" ? memory() : what == "save" ? save(argv[0]) : disk();
+    std::puts(failures == 0 ? "passed" : "FAILED");
+    return failures == 0 ? 0 : 1;
+}

@@ -1,0 +1,304 @@
+#include "tests/fuzz/checks.hpp"
+#include "engine/world.hpp"
+#include "tests/conformance/symmetry.hpp"
+#include "tests/fuzz/random.hpp"
+#include "tests/reference/solver.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace wadi::fuzz {
+
+namespace {
+
+using conformance::Session;
+using WorldHandle = std::unique_ptr<World>;
+
+std::string text(double value) {
+    char buffer[32];
+    std::snprintf(buffer, sizeof buffer, "%.9g", value);
+    return buffer;
+}
+
+/// One run and what went wrong in it; a refusal to make the world is kept apart.
+struct Run {
+    WorldHandle world;
+    std::string refused, failure;
+    bool good() const { return refused.empty() && failure.empty(); }
+    void note(const char* what, const Status& status) {
+        if (!status && failure.empty()) failure = std::string(what) + ": " + code_name(status.code) + ": " + status.message;
+    }
+};
+
+Run open(const Case& c, Session& session) {
+    Run run;
+    auto world = conformance::open_world(session, c.scene);
+    if (world)
+        run.world = std::move(*world);
+    else
+        run.refused = world.status().message;
+    return run;
+}
+
+void queue(Run& run, const Case& c, std::uint64_t from = 0) {
+    std::vector<Edit> later;
+    for (const Edit& edit : c.commands)
+        if (edit.step >= from) later.push_back(edit);
+    if (run.good() && !later.empty()) run.note("edit", run.world->edit(later));
+}
+
+void step(Run& run, int count) {
+    if (run.good() && count > 0) run.note("step", run.world->step(static_cast<std::uint32_t>(count)));
+}
+
+std::uint64_t hash(Run& run) {
+    if (!run.good()) return 0;
+    auto value = run.world->hash();
+    run.note("hash", value.status());
+    return value ? *value : 0;
+}
+
+// Where the books are exact: a quantum, a limiter, and no column that could pass the declared largest height.
+std::string check_books(Run& run, const Case& c, const WorldStats& s) {
+    const auto& m = c.scene.settings.method;
+    if (m.name == "published") return {}; // promises none of this: no limiter, no caps
+    if (s.not_finite > 0) return std::to_string(s.not_finite) + " values are not finite";
+    double ground = 0;
+    for (const float h : c.scene.fields.terrain) ground = std::max(ground, std::fabs(static_cast<double>(h)));
+    for (const Edit& edit : c.commands)
+        if (edit.kind != EditKind::push && edit.layer == EditLayer::terrain) ground += std::fabs(edit.amount);
+    const bool small = ground + s.largest_sand + s.largest_water < m.largest_height;
+    if (s.smallest_height < 0) return "a height is " + text(s.smallest_height) + " m";
+    const std::int64_t water = s.water_quanta - (s.water_initial + s.ledger.water_in - s.ledger.water_out),
+                       sand = s.sand_quanta - (s.sand_initial + s.ledger.sand_in - s.ledger.sand_out);
+    if (height_quantum(m) > 0 && small && (water != 0 || sand != 0))
+        return "off the books by " + std::to_string(water) + " quanta of water and " + std::to_string(sand) + " of sand";
+    const auto& set = run.world->settings();
+    const double clamp = m.velocity_clamp * set.grid.dx / set.dt * (1 + 1e-6);
+    if (s.largest_water_speed > clamp) return "water at " + text(s.largest_water_speed) + " m/s, the clamp is " + text(clamp);
+    if (s.largest_sand_speed > clamp * m.substeps)
+        return "sand at " + text(s.largest_sand_speed) + " m/s, the clamp is " + text(clamp * m.substeps);
+    return {};
+}
+
+/// The run that all others are compared with.
+struct Base {
+    Run run;
+    std::uint64_t hash = 0, hash_before = 0; // after the last step, and one ahead of it
+    bool finite = true;
+};
+
+Base run_base(const Case& c, Session& session) {
+    Base base;
+    base.run = open(c, session);
+    Run& run = base.run;
+    queue(run, c);
+    for (int done = 0; done < c.steps && run.good(); ++done) {
+        if (done == c.steps - 1) base.hash_before = hash(run);
+        step(run, 1);
+        if (!run.good() || (done > 2 && done % 8 != 0 && done != c.steps - 1)) continue;
+        auto stats = run.world->stats();
+        run.note("stats", stats.status());
+        if (!stats) break;
+        base.finite = stats->not_finite == 0;
+        run.failure = check_books(run, c, *stats);
+        if (!run.failure.empty()) run.failure = "after step " + std::to_string(done + 1) + " " + run.failure;
+    }
+    base.hash = hash(run);
+    return base;
+}
+
+std::string same(Run& run, std::uint64_t got, std::uint64_t expected) {
+    if (!run.refused.empty()) return "refused: " + run.refused;
+    if (!run.failure.empty()) return run.failure;
+    return got == expected ? "" : "other bits in the end";
+}
+
+std::string check_backend(const Case& c, Session& session, const Base& base, Weaken weaken) {
+    Case changed = c;
+    if (weaken == Weaken::bits && !changed.scene.fields.water.empty())
+        changed.scene.fields.water[0] += static_cast<float>(2 * height_quantum(c.scene.settings.method) + 1e-5);
+    Run run = open(changed, session);
+    if (run.world != nullptr && !run.world->device().capabilities().exact_float) return {};
+    queue(run, c);
+    step(run, c.steps);
+    const std::string wrong = same(run, hash(run), base.hash);
+    return wrong.empty() ? wrong : session.target().label() + ": " + wrong;
+}
+
+// Saved after a random step, loaded into another world, and on from there.
+std::string check_save(const Case& c, Session& session, const Base& base, Random& random) {
+    if (c.steps < 2) return {};
+    const int at = random.whole(1, c.steps - 1);
+    Run first = open(c, session), second = open(c, session);
+    queue(first, c);
+    step(first, at);
+    if (!first.good()) return first.failure;
+    std::vector<std::byte> bytes(first.world->snapshots().bytes());
+    first.note("save", first.world->save(bytes));
+    if (second.good()) second.note("load", second.world->load(bytes));
+    queue(second, c, static_cast<std::uint64_t>(at));
+    step(second, c.steps - at);
+    if (!first.failure.empty()) return first.failure;
+    const std::string wrong = same(second, hash(second), base.hash);
+    return wrong.empty() ? wrong : "loaded after step " + std::to_string(at) + ": " + wrong;
+}
+
+// Host frames of any length, whole steps or parts of them.
+std::string check_driver(const Case& c, Session& session, const Base& base, Random& random) {
+    Run run = open(c, session);
+    queue(run, c);
+    if (!run.good()) return run.failure;
+    UpdateSettings settings;
+    settings.max_steps_per_update = 1024;
+    settings.max_steps_in_flight = 0;
+    settings.spread = random.chance(0.5);
+    run.note("update settings", run.world->set_update_settings(settings));
+    const double step_ns = c.scene.settings.dt * 1e9;
+    const auto wanted = static_cast<std::uint64_t>(c.steps - 1);
+    while (run.good() && run.world->steps() < wanted) {
+        Frame frame;
+        run.note("update", run.world->update(static_cast<std::uint64_t>(random.real(0.1, 0.9) * step_ns), frame));
+    }
+    const std::uint64_t got = hash(run); // finishes a step that was begun
+    if (!run.good()) return run.failure;
+    return same(run, got, run.world->steps() == wanted ? base.hash_before : base.hash);
+}
+
+// Each edit called ahead of its step with the log on, and the log played elsewhere.
+std::string check_log(const Case& c, Session& session, const Base& base) {
+    Run run = open(c, session), replay = open(c, session);
+    if (run.good()) run.world->commands().remember(true);
+    for (int done = 0; done < c.steps && run.good(); ++done) {
+        for (Edit edit : c.commands) {
+            if (edit.step != static_cast<std::uint64_t>(done)) continue;
+            edit.step = 0; // the next one
+            run.note("edit", run.world->edit(std::span(&edit, 1)));
+        }
+        step(run, 1);
+    }
+    if (const std::string wrong = same(run, hash(run), base.hash); !wrong.empty()) return "edits in time: " + wrong;
+    const auto bytes = run.world->commands().bytes();
+    if (replay.good()) replay.note("play", replay.world->commands().play(bytes));
+    step(replay, c.steps);
+    const std::string wrong = same(replay, hash(replay), base.hash);
+    return wrong.empty() ? wrong : "log played: " + wrong;
+}
+
+// Not where steps may turn F inside out (no gradient clamp): the angle of an inverted F that stays on its axes is +pi, and its
+// image's as well, though it should be -pi.
+std::string check_image(const Case& c, Session& session, Base& base, Image image) {
+    const auto& method = c.scene.settings.method;
+    if (method.gradient_clamp <= 0 && method.strain_transport != StrainTransport::left_stretch) return {};
+    const Case turned = image_of(c, image);
+    Run run = open(turned, session);
+    queue(run, turned);
+    step(run, c.steps);
+    if (!run.good()) return run.refused + run.failure;
+    const auto symmetry = image == Image::transpose  ? conformance::Symmetry::transpose
+                          : image == Image::mirror_x ? conformance::Symmetry::mirror_x
+                                                     : conformance::Symmetry::mirror_y;
+    return conformance::compare_images(*base.run.world, *run.world, symmetry).detail;
+}
+
+// The first steps against the second solver in double. Where that one in float differs from it much, another branch was taken
+// somewhere and the case says nothing.
+std::string check_reference(const Case& c, Session& session) {
+    Run run = open(c, session);
+    if (!run.good()) return run.failure;
+    const auto& s = c.scene.settings;
+    // Explicit drag beyond its bound flips velocities between the clamps by the sign of a rounding.
+    if (s.method.drag_friction == DragFriction::sequence && s.dt * s.material.exchange_rate > s.material.water_density) return {};
+    // Without gravity no depth of an inflow is critical: each solver has a floor of its own.
+    for (const Side& side : s.sides)
+        if (side.kind == SideKind::discharge && s.gravity <= 0) return {};
+    reference::Solver<float> narrow(s, run.world->plan().effects);
+    reference::Solver<double> wide(s, run.world->plan().effects);
+    narrow.load(c.scene.fields);
+    wide.copy_from(narrow);
+    for (int done = 1; done <= std::min(2, c.steps); ++done) {
+        step(run, 1);
+        narrow.step();
+        wide.step();
+        for (const auto& [name, mine, theirs] :
+             {std::tuple{"sand_height", &narrow.sand, &wide.sand}, std::tuple{"water_height", &narrow.water, &wide.water}}) {
+            std::vector<float> got(mine->size());
+            if (run.good()) run.note("read", run.world->read(name, got));
+            if (!run.good()) return run.failure;
+            double size = 0, spread = 0, off = 0;
+            for (std::size_t n = 0; n < got.size(); ++n) {
+                size = std::max(size, std::fabs((*theirs)[n]));
+                spread = std::max(spread, std::fabs(static_cast<double>((*mine)[n]) - (*theirs)[n]));
+                off = std::max(off, std::fabs(static_cast<double>(got[n]) - (*theirs)[n]));
+            }
+            const double quantum = height_quantum(s.method) * 8 * done;
+            if (!(spread < 1e-4 * size + quantum)) return {};
+            if (!(off <= 50 * spread + 1e-5 * size + 4 * quantum + 2 * s.method.dry_threshold))
+                return "after step " + std::to_string(done) + " " + name + " is off the reference by " + text(off) +
+                       " m, float is by " + text(spread);
+        }
+    }
+    return {};
+}
+
+} // namespace
+
+Result<Devices> open_devices(const std::vector<std::string>& backends) {
+    Devices devices;
+    compute::DeviceOptions options;
+    compute::apply_environment(options);
+    for (const auto& target : conformance::all_targets()) {
+        const std::string& name = target.info.backend;
+        if (name == "cpu") {
+            auto plain = options, best = options;
+            plain.threads = 1;
+            plain.instruction_set = "base";
+            best.threads = 2;
+            devices.plain = std::make_unique<Session>(target, plain);
+            if (std::find(backends.begin(), backends.end(), name) != backends.end())
+                devices.others.push_back(std::make_unique<Session>(target, best));
+        } else if (std::find(backends.begin(), backends.end(), name) != backends.end() && target.info.index == 0) {
+            devices.others.push_back(std::make_unique<Session>(target, options));
+        }
+    }
+    if (devices.plain == nullptr || devices.others.size() < backends.size())
+        return error(Code::not_found, "a backend of --backend has no device here");
+    return devices;
+}
+
+Outcome run_case(const Case& c, Devices& devices, Weaken weaken, const std::string& only) {
+    Case weakened = c;
+    if (weaken == Weaken::limiter) {
+        auto& method = weakened.scene.settings.method;
+        method.outflow_limiter = false;
+        method.velocity_clamp = std::max(method.velocity_clamp, 0.9);
+    }
+    Outcome outcome;
+    Random random(c.seed ^ 0x5bd1e995u);
+    Base base = run_base(weakened, *devices.plain);
+    outcome.refused = base.run.refused;
+    if (!outcome.refused.empty()) return outcome;
+    outcome.effects = base.run.world->plan().effects;
+    const auto made = [&](const std::string& check, double share, auto run) {
+        const bool picked = random.chance(share);
+        if (outcome.failed() || (only.empty() ? !picked : only != check)) return;
+        ++outcome.count[check];
+        outcome.failure = run();
+        if (outcome.failed()) outcome.check = check;
+    };
+    made("books", 1, [&] { return base.run.failure; });
+    if (!base.run.good()) return outcome;
+    if (!base.finite) { // of method published; NaN need not have equal bits
+        ++outcome.count["blown up"];
+        return outcome;
+    }
+    for (auto& session : devices.others) made("bits", 1, [&] { return check_backend(weakened, *session, base, weaken); });
+    const auto image = static_cast<Image>(random.whole(0, 2));
+    made("image", 0.5, [&] { return check_image(weakened, *devices.plain, base, image); });
+    made("reference", 0.5, [&] { return check_reference(weakened, *devices.plain); });
+    made("driver", 0.4, [&] { return check_driver(weakened, *devices.plain, base, random); });
+    made("save", 0.4, [&] { return check_save(weakened, *devices.plain, base, random); });
+    made("log", 0.4, [&] { return check_log(weakened, *devices.plain, base); });
+    return outcome;
+}
+
+} // namespace wadi::fuzz

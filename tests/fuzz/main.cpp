@@ -1,0 +1,183 @@
+// wadi-fuzz: random worlds against invariants, backends, the reference solver and themselves. docs: tests/fuzz/README.md.
+#include "tests/fuzz/checks.hpp"
+#include <CLI/CLI.hpp>
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <mutex>
+#include <set>
+#include <thread>
+
+using namespace wadi;
+using namespace wadi::fuzz;
+
+namespace {
+
+struct Options {
+    double seconds = 20, shrink_seconds = 60;
+    std::uint64_t scenes = 0, seed = 1;
+    int jobs = 0, most_failures = 5;
+    std::vector<std::string> backends;
+    std::string out = "fuzz-failures", csv, level, check;
+    Weaken weaken = Weaken::nothing;
+};
+
+double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
+
+/// Every backend that has a device.
+std::vector<std::string> all_backends() {
+    std::set<std::string> names;
+    for (const auto& target : conformance::all_targets()) names.insert(target.info.backend);
+    return {names.begin(), names.end()};
+}
+
+class Campaign {
+  public:
+    explicit Campaign(const Options& options) : options_(options), start_(now()), next_(options.seed) {
+        if (!options_.csv.empty()) csv_ = std::fopen(options_.csv.c_str(), "w");
+        if (csv_ != nullptr) std::fputs("seed,nx,ny,dx,dt,steps,commands,effects,milliseconds,refused,check,failure\n", csv_);
+    }
+    ~Campaign() {
+        if (csv_ != nullptr) std::fclose(csv_);
+    }
+    Campaign(const Campaign&) = delete;
+    Campaign& operator=(const Campaign&) = delete;
+
+    void work() {
+        auto devices = open_devices(options_.backends);
+        if (!devices) {
+            std::fprintf(stderr, "%s\n", devices.status().message.c_str());
+            broken_ = true;
+            return;
+        }
+        while (!over()) {
+            const std::uint64_t seed = next_++;
+            if (options_.scenes > 0 && seed >= options_.seed + options_.scenes) break;
+            const double began = now();
+            const Case c = make_case(seed);
+            const Outcome outcome = run_case(c, *devices, options_.weaken, options_.check);
+            note(c, outcome, now() - began);
+            if (outcome.failed() && failures_++ < options_.most_failures) report(c, outcome, *devices);
+        }
+    }
+
+    /// 0, or 1 where something failed.
+    int summary() {
+        std::printf("%llu scenes in %.1f s on", static_cast<unsigned long long>(done_), now() - start_);
+        for (const auto& name : options_.backends) std::printf(" %s", name.c_str());
+        std::printf("; %llu refused; checks:", static_cast<unsigned long long>(refused_));
+        for (const auto& [check, count] : count_) std::printf(" %s %d", check.c_str(), count);
+        std::printf("; %d failures\n", failures_.load());
+        return failures_ > 0 || broken_ || done_ == 0 ? 1 : 0;
+    }
+
+  private:
+    bool over() const {
+        return broken_ || failures_ >= options_.most_failures || (options_.scenes == 0 && now() - start_ > options_.seconds);
+    }
+
+    void note(const Case& c, const Outcome& outcome, double seconds) {
+        const std::lock_guard lock(mutex_);
+        ++done_;
+        if (!outcome.refused.empty()) {
+            ++refused_;
+            if (refused_ == 1)
+                std::fprintf(stderr, "seed %llu was refused: %s\n", static_cast<unsigned long long>(c.seed),
+                             outcome.refused.c_str());
+        }
+        for (const auto& [check, count] : outcome.count) count_[check] += count;
+        const auto& s = c.scene.settings;
+        if (csv_ != nullptr)
+            std::fprintf(csv_, "%llu,%d,%d,%.4g,%.4g,%d,%zu,%u,%.1f,%d,%s,\"%s\"\n", static_cast<unsigned long long>(c.seed),
+                         s.grid.nx, s.grid.ny, s.grid.dx, s.dt, c.steps, c.commands.size(), outcome.effects, seconds * 1e3,
+                         outcome.refused.empty() ? 0 : 1, outcome.check.c_str(), outcome.failure.c_str());
+        if (now() - told_ < 10) return;
+        told_ = now();
+        std::fprintf(stderr, "%.0f s: %llu scenes, %d failures\n", told_ - start_, static_cast<unsigned long long>(done_),
+                     failures_.load());
+    }
+
+    void report(const Case& c, const Outcome& outcome, Devices& devices) {
+        Case small = shrink(c, outcome.check, devices, options_.weaken, options_.shrink_seconds);
+        if (options_.weaken == Weaken::limiter) { // so that the file alone fails
+            small.scene.settings.method.outflow_limiter = false;
+            small.scene.settings.method.velocity_clamp = std::max(small.scene.settings.method.velocity_clamp, 0.9);
+        }
+        const Outcome last = run_case(small, devices, options_.weaken, outcome.check);
+        const std::string folder = options_.out + "/" + std::to_string(c.seed) + "-" + outcome.check;
+        const auto status = write_level(small, folder);
+        const std::lock_guard lock(mutex_);
+        std::printf("FAILED seed %llu, %s: %s\n", static_cast<unsigned long long>(c.seed), outcome.check.c_str(),
+                    outcome.failure.c_str());
+        std::printf("  shrunk from %d x %d cells, %d steps, %zu commands to %d x %d cells, %d steps, %zu commands: %s\n",
+                    c.scene.settings.grid.nx, c.scene.settings.grid.ny, c.steps, c.commands.size(), small.scene.settings.grid.nx,
+                    small.scene.settings.grid.ny, small.steps, small.commands.size(), last.failure.c_str());
+        std::printf("  %s\n", status ? ("wadi-fuzz --level " + folder + "/level.json --check " + outcome.check).c_str()
+                                     : status.message.c_str());
+        std::fflush(stdout);
+    }
+
+    const Options& options_;
+    const double start_;
+    std::atomic<std::uint64_t> next_;
+    std::atomic<int> failures_{0};
+    std::atomic<bool> broken_{false};
+    std::mutex mutex_;
+    std::uint64_t done_ = 0, refused_ = 0;
+    std::map<std::string, int> count_;
+    double told_ = now();
+    std::FILE* csv_ = nullptr;
+};
+
+int replay(const Options& options) {
+    auto c = read_level(options.level);
+    auto devices = open_devices(options.backends);
+    for (const auto& status : {c.status(), devices.status()}) {
+        if (status) continue;
+        std::fprintf(stderr, "%s\n", status.message.c_str());
+        return 2;
+    }
+    for (const std::string check : {"books", "bits", "image", "reference", "driver", "save", "log"}) {
+        if (!options.check.empty() && check != options.check) continue;
+        const Outcome outcome = run_case(*c, *devices, options.weaken, check);
+        if (!outcome.failed() && outcome.refused.empty()) continue;
+        std::printf("FAILED %s: %s\n", check.c_str(), (outcome.refused + outcome.failure).c_str());
+        return 1;
+    }
+    std::puts("passed");
+    return 0;
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    Options options;
+    std::string weaken = "nothing";
+    CLI::App app("Random worlds, parameters and edits, against invariants and against other ways of running them");
+    app.add_option("--seconds", options.seconds, "how long new scenes are begun (unless --scenes)")->check(CLI::Range(0.1, 1e6));
+    app.add_option("--scenes", options.scenes, "how many scenes");
+    app.add_option("--seed", options.seed, "seed of the first scene; the next has the next");
+    app.add_option("--jobs", options.jobs, "threads, each with devices of its own; 0 = all cores")->check(CLI::Range(0, 256));
+    app.add_option("--backend", options.backends, "backends to compare with the plain CPU; default: all that have a device")
+        ->delimiter(',');
+    app.add_option("--check", options.check, "this check alone, in every scene")
+        ->check(CLI::IsMember({"books", "bits", "image", "reference", "driver", "save", "log"}));
+    app.add_option("--level", options.level, "runs a level that a failure left, instead of random scenes");
+    app.add_option("--out", options.out, "folder for the levels of failures");
+    app.add_option("--csv", options.csv, "a line per scene");
+    app.add_option("--failures", options.most_failures, "stops after so many")->check(CLI::Range(1, 1000));
+    app.add_option("--shrink-seconds", options.shrink_seconds, "time for making a failure small")->check(CLI::Range(0.0, 1e4));
+    app.add_option("--weaken", weaken, "breaks something on purpose, which must then be found")
+        ->check(CLI::IsMember({"nothing", "limiter", "bits"}));
+    CLI11_PARSE(app, argc, argv);
+    options.weaken = weaken == "limiter" ? Weaken::limiter : weaken == "bits" ? Weaken::bits : Weaken::nothing;
+    if (options.backends.empty()) options.backends = all_backends();
+    if (options.jobs == 0) options.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+    if (!options.level.empty()) return replay(options);
+    Campaign campaign(options);
+    std::vector<std::thread> threads;
+    for (int n = 1; n < options.jobs; ++n) threads.emplace_back([&] { campaign.work(); });
+    campaign.work();
+    for (auto& thread : threads) thread.join();
+    return campaign.summary();
+}

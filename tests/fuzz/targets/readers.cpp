@@ -1,0 +1,91 @@
+// libFuzzer: whatever bytes a reader gets, it returns a value or an error. One program per reader: -DTARGET=level, png, npy, asc,
+// r16, snapshot or commands.
+#include "engine/command_log.hpp"
+#include "engine/image/map.hpp"
+#include "engine/level/level.hpp"
+#include "engine/sealed_bytes.hpp"
+#include "engine/world.hpp"
+#include <cstdlib>
+#include <memory>
+
+using namespace wadi;
+
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+/// A level whose map is itself: every key that names a file is read too.
+[[maybe_unused]] void level(const Bytes& bytes) {
+    const FileReader files = [&](const std::string&, std::uint64_t) -> Result<Bytes> { return bytes; };
+    LevelOverrides overrides;
+    overrides.size = {8, 6};
+    const auto parsed = parse_level(std::string(bytes.begin(), bytes.end()), files, overrides);
+    if (parsed && !validate(parsed->settings)) std::abort(); // what the loader takes, a world must take
+}
+
+template <class Decode> void map(const Bytes& bytes, Decode decode) {
+    const auto decoded = decode(bytes);
+    if (!decoded) return;
+    if (decoded->values.size() != static_cast<std::size_t>(decoded->nx) * static_cast<std::size_t>(decoded->ny)) std::abort();
+    static_cast<void>(resample(*decoded, 7, 5));
+}
+[[maybe_unused]] void png(const Bytes& bytes) {
+    map(bytes, [](const Bytes& b) { return decode_png(b, "fuzz.png"); });
+}
+[[maybe_unused]] void npy(const Bytes& bytes) {
+    map(bytes, [](const Bytes& b) { return decode_npy(b, "fuzz.npy"); });
+}
+[[maybe_unused]] void asc(const Bytes& bytes) {
+    map(bytes, [](const Bytes& b) { return decode_asc(b, "fuzz.asc"); });
+}
+[[maybe_unused]] void r16(const Bytes& bytes) {
+    map(bytes, [](const Bytes& b) { return decode_r16(b, "fuzz.r16", std::nullopt); });
+}
+
+World& small_world() {
+    static const auto world = [] {
+        Settings settings;
+        settings.grid = {5, 4, 0.5};
+        settings.dt = 0.02;
+        InitialFields fields;
+        fields.water.assign(20, 0.5F);
+        auto device = compute::open_device("cpu", 0, {});
+        auto made =
+            device ? World::create(settings, fields, std::move(*device)) : Result<std::unique_ptr<World>>(device.status());
+        if (!made) std::abort();
+        return std::move(*made);
+    }();
+    return *world;
+}
+
+/// The sum is mended, so that what lies behind it is reached.
+std::vector<std::byte> resealed(const Bytes& bytes) {
+    std::vector<std::byte> copy(bytes.size());
+    if (!bytes.empty()) std::memcpy(copy.data(), bytes.data(), bytes.size());
+    if (copy.size() < sealed_header_bytes) return copy;
+    std::size_t at = 16;
+    put(std::span<std::byte>(copy), at, std::uint64_t{copy.size()});
+    seal(copy);
+    return copy;
+}
+[[maybe_unused]] void snapshot(const Bytes& bytes) {
+    World& world = small_world();
+    if (world.load(resealed(bytes)) && !world.step(1)) std::abort();
+}
+[[maybe_unused]] void commands(const Bytes& bytes) {
+    const auto sealed = resealed(bytes);
+    const auto list = read_commands(sealed);
+    if (list) { // what is read is written again as it was
+        const auto written = write_commands(list->level, list->stamps, list->commands);
+        if (!read_commands(written)) std::abort();
+    }
+    static_cast<void>(small_world().commands().play(sealed));
+}
+
+} // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    TARGET(Bytes(data, data + size));
+    return 0;
+}

@@ -1,0 +1,35 @@
+#!/usr/bin/env python3
+"""The fuzzer finds what is broken on purpose, makes it small, and leaves a level that fails alone. Usage: test_finds.py WADI_FUZZ."""
+import re
+import subprocess
+import sys
+import tempfile
+
+
+def run(*arguments):
+    done = subprocess.run(arguments, capture_output=True, text=True)
+    return done.returncode, done.stdout + done.stderr
+
+
+def main():
+    program = sys.argv[1]
+    common = ["--jobs", "1", "--backend", "cpu", "--shrink-seconds", "20"]
+    for weaken, check, cells in (("limiter", "books", 64), ("bits", "bits", 4)):
+        with tempfile.TemporaryDirectory() as folder:
+            code, text = run(program, "--scenes", "30", "--weaken", weaken, "--out", folder, "--failures", "1", *common)
+            assert code == 1, f"{weaken}: not found:\n{text}"
+            shrunk = re.search(r"shrunk from (\d+) x (\d+) cells, .* to (\d+) x (\d+) cells, (\d+) steps, (\d+) commands", text)
+            assert shrunk, text
+            small = int(shrunk[3]) * int(shrunk[4])
+            assert small <= cells and int(shrunk[6]) == 0, f"{weaken}: still {small} cells:\n{text}"
+            level = re.search(r"--level (\S+)", text)[1]
+            code, text = run(program, "--level", level, "--check", check, "--backend", "cpu", "--weaken", "bits" if weaken == "bits" else "nothing")
+            assert code == 1 and f"FAILED {check}" in text, f"{weaken}: the level passes:\n{text}"
+            code, text = run(program, "--level", level, "--check", "save", "--backend", "cpu")
+            assert weaken != "bits" or code == 0, f"a sound level fails another check:\n{text}"
+    code, text = run(program, "--scenes", "3", *common)
+    assert code == 0 and "0 failures" in text, text
+    print("the fuzzer finds a missing limiter and other bits, and makes them small")
+
+
+main()

@@ -1,0 +1,133 @@
+// What each guard of a method is for: the same scene passes with it and fails without. Not here: the outflow limiter's bounds in
+// other scenes (test_invariants.cpp), the elastic cap (test_time_steps.cpp), shear at corners
+// (tests/reference/test_reference_guards.cpp), the reset of broken stretches (test_strain_extremes.cpp). For gradient clamp and
+// cohesion cap no such scene was found: the last case.
+#include "tests/stability/quality.hpp"
+
+using namespace wadi;
+using namespace wadi::test;
+
+namespace {
+
+double sand_checkerboard(World& world) { return checkerboard(cells_of(world, "sand_height")); }
+
+/// 8 m of water in 1 m of it at dt/dx sqrt(g W) = 2.
+Scene flood() {
+    auto scene = flat_scene(40, 40, 1, 2 / std::sqrt(9.81 * 8));
+    scene.settings.method.largest_height = 64;
+    scene.fill(scene.fields.water, [](double x, double y) { return x < 14 && y < 20 ? 8.0 : 1.0; });
+    return scene;
+}
+
+/// The same of dry slippery sand, with `courant` of its substep.
+Scene landslide(double courant) {
+    auto scene = flat_scene(40, 40, 1, 3 * courant / std::sqrt(9.81 * 6));
+    scene.settings.material.young_modulus = 0;
+    scene.settings.material.friction = 0.1;
+    scene.fill(scene.fields.sand, [](double x, double y) { return x < 14 && y < 20 ? 6.0 : 1.0; });
+    return scene;
+}
+
+/// A terrace of sand beside a pit; how much of it is in the pit in the end, per metre of width [m2].
+double filled_pit(double passive_pressure, double young_modulus) {
+    auto scene = flat_scene(60, 6, 0.1, 0.009);
+    scene.settings.material.young_modulus = young_modulus;
+    scene.settings.method.passive_pressure = passive_pressure;
+    scene.fill(scene.fields.terrain, [](double x, double) { return std::fabs(x - 3) < 0.8 ? 0.0 : 1.0; });
+    scene.fill(scene.fields.sand, [](double x, double) { return x < 2.2 ? 1.2 : 0.0; });
+    auto world = make_world(scene);
+    step(*world, 500);
+    const auto sand = cells_of(*world, "sand_height"), ground = cells_of(*world, "terrain");
+    return sum_over(sand, [&](int i, int j) { return ground.at(i, j) < 0.5 ? sand.at(i, j) : 0.0; }) * 0.1 / 6;
+}
+
+/// A column so wet that it loses its cohesion while it drains.
+Scene soaked_column(int smoothing) {
+    auto scene = flat_scene(56, 56, 0.1, 0.009);
+    auto& m = scene.settings.material;
+    m.cohesion_wet = m.cohesion_capillary = 1.5e4;
+    m.diffusion_rate = 0.002;
+    scene.settings.method.saturation_smoothing = smoothing;
+    const auto inside = [](double x, double y) { return std::hypot(x - 2.8, y - 2.8) < 1.7; };
+    scene.fill(scene.fields.sand, [&](double x, double y) { return inside(x, y) ? 1.7 : 0.0; });
+    scene.fill(scene.fields.water, [&](double x, double y) { return inside(x, y) ? 0.45 * 1.7 : 0.0; });
+    return scene;
+}
+
+} // namespace
+
+TEST_CASE("outflow limiter: the books hold; without it they do not") {
+    for (const bool on : {true, false}) {
+        auto scene = mixed_scene(40, 36);
+        scene.settings.dt = 0.2;
+        scene.settings.method.velocity_clamp = 0.9;
+        scene.settings.method.outflow_limiter = on;
+        auto world = make_world(scene);
+        step(*world, 60);
+        CHECK(books_hold(*world, stats_of(*world)) == on);
+    }
+}
+
+TEST_CASE("velocity clamp: whirls too fast for dt pile water up a little and gain no energy; without it tenfold") {
+    for (const double clamp : {0.35, 1e6}) {
+        auto scene = flat_scene(40, 40, 0.5, 0.5);
+        scene.settings.method.velocity_clamp = clamp;
+        scene.settings.method.largest_height = 128;
+        scene.fill(scene.fields.water, [](double x, double y) { return 0.5 + 0.3 * std::sin(x) * std::sin(y); });
+        scene.fill(scene.fields.velocity_x, [&](double x, double y) { return 10 * std::sin(0.5 * x) * std::cos(0.5 * y); });
+        scene.fill(scene.fields.velocity_y, [&](double x, double y) { return -10 * std::cos(0.5 * x) * std::sin(0.5 * y); });
+        auto world = make_world(scene);
+        step(*world, 20);
+        const double highest = largest(cells_of(*world, "water_height"));
+        CHECK((clamp < 1 ? highest < 4 : highest > 40));
+    }
+}
+
+TEST_CASE("gravity caps of water and of sand: smooth beyond the CFL limit; without them there is a checkerboard") {
+    auto scene = flood();
+    CHECK(worst(*make_world(scene), 100, 10, water_checkerboard) < 1e-3);
+    scene.settings.method.gravity_cap = 0;
+    CHECK(worst(*make_world(scene), 100, 10, water_checkerboard) > 0.1);
+    for (const double courant : {0.8, 2.0, 10.0}) {
+        scene = landslide(courant);
+        CHECK(worst(*make_world(scene), 100, 10, sand_checkerboard) < 1e-3);
+        scene.settings.method.sand_gravity_cap = 0;
+        CHECK(worst(*make_world(scene), 100, 10, sand_checkerboard) > 0.1);
+    }
+}
+
+TEST_CASE("compression cap: sand fills a pit, the weaker the more; without the cap it hardly does") {
+    const double friction_only = filled_pit(1, 0), normal = filled_pit(1, 1e6), weak = filled_pit(0.3, 1e6),
+                 none = filled_pit(0, 1e6);
+    CHECK(friction_only > 1.3);
+    CHECK(normal > 0.6 * friction_only);
+    CHECK(weak > 0.75 * friction_only);
+    CHECK(none < 0.4 * friction_only);
+}
+
+TEST_CASE("low-pass of saturation: a soaked column runs out smooth; without it, it falls into ripples") {
+    const auto rough = [](int smoothing) {
+        auto world = make_world(soaked_column(smoothing));
+        step(*world, 300);
+        return roughness(cells_of(*world, "sand_height"));
+    };
+    CHECK(rough(2) < 0.012);
+    CHECK(rough(1) < 0.02);
+    CHECK(rough(0) > 0.06);
+}
+
+TEST_CASE("gradient clamp and cohesion cap: these scenes are as smooth without them") {
+    const auto rough = [](Scene scene, bool on) {
+        if (!on) scene.settings.method.gradient_clamp = scene.settings.method.cohesion_cap = 0;
+        auto world = make_world(scene);
+        step(*world, 100);
+        check_books(*world);
+        return roughness(cells_of(*world, "sand_height"));
+    };
+    auto fast = mixed_scene(40, 36);
+    fast.settings.dt = 0.05;
+    auto tough = soaked_column(2);
+    tough.fill(tough.fields.water, [](double, double) { return 0.01; });
+    tough.settings.material.cohesion_wet = tough.settings.material.cohesion_capillary = 1e12;
+    for (const Scene& scene : {mixed_scene(40, 36), fast, tough}) CHECK(rough(scene, false) < 1.1 * rough(scene, true));
+}

@@ -1,0 +1,102 @@
+// Parameters from nothing to far beyond sense: exchange rate, stiffness, cohesion, sources.
+#include "tests/stability/quality.hpp"
+
+using namespace wadi;
+using namespace wadi::test;
+
+namespace {
+
+Scene column(double wet) {
+    auto scene = flat_scene(40, 40, 0.1, 0.009);
+    const auto inside = [](double x, double y) { return std::hypot(x - 2, y - 2) < 1.2; };
+    scene.fill(scene.fields.sand, [&](double x, double y) { return inside(x, y) ? 1.0 : 0.0; });
+    scene.fill(scene.fields.water, [&](double x, double y) { return inside(x, y) ? wet : 0.0; });
+    return scene;
+}
+
+/// Water comes at 100 m/s and 100 m of depth a second, and leaves over two sides.
+Scene jet(double dt) {
+    auto scene = flat_scene(48, 32, 0.2, dt);
+    scene.settings.method.largest_height = 1024;
+    scene.fill(scene.fields.water, [](double, double) { return 0.3; });
+    scene.fill(scene.fields.sand, [](double x, double y) { return std::hypot(x - 6, y - 3.2) < 1 ? 0.5 : 0.0; });
+    scene.settings.sources = {{SourceShape::disc, SourceMaterial::water, {2, 3.2}, 0.6, {}, {{{0, 100}}}, true, {100, 0}}};
+    scene.settings.sides[SIDE_EAST].kind = scene.settings.sides[SIDE_WEST].kind = SideKind::outflow;
+    return scene;
+}
+
+} // namespace
+
+TEST_CASE("Young's modulus 0 to 1e12: a pile within its slope keeps every bit, a damp column comes to rest smooth") {
+    for (const double modulus : {0.0, 1e2, 1e5, 1e9, 1e12}) {
+        CAPTURE(modulus);
+        auto pile = flat_scene(40, 40, 0.1, 0.009);
+        pile.settings.material.young_modulus = modulus;
+        pile.fill(pile.fields.sand, [](double x, double y) { return std::max(0.0, 0.8 - 0.45 * std::hypot(x - 2, y - 2)); });
+        auto still = make_world(pile);
+        const auto before = cells_of(*still, "sand_height");
+        step(*still, 100);
+        CHECK(moved(before, cells_of(*still, "sand_height"), 0.1) == 0);
+        auto damp = column(0.25);
+        damp.settings.material.young_modulus = modulus;
+        auto world = make_world(damp);
+        step(*world, 200);
+        check_books(*world);
+        CHECK(sand_speed(*world) < 0.02);
+        CHECK(roughness(cells_of(*world, "sand_height")) < 0.1);
+    }
+    on_every_backend(column(0.25), [](World& world) { step(world, 30); });
+}
+
+TEST_CASE("cohesion 0 to 1e12 Pa: more of it holds a column higher, and it comes to rest") {
+    double height = 0;
+    for (const double cohesion : {0.0, 1e-3, 1e3, 1e4, 1e8, 1e12}) {
+        CAPTURE(cohesion);
+        auto scene = column(0.25);
+        scene.settings.material.cohesion_wet = scene.settings.material.cohesion_capillary = cohesion;
+        auto world = make_world(scene);
+        step(*world, 200);
+        check_books(*world);
+        const auto sand = cells_of(*world, "sand_height");
+        CHECK(largest(sand) > height - 0.01);
+        height = largest(sand);
+        CHECK(sand_speed(*world) < 0.02);
+        CHECK(roughness(sand) < 0.1);
+        if (cohesion == 0) CHECK(height < 0.7); // what cohesion is for
+    }
+    CHECK(height > 0.9);
+}
+
+TEST_CASE("exchange rate 0 to 1e15: a soaked column runs out with its own energy; explicit drag feeds it without end") {
+    const auto energy = [](double rate, DragFriction form) {
+        auto scene = column(1.4);
+        scene.settings.material.exchange_rate = rate;
+        scene.settings.method.drag_friction = form;
+        auto world = make_world(scene);
+        const double most = worst(*world, 150, 10, kinetic_energy);
+        check_books(*world);
+        return most;
+    };
+    const double free = energy(0, DragFriction::joint);
+    for (const double rate : {1e2, 1e5, 1e8, 1e12, 1e15}) {
+        CAPTURE(rate);
+        CHECK(energy(rate, DragFriction::joint) < 1.1 * free);
+        if (rate > 1e6) CHECK(energy(rate, DragFriction::sequence) > 10 * free);
+    }
+    auto stiff = column(1.4);
+    stiff.settings.material.exchange_rate = 1e12;
+    on_every_backend(stiff, [](World& world) { step(world, 30); });
+}
+
+TEST_CASE("a source of 100 m/s: nothing outruns it, no checkerboard; without the gravity cap there is one") {
+    for (const double dt : {0.0005, 0.005, 0.05}) {
+        CAPTURE(dt);
+        on_every_backend(jet(dt), [](World& world) {
+            CHECK(worst(world, 60, 20, water_checkerboard) < 0.01);
+            CHECK(stats_of(world).largest_water_speed <= 100);
+        });
+    }
+    auto bare = jet(0.05);
+    bare.settings.method.gravity_cap = 0;
+    CHECK(worst(*make_world(bare), 150, 10, water_checkerboard) > 0.1);
+}

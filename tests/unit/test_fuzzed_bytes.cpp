@@ -1,0 +1,21 @@
+// Inputs that a libFuzzer target of tests/fuzz/targets once failed on. The sanitizer presets see what these runs must not do.
+#include "engine/command_log.hpp"
+#include "engine/sealed_bytes.hpp"
+#include <doctest/doctest.h>
+
+using namespace wadi;
+
+TEST_CASE("a command log with a stamp of no pixels is refused, and nothing is copied to nowhere") {
+    std::vector<std::byte> bytes(56); // header, level, one number of stamps, then a stamp of 0 x 0
+    begin_sealed(bytes, "WADICMDS", 1);
+    std::size_t at = 44;
+    put(std::span<std::byte>(bytes), at, std::uint32_t{5});
+    bytes[40] = std::byte{5};
+    seal(bytes);
+    const auto list = read_commands(bytes);
+    REQUIRE_FALSE(list);
+    CHECK(list.status().code == Code::bad_file);
+    bytes[50] = std::byte{1}; // negative control: a broken seal is another refusal
+    CHECK(read_commands(bytes).status().message.find("checksum") != std::string::npos);
+    CHECK(list.status().message.find("checksum") == std::string::npos);
+}
