@@ -8,6 +8,7 @@ import recordings
 CHOICES = {
     "robust": {},
     "published": {"name": "published"},
+    "second_order": {"water_transport_order": 2},
     "semi_lagrangian": {"velocity_transport": "semi_lagrangian"},
     "polar": {"strain_transport": "polar"},
     "direct": {"strain_transport": "direct"},
@@ -73,6 +74,8 @@ def points_of(scene, quick):
         for n in sizes:
             for choice in ("robust", "published") if scene.key != "monai" or not quick else ("robust",):
                 yield Point(scene.key, n, 1, 3, choice)
+            if not quick and scene.kind != "dry sand":
+                yield Point(scene.key, n, 1, 3, "second_order")
         for dt in () if quick else (0.5, 2):
             yield Point(scene.key, scene.n, dt)
 
