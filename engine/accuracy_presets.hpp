@@ -6,14 +6,14 @@
 
 namespace wadi {
 
-/// What a preset changes, and what that bought and cost in the full report, each against `balanced` on the same scenes.
+/// What a preset changes, and what that was measured to err and cost, each as a factor on `balanced`.
 struct AccuracyPreset {
     const char* name;
     double cells;    // factor on the level's cells along x and y; dt follows the cells' size
     int substeps;    // sand steps per water step
     double error;    // mean absolute error of sand and water surface
     double gpu_cost; // time per simulated second, one H100
-    double cpu_cost; // the same, two cores
+    double cpu_cost; // the same, 16 threads of its host
 };
 
 /// By rising accuracy.

@@ -155,6 +155,7 @@ Result<CommandList> read_commands(std::span<const std::byte> bytes) {
         Stamp stamp;
         stamp.nx = from.next<std::int32_t>();
         stamp.ny = from.next<std::int32_t>();
+        if (stamp.nx < 1 || stamp.ny < 1) return error(Code::bad_file, "command log: a stamp has no pixels");
         stamp.values = from.floats(std::int64_t{stamp.nx} * stamp.ny);
         stamp.set_range();
         list.stamps.push_back(std::move(stamp));

@@ -14,10 +14,14 @@ say() { printf '\n== %s (%d s)\n' "$1" "$SECONDS"; }
 say "packages"
 ./samples/install_packages.sh
 jobs=$(nproc)
+options=()
+if [ ! -e /dev/nvidiactl ]; then # no GPU to run them on: that CUDA's stages compile is seen from one architecture
+    options+=(-DWADI_CUDA_ARCHITECTURES=75)
+fi
 failed=()
 for preset in "${presets[@]}"; do
     say "configure $preset"
-    cmake --preset "$preset"
+    cmake --preset "$preset" "${options[@]}"
     say "build $preset"
     cmake --build --preset "$preset" -j "$jobs"
     say "test $preset"

@@ -104,6 +104,25 @@ def ratios(page, all_scenes, rows):
                     for step in steps])
 
 
+def presets(page, all_scenes, rows):
+    found = {(r["scene"], r["n"], r["T"]): r for r in rows if r["choice"] == "robust" and r["dt_factor"] == 1 and not r["off"]}
+    body, mean = [], {}
+    for scene in all_scenes:
+        n, ratio = scene.n // 2, 3 if scene.kind == "water" else 2
+        line = [found.get((scene.key, cells, ratio)) for cells in (n // 2, n, 2 * n)]
+        if not scene.sweep or any(row is None for row in line):
+            continue
+        for name, row in zip(("draft", "balanced", "accurate"), line):
+            mean.setdefault(name, []).append(row["error"] / line[1]["error"])
+        body.append([scene.key, *(f"{number(row['error'])} %, {number(row['ms_per_second'])} ms" for row in line)])
+    if not body:
+        return
+    page.heading("Presets")
+    page.text("Error and ms per simulated second with half, all and twice the cells along x and y, the step in proportion, two sand steps per water step. "
+              "On grids this small a GPU's time is that of its launches; on large ones it goes with the third power of the factor.")
+    page.table(["", "draft", "balanced", "accurate"], [*body, ["error, factor", *(f"{sum(v) / len(v):.2f}" for v in mean.values())]])
+
+
 def choices(page, all_scenes, rows):
     page.heading("Method, choice by choice")
     page.text("Error [%] at the base step and at a quarter of it, where only what a choice itself errs is left.")
@@ -155,6 +174,7 @@ def write(out, all_scenes, rows, cost, cost_size, quick):
     for scene in all_scenes:
         if scene.sweep and any(r["scene"] == scene.key for r in rows):
             pareto(page, scene, rows)
+    presets(page, all_scenes, rows)
     ratios(page, all_scenes, rows)
     choices(page, all_scenes, rows)
     convergence(page, all_scenes, rows)

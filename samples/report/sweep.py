@@ -25,6 +25,8 @@ CHOICES = {
 GUARDS = [choice for choice in CHOICES if choice.startswith("no_")]
 METHODS = [choice for choice in CHOICES if not choice.startswith("no_")]
 EFFECTS = ("elastoplastic", "cohesion", "drag", "diffusion", "mixture")
+CHOICES_OF = {"water": ("robust", "published", "semi_lagrangian"), "dry sand": ("robust", "published", "semi_lagrangian", "polar", "direct"),
+              "wet sand": tuple(METHODS)}  # what a kind of scene has something of to show
 STEPS = (0.25, 0.5, 1, 2, 4)
 RATIOS = (1, 2, 3, 4, 6)
 
@@ -64,7 +66,7 @@ def points_of(scene, quick):
             for dt in (1, 2) if quick else STEPS:
                 for ratio in ((1, 3) if quick else RATIOS) if sand else (3,):
                     yield Point(scene.key, n, dt, ratio)
-        for choice in ("robust", "published") if quick else METHODS:
+        for choice in ("robust", "published") if quick else CHOICES_OF[scene.kind]:
             yield Point(scene.key, sizes[-1], 1, 3, choice)
             yield Point(scene.key, sizes[-1], 0.25, 3, choice)
     else:

@@ -86,6 +86,15 @@ void Panel::simulation(Session& session) {
         choice.backend = backends[backend];
         session.open(session.level_name, choice);
     }
+    static const char* const accuracies[] = {"", "draft", "balanced", "accurate"};
+    const auto named = [](int n) { return n == 0 ? "as the level says" : accuracies[n]; };
+    int accuracy = static_cast<int>(std::find(std::begin(accuracies), std::end(accuracies), session.choice().accuracy) -
+                                    std::begin(accuracies));
+    if (choose("accuracy", named, 4, accuracy)) {
+        SimulationChoice choice = session.choice();
+        choice.accuracy = accuracies[accuracy];
+        session.open(session.level_name, choice);
+    }
     const wadi_world_info& info = session.simulation().info;
     ImGui::TextWrapped("%d x %d cells of %g m, dt %g s\n%s: %s", info.nx, info.ny, info.dx, info.dt, info.backend,
                        info.device_name);

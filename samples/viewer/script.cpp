@@ -11,11 +11,11 @@ namespace {
 
 /// Commands and how many words follow.
 const std::map<std::string, std::size_t> commands = {
-    {"pointer", 2}, {"press", 1},      {"release", 1},  {"wheel", 1},   {"key", 1},      {"tool", 1},
-    {"radius", 1},  {"strength", 1},   {"speed", 1},    {"pause", 0},   {"resume", 0},   {"step", 0},
-    {"restart", 0}, {"screenshot", 0}, {"record", 1},   {"view", 1},    {"quality", 1},  {"arrows", 0},
-    {"section", 4}, {"backend", 1},    {"level", 2},    {"keep", 2},    {"back", 1},     {"determinism", 1},
-    {"print", 0},   {"resize", 2},     {"minimise", 0}, {"restore", 0}, {"material", 2}, {"effect", 2},
+    {"pointer", 2},  {"press", 1},  {"release", 1},     {"wheel", 1},  {"key", 1},     {"tool", 1},     {"radius", 1},
+    {"strength", 1}, {"speed", 1},  {"pause", 0},       {"resume", 0}, {"step", 0},    {"restart", 0},  {"screenshot", 0},
+    {"record", 1},   {"view", 1},   {"quality", 1},     {"arrows", 0}, {"section", 4}, {"backend", 1},  {"level", 2},
+    {"keep", 2},     {"back", 1},   {"determinism", 1}, {"print", 0},  {"resize", 2},  {"minimise", 0}, {"restore", 0},
+    {"material", 2}, {"effect", 2}, {"accuracy", 1},
 };
 
 std::size_t button_number(const std::string& name) {
@@ -71,6 +71,11 @@ void run(const Script::Line& line, Session& session) {
     if (command == "backend") {
         SimulationChoice choice = session.choice();
         choice.backend = line.words[0];
+        session.open(session.level_name, choice);
+    }
+    if (command == "accuracy") {
+        SimulationChoice choice = session.choice();
+        choice.accuracy = line.words[0] == "level" ? "" : line.words[0];
         session.open(session.level_name, choice);
     }
     if (command == "level") {

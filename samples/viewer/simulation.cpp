@@ -89,6 +89,8 @@ Simulation::Simulation(const Gpu& gpu, const SimulationChoice& choice) : gpu_(gp
     overrides.nx = choice.nx;
     overrides.ny = choice.ny;
     overrides.variant = choice.variant.empty() ? nullptr : choice.variant.c_str();
+    overrides.accuracy = choice.accuracy.empty() ? nullptr : choice.accuracy.c_str();
+    overrides.method = choice.method.empty() ? nullptr : choice.method.c_str();
     std::filesystem::path folder = std::filesystem::path(choice.level_file).parent_path();
     check(choice.text.empty()
               ? wadi_create_world_from_level(choice.level_file.c_str(), &overrides, &options, &world)

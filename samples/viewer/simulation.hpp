@@ -11,8 +11,10 @@ namespace viewer {
 
 struct SimulationChoice {
     std::string level_file;
-    std::string text;    // not empty: instead of the file's own; maps are still found beside it
-    std::string variant; // empty = the level as it is
+    std::string text;     // not empty: instead of the file's own; maps are still found beside it
+    std::string variant;  // empty = the level as it is
+    std::string accuracy; // preset; empty = what the level says
+    std::string method;   // preset; empty = the level's
     std::string backend = "auto";
     int device = -1;
     int threads = 0;

@@ -46,6 +46,13 @@ class Session:
         return (out, *self.finish(process, code))
 
 
+def test_accuracy(session):
+    """An accuracy preset makes the world anew (here, where --grid fixes the cells, with other sand steps); without one it is as before."""
+    _, _, (level, draft, again), _ = session.run("0 pause\n1 step\n2 print\n3 accuracy draft\n4 step\n5 print\n6 accuracy level\n7 step\n8 print\n", 10)
+    assert level["step"] == draft["step"] == again["step"] == "1", (level, draft, again)
+    assert level["hash"] == again["hash"] != draft["hash"], (level, draft, again)
+
+
 def test_painting(session):
     """Sand painted at a pixel lands there, is in the ledger, and is seen; with the tool "look" the same input changes nothing."""
     for backend in ("cpu",) if session.window else ("cpu", "vulkan"):
@@ -225,7 +232,7 @@ def main():
             if window:
                 tests = (test_painting, test_changes, test_minimised, test_real_input)
             else:
-                tests = (test_painting, test_tools, test_time, test_changes, test_material, test_panel, test_one_queue, test_refusals)
+                tests = (test_painting, test_tools, test_time, test_accuracy, test_changes, test_material, test_panel, test_one_queue, test_refusals)
             chosen = [word for word in sys.argv[2:] if word != "--window"]
             for test in (test for test in tests if not chosen or test.__name__ in chosen):
                 start = time.time()

@@ -108,7 +108,7 @@ typedef struct wadi_accuracy_preset {
     double cells;              /* factor on the level's cells along x and y */
     int32_t substeps;          /* sand steps per water step */
     double error;              /* mean absolute error, factor */
-    double gpu_cost, cpu_cost; /* time per simulated second, factor: one H100, two CPU cores */
+    double gpu_cost, cpu_cost; /* time per simulated second, factor: one H100, 16 CPU threads */
 } wadi_accuracy_preset;
 /** Fills up to *count presets by rising accuracy and sets *count to their number; presets may be NULL to ask for it. */
 WADI_API wadi_result wadi_list_accuracy_presets(wadi_accuracy_preset* presets, uint32_t* count);

@@ -24,7 +24,7 @@ def npy(kind, size):
 
 
 def sealed(name, body=b""):
-    return name + struct.pack("<IIQQ", 1, 0, 32 + len(body), 0) + body
+    return name + struct.pack("<IIQQ", 2, 0, 32 + len(body), 0) + body
 
 
 def main():
