@@ -25,7 +25,7 @@ CHOICES = {
 GUARDS = [choice for choice in CHOICES if choice.startswith("no_")]
 METHODS = [choice for choice in CHOICES if not choice.startswith("no_")]
 EFFECTS = ("elastoplastic", "cohesion", "drag", "diffusion", "mixture")
-CHOICES_OF = {"water": ("robust", "published", "semi_lagrangian"), "dry sand": ("robust", "published", "semi_lagrangian", "polar", "direct"),
+CHOICES_OF = {"water": ("robust", "published", "second_order", "semi_lagrangian"), "dry sand": ("robust", "published", "semi_lagrangian", "polar", "direct"),
               "wet sand": tuple(METHODS)}  # what a kind of scene has something of to show
 STEPS = (0.25, 0.5, 1, 2, 4)
 RATIOS = (1, 2, 3, 4, 6)
