@@ -37,6 +37,8 @@ int main_checked(int argc, char** argv) {
                    "level name (--list-levels), level file (.json), level folder or terrain map (.png, .r16, .npy, .asc)");
     app.add_option("--backend", options.simulation.backend, "of the simulation: auto, cpu, vulkan or cuda")
         ->capture_default_str();
+    app.add_option("--device", options.simulation.device, "device number within the cpu or cuda backend; -1 = best")
+        ->check(CLI::Range(-1, 64));
     app.add_option("--threads", options.simulation.threads, "threads of the cpu backend; 0 = all cores")
         ->check(CLI::Range(0, 256));
     app.add_option("--gpu", options.gpu, "Vulkan device that draws (--list-gpus); -1 = a real GPU first")

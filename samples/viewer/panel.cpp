@@ -77,13 +77,17 @@ void Panel::simulation(Session& session) {
         choice.nx = choice.ny = 0;
         session.open(levels[static_cast<std::size_t>(level)].name, choice);
     }
-    static const char* const backends[] = {"auto", "cpu", "vulkan", "cuda"};
-    int backend =
-        static_cast<int>(std::find(std::begin(backends), std::end(backends), session.choice().backend) - std::begin(backends));
-    if (choose(
-            "backend", [](int n) { return backends[n]; }, 4, backend)) {
+    static const std::vector<SimulationDevice> devices = simulation_devices();
+    const auto device_at = [&](int n) { return devices[static_cast<std::size_t>(n)].label.c_str(); };
+    const auto used = [&](const SimulationDevice& d) {
+        const SimulationChoice& choice = session.choice();
+        return d.backend == choice.backend && (d.device == choice.device || (choice.device < 0 && d.device <= 0));
+    };
+    int device = static_cast<int>(std::find_if(devices.begin(), devices.end(), used) - devices.begin());
+    if (choose("runs on", device_at, static_cast<int>(devices.size()), device)) {
         SimulationChoice choice = session.choice();
-        choice.backend = backends[backend];
+        choice.backend = devices[static_cast<std::size_t>(device)].backend;
+        choice.device = devices[static_cast<std::size_t>(device)].device;
         session.open(session.level_name, choice);
     }
     static const char* const accuracies[] = {"", "draft", "balanced", "accurate"};

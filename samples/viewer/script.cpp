@@ -15,7 +15,7 @@ const std::map<std::string, std::size_t> commands = {
     {"strength", 1}, {"speed", 1},  {"pause", 0},       {"resume", 0}, {"step", 0},    {"restart", 0},  {"screenshot", 0},
     {"record", 1},   {"view", 1},   {"quality", 1},     {"arrows", 0}, {"section", 4}, {"backend", 1},  {"level", 2},
     {"keep", 2},     {"back", 1},   {"determinism", 1}, {"print", 0},  {"resize", 2},  {"minimise", 0}, {"restore", 0},
-    {"material", 2}, {"effect", 2}, {"accuracy", 1},
+    {"material", 2}, {"effect", 2}, {"accuracy", 1},    {"device", 1},
 };
 
 std::size_t button_number(const std::string& name) {
@@ -71,6 +71,11 @@ void run(const Script::Line& line, Session& session) {
     if (command == "backend") {
         SimulationChoice choice = session.choice();
         choice.backend = line.words[0];
+        session.open(session.level_name, choice);
+    }
+    if (command == "device") {
+        SimulationChoice choice = session.choice();
+        choice.device = std::stoi(line.words[0]);
         session.open(session.level_name, choice);
     }
     if (command == "accuracy") {

@@ -70,6 +70,21 @@ std::vector<std::string> take_log() {
     return std::exchange(log_lines, {});
 }
 
+std::vector<SimulationDevice> simulation_devices() {
+    std::vector<SimulationDevice> devices = {
+        {"auto", -1, "auto"}, {"cpu", -1, "cpu"}, {"vulkan", -1, "vulkan, where it is drawn"}};
+    uint32_t count = 0;
+    check(wadi_list_devices(nullptr, &count, nullptr, 0), "listing devices");
+    std::vector<wadi_device_info> infos(count);
+    for (wadi_device_info& info : infos) info.struct_size = sizeof info;
+    check(wadi_list_devices(infos.data(), &count, nullptr, 0), "listing devices");
+    for (const wadi_device_info& info : infos) {
+        if (std::string(info.backend) == "cuda")
+            devices.push_back({"cuda", info.index, "cuda " + std::to_string(info.index) + ", " + info.name});
+    }
+    return devices;
+}
+
 Simulation::Simulation(const Gpu& gpu, const SimulationChoice& choice) : gpu_(gpu) {
     wadi_vulkan_host host = wadi_default_vulkan_host();
     host.instance = gpu.instance;

@@ -21,6 +21,14 @@ struct SimulationChoice {
     int nx = 0, ny = 0; // 0 = the level's
 };
 
+/// What a world can run on beside this renderer: a backend's best device (-1), or one of several. Vulkan's is the one that draws.
+struct SimulationDevice {
+    std::string backend;
+    int device = -1;
+    std::string label;
+};
+std::vector<SimulationDevice> simulation_devices();
+
 /// Where the renderer reads: in the order of F.source in shaders/prepare.comp.
 struct Source {
     VkBuffer buffer = VK_NULL_HANDLE;

@@ -53,6 +53,14 @@ def test_accuracy(session):
     assert level["hash"] == again["hash"] != draft["hash"], (level, draft, again)
 
 
+def test_device(session):
+    """A world moves to a device by number with the same bits; one that is not there is refused by name."""
+    _, _, (first, moved), _ = session.run("0 pause\n1 step\n2 print\n3 device 0\n4 step\n5 print\n", 7)
+    assert first["step"] == moved["step"] == "1" and first["hash"] == moved["hash"], (first, moved)
+    _, _, _, errors = session.run("2 device 41\n", 4, code=2)
+    assert "41" in errors, errors
+
+
 def test_painting(session):
     """Sand painted at a pixel lands there, is in the ledger, and is seen; with the tool "look" the same input changes nothing."""
     for backend in ("cpu",) if session.window else ("cpu", "vulkan"):
@@ -232,7 +240,7 @@ def main():
             if window:
                 tests = (test_painting, test_changes, test_minimised, test_real_input)
             else:
-                tests = (test_painting, test_tools, test_time, test_accuracy, test_changes, test_material, test_panel, test_one_queue, test_refusals)
+                tests = (test_painting, test_tools, test_time, test_accuracy, test_device, test_changes, test_material, test_panel, test_one_queue, test_refusals)
             chosen = [word for word in sys.argv[2:] if word != "--window"]
             for test in (test for test in tests if not chosen or test.__name__ in chosen):
                 start = time.time()
