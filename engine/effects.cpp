@@ -21,7 +21,7 @@ constexpr std::array<Effect, 12> table = {{
     {EFFECT_BED_SHEAR, "bed_shear", EFFECT_MIXTURE, "pure water drags the sand under it along: bed load"},
 }};
 
-constexpr std::array<Choice, 5> choices = {{
+constexpr std::array<Choice, 6> choices = {{
     {EFFECT_SEMI_LAGRANGIAN, "semi_lagrangian", 0,
      [](const Method& m) { return m.velocity_transport == VelocityTransport::semi_lagrangian; },
      [](Method& m) { m.velocity_transport = VelocityTransport::semi_lagrangian; }},
@@ -36,6 +36,8 @@ constexpr std::array<Choice, 5> choices = {{
      [](Method& m) { m.drag_friction = DragFriction::sequence; }},
     {EFFECT_LAPLACE_DIFFUSION, "laplace_diffusion", EFFECT_DIFFUSION,
      [](const Method& m) { return m.diffusion == Diffusion::laplacian; }, [](Method& m) { m.diffusion = Diffusion::laplacian; }},
+    {EFFECT_SECOND_ORDER_WATER, "second_order_water", EFFECT_WATER, [](const Method& m) { return m.water_transport_order == 2; },
+     [](Method& m) { m.water_transport_order = 2; }},
 }};
 
 bool ever_above_zero(const TimeSeries& series) {

@@ -76,7 +76,8 @@ std::uint64_t level_digest(const Settings& s) {
                                double(w.velocity_transport),
                                double(w.strain_transport),
                                double(w.drag_friction),
-                               double(w.diffusion)})
+                               double(w.diffusion),
+                               double(w.water_transport_order)})
         add(value);
     for (const auto& side : s.sides) {
         add(static_cast<double>(side.kind));

@@ -24,5 +24,6 @@
 #define EFFECT_DIRECT_STRAIN 16384u // F is moved as it is, not as angle and stretch
 #define EFFECT_EXPLICIT_DRAG 32768u // drag is an explicit step of its own ahead of friction
 #define EFFECT_LAPLACE_DIFFUSION 65536u // mixed water spreads by the Laplacian of its height
+#define EFFECT_SECOND_ORDER_WATER 131072u // heights and flux-form velocities of water move by limited slopes
 
 #endif

@@ -53,6 +53,7 @@ inline constexpr SettingField<Method, double> METHOD_FIELDS[] = {
 inline constexpr SettingField<Method, int> METHOD_COUNTS[] = {
     {"substeps", &Method::substeps, 1, 64},
     {"saturation_smoothing", &Method::saturation_smoothing, 0, 2},
+    {"water_transport_order", &Method::water_transport_order, 1, 2},
 };
 
 /// What semi-Lagrangian transport can follow: it looks one cell back.

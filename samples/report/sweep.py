@@ -8,6 +8,7 @@ import recordings
 CHOICES = {
     "robust": {},
     "published": {"name": "published"},
+    "second_order": {"water_transport_order": 2},
     "semi_lagrangian": {"velocity_transport": "semi_lagrangian"},
     "polar": {"strain_transport": "polar"},
     "direct": {"strain_transport": "direct"},
@@ -24,7 +25,7 @@ CHOICES = {
 GUARDS = [choice for choice in CHOICES if choice.startswith("no_")]
 METHODS = [choice for choice in CHOICES if not choice.startswith("no_")]
 EFFECTS = ("elastoplastic", "cohesion", "drag", "diffusion", "mixture")
-CHOICES_OF = {"water": ("robust", "published", "semi_lagrangian"), "dry sand": ("robust", "published", "semi_lagrangian", "polar", "direct"),
+CHOICES_OF = {"water": ("robust", "published", "second_order", "semi_lagrangian"), "dry sand": ("robust", "published", "semi_lagrangian", "polar", "direct"),
               "wet sand": tuple(METHODS)}  # what a kind of scene has something of to show
 STEPS = (0.25, 0.5, 1, 2, 4)
 RATIOS = (1, 2, 3, 4, 6)
@@ -75,6 +76,8 @@ def points_of(scene, quick):
         for n in sizes:
             for choice in ("robust", "published") if scene.key != "monai" or not quick else ("robust",):
                 yield Point(scene.key, n, 1, 3, choice)
+            if not quick and scene.kind != "dry sand":
+                yield Point(scene.key, n, 1, 3, "second_order")
         for dt in () if quick else (0.5, 2):
             yield Point(scene.key, scene.n, dt)
 

@@ -23,6 +23,10 @@ FN float divide_or_zero(float a, float b) {
     return b > 0.0f ? q : 0.0f;
 }
 
+// Minmod: the smaller of two slopes where they agree in sign, else 0. All of it minima and maxima: where a condition chose, g++ would
+// sink the loads of a and b behind it, and the row would not vectorise.
+FN float minmod(float a, float b) { return wmax(wmin(a, b), 0.0f) + wmin(wmax(a, b), 0.0f); }
+
 // Volumes are moved in whole quanta (NUMERICS 2.2): toward zero, so that a limited outflow stays limited.
 FN float whole_quanta(float volume, float quantum, float inv_quantum) {
     float t = wtrunc(volume * inv_quantum) * quantum;

@@ -14,6 +14,54 @@ FN float advect_velocity(float u, float u_west, float u_east, float u_south, flo
     return height > dry ? moved : u;
 }
 
+// Monotonized central slope (van Leer 1977) of a value between its neighbours.
+FN float central_slope(float low, float mid, float high) {
+    float a = mid - low;
+    float b = high - mid;
+    return minmod(2.0f * minmod(a, b), 0.5f * (a + b));
+}
+
+// Velocities on both sides of a face along one axis; inside_*: 1 where the grid has the far one, else 0.
+struct FaceLine {
+    float far_low, low, high, far_high, inside_low, inside_high;
+};
+
+FN FaceLine face_line(float far_low, float low, float high, float far_high, bool inside_low, bool inside_high) {
+    FaceLine line;
+    line.far_low = far_low;
+    line.low = low;
+    line.high = high;
+    line.far_high = far_high;
+    line.inside_low = inside_low ? 1.0f : 0.0f;
+    line.inside_high = inside_high ? 1.0f : 0.0f;
+    return line;
+}
+
+// What `inflow` through one side of u's control volume brings beyond u itself (NUMERICS 2.16): from `near`, whose other neighbour is
+// `far`, or, where negative, out of u's own slope towards `near`.
+FN float side_gain(float inflow, float u, float near, float far, float inside, float own_slope, float inv_height) {
+    float share = 0.5f * (1.0f - wmin(wabs(inflow) * inv_height, 1.0f));
+    float brought = (near - u) + share * (inside * central_slope(far, near, u));
+    return wmax(inflow, 0.0f) * brought + wmin(inflow, 0.0f) * (share * own_slope);
+}
+
+FN float line_gain(float u, FaceLine at, float flux_low, float flux_high, float inv_height) {
+    float own = central_slope(at.low, u, at.high);
+    return side_gain(flux_low, u, at.low, at.far_low, at.inside_low, -own, inv_height) +
+           side_gain(-flux_high, u, at.high, at.far_high, at.inside_high, own, inv_height);
+}
+
+// advect_velocity with limited slopes, kept between the five velocities: no new extremum at any time step.
+FN float advect_velocity_second_order(float u, FaceLine along, FaceLine across, float flux_west, float flux_east, float flux_south, float flux_north,
+                                      float height, float dry) {
+    float inv_height = divide_or_zero(1.0f, height);
+    float gain = line_gain(u, along, flux_west, flux_east, inv_height) + line_gain(u, across, flux_south, flux_north, inv_height);
+    float least = wmin(u, wmin(wmin(along.low, along.high), wmin(across.low, across.high)));
+    float most = wmax(u, wmax(wmax(along.low, along.high), wmax(across.low, across.high)));
+    float moved = wclamp(u + gain * inv_height, least, most);
+    return height > dry ? moved : u;
+}
+
 // Viscous flux of a cell that is compressed along one axis (NUMERICS 2.3, after von Neumann and Richtmyer 1950), 0 elsewhere: growth
 // is the difference of its two face velocities. 0.12 keeps the explicit step stable at a step of the depth.
 FN float shock_flux(float growth, float height, float viscosity) {

@@ -18,6 +18,7 @@ constexpr std::uint32_t ELASTIC = EFFECT_ELASTOPLASTIC;
 constexpr std::uint32_t TRACED = EFFECT_SEMI_LAGRANGIAN;
 constexpr std::uint32_t POLAR = EFFECT_WHOLE_STRAIN, DIRECT = EFFECT_WHOLE_STRAIN | EFFECT_DIRECT_STRAIN;
 constexpr std::uint32_t PUBLISHED = TRACED | POLAR | EFFECT_EXPLICIT_DRAG | EFFECT_LAPLACE_DIFFUSION;
+constexpr std::uint32_t SECOND = EFFECT_SECOND_ORDER_WATER;
 constexpr std::uint32_t ALL = 4095;
 
 CaseSpec spec_of(const char* name, const char* grid, std::uint32_t effects, const std::string& scene, const std::string& method,
@@ -48,6 +49,9 @@ std::vector<CaseSpec> list() {
     add("bounds", "33x17", WET | ELASTIC | EFFECT_COHESION, "cliff", "plain",
         500); // closed: its ledger would count rounded quanta
     add("bounds", "33x17", ALL | TRACED, "random", "default", 300);
+    add("bounds", "33x17", ALL | SECOND, "random", "default", 300);
+    add("bounds", "33x17", ALL | SECOND, "thin_film", "default", 300);
+    add("bounds", "33x17", WET | ELASTIC | EFFECT_COHESION | SECOND, "cliff", "plain", 500);
     add("bounds", "33x17", ALL | TRACED | POLAR, "random", "default", 300);
     add("bounds", "33x17", ALL | DIRECT, "random", "default", 300);
     add("bounds", "33x17", ALL | PUBLISHED, "random", "default", 300);
@@ -59,6 +63,8 @@ std::vector<CaseSpec> list() {
     add("lake_at_rest", "33x17", WET | EFFECT_BED_SHEAR, "lake_at_rest", "default", 200);
     add("lake_at_rest", "33x17", EFFECT_WATER | EFFECT_SAND | EFFECT_DRAG | EFFECT_BED_FRICTION, "lake_at_rest", "default", 200);
     add("lake_at_rest", "33x17", WET | ELASTIC | EFFECT_COHESION | TRACED, "lake_at_rest", "default", 200);
+    add("lake_at_rest", "33x17", EFFECT_WATER | SECOND, "lake_at_rest", "default", 200);
+    add("lake_at_rest", "33x17", WET | ELASTIC | EFFECT_COHESION | SECOND, "lake_at_rest", "default", 200);
     add("static_pile", "33x17", EFFECT_SAND | TRACED, "static_pile", "default", 200);
     add("static_pile", "33x17", EFFECT_SAND, "static_pile", "default", 200);
     add("static_pile", "65x33", EFFECT_SAND | ELASTIC, "static_pile", "default", 200);
@@ -69,6 +75,7 @@ std::vector<CaseSpec> list() {
         add(symmetry, "33x17", WET | EFFECT_BED_SHEAR, "islands", "default", 60);
         add(symmetry, "33x17", ALL, "random", "default", 60);
         add(symmetry, "33x17", ALL | TRACED, "random", "default", 60);
+        add(symmetry, "33x17", ALL | SECOND, "random", "default", 60);
         add(symmetry, "33x17", ALL | POLAR, "random", "default", 60);
         add(symmetry, "33x17", ALL | DIRECT, "random", "default", 60);
         add(symmetry, "33x17", ALL | PUBLISHED, "random", "default", 60);

@@ -19,6 +19,7 @@ constexpr std::uint32_t ELASTIC = EFFECT_ELASTOPLASTIC;
 constexpr std::uint32_t TRACED = EFFECT_SEMI_LAGRANGIAN;
 constexpr std::uint32_t POLAR = EFFECT_WHOLE_STRAIN, DIRECT = EFFECT_WHOLE_STRAIN | EFFECT_DIRECT_STRAIN;
 constexpr std::uint32_t PUBLISHED = TRACED | POLAR | EFFECT_EXPLICIT_DRAG | EFFECT_LAPLACE_DIFFUSION;
+constexpr std::uint32_t SECOND = EFFECT_SECOND_ORDER_WATER;
 constexpr std::uint32_t ALL = 4095;
 
 struct Row {
@@ -64,6 +65,12 @@ constexpr Row against_reference[] = {
     {"33x17", WET | EFFECT_EXPLICIT_DRAG | EFFECT_LAPLACE_DIFFUSION, "slope", "default", 3},
     {"33x17", WET | TRACED | EFFECT_LAPLACE_DIFFUSION, "slope", "default", 3},
     {"33x17", EFFECT_WATER | EFFECT_SAND | EFFECT_DRAG | EFFECT_EXPLICIT_DRAG, "slope", "default", 3},
+    {"33x17", EFFECT_WATER | SECOND, "dam_break", "default", 4},
+    {"33x17", EFFECT_WATER | SECOND, "islands", "plain", 4},
+    {"33x17", EFFECT_WATER | EFFECT_OPEN_SIDES | SECOND, "flat", "default", 4},
+    {"33x17", EFFECT_WATER | SECOND | TRACED, "dam_break", "default", 4},
+    {"33x17", WET | SECOND, "slope", "default", 3},
+    {"33x17", WET | ELASTIC | EFFECT_COHESION | SECOND, "slope", "default", 2},
     {"33x17", ALL, "flat", "default", 2},
     {"1x1", ALL, "flat", "default", 2},
 };
@@ -83,6 +90,11 @@ constexpr Row in_bits[] = {
     {"33x17", ALL | DIRECT, "random", "default", 20},
     {"33x17", ALL | PUBLISHED, "random", "default", 20},
     {"33x17", ALL | PUBLISHED, "random", "bare", 20},
+    {"33x17", EFFECT_WATER | SECOND, "dam_break", "default", 40},
+    {"64x4", WET | SECOND, "slope", "coarse", 30},
+    {"33x17", ALL | SECOND, "random", "default", 20},
+    {"33x17", ALL | SECOND, "random", "bare", 20},
+    {"1x1", ALL | SECOND, "random", "default", 20},
     {"1x1", ALL, "random", "default", 40},
     {"1x1", ALL | TRACED, "random", "default", 20},
     {"9x1", ALL, "dam_break", "default", 40},

@@ -210,6 +210,7 @@ Case make_case(std::uint64_t seed) {
     make_fields(random, c, size);
     make_rims_and_sources(random, s, size);
     make_commands(random, c, size);
+    if (random.chance(0.4)) s.method.water_transport_order = 2; // drawn last: seeds keep the rest of their cases
     return c;
 }
 

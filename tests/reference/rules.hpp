@@ -24,6 +24,13 @@ template <class Real> Real minmod(Real a, Real e) {
     return std::abs(a) < std::abs(e) ? a : e;
 }
 
+/// 2.16: slope at b towards c, the mean of both sides' and at most twice either; 0 at an extremum.
+template <class Real> Real centred_slope(Real a, Real b, Real c) {
+    if ((b - a) * (c - b) <= Real(0)) return Real(0);
+    const Real size = std::min(Real(2) * std::min(std::abs(b - a), std::abs(c - b)), std::abs(c - a) / Real(2));
+    return std::copysign(size, c - a);
+}
+
 template <class Real> Real mean(Real left, Real right) { return (left + right) / Real(2); }
 
 /// Volume that is moved: whole quanta, towards zero.

@@ -15,6 +15,34 @@ template <class Real> template <class F> void Solver<Real>::for_inner_faces(F f)
     }
 }
 
+/// 2.16: depth that the donor of face (a, b) sends through it; only the pure layer reaches beyond the rim, by one cell.
+template <class Real> Real Solver<Real>::face_depth(Layer layer, const Axis& ax, int a, int b, Real u) const {
+    const int down = u > Real(0) ? 1 : -1;
+    const int donor = u > Real(0) ? a - 1 : a;
+    struct Column {
+        Real depth, surface;
+    };
+    const auto at = [&](int cell) {
+        if (cell >= 0 && cell < ax.along()) {
+            const std::size_t c = ax.cell(cell, b);
+            return Column{layer == Layer::pure ? pure[c] : mixed[c], terrain[c] + water[c]};
+        }
+        const bool next = layer == Layer::pure && (cell == -1 || cell == ax.along());
+        const Real outside = next ? ghost_water.along(ax)[ax.face(cell == -1 ? 0 : cell, b)] : Real(0);
+        return Column{outside, terrain[ax.cell(std::clamp(cell, 0, ax.along() - 1), b)] + outside};
+    };
+    const Column before = at(donor - down), own = at(donor), after = at(donor + down);
+    if (std::min({before.depth, own.depth, after.depth}) <= P.eps) return own.depth;
+    const auto rise = [](const Column& from, const Column& to) {
+        return minmod(to.depth - from.depth, to.surface - from.surface);
+    };
+    const Real courant = std::min(Real(1), P.k * std::abs(u));
+    const Field<Real>& velocity = (layer == Layer::pure ? pure_velocity : mixed_velocity).along(ax);
+    const Real growth = velocity[ax.face(donor + 1, b)] - velocity[ax.face(donor, b)];
+    const Real thinned = own.depth * std::clamp(P.k * growth, Real(-1), Real(1));
+    return own.depth + ((Real(1) - courant) * minmod(rise(before, own), rise(own, after)) - thinned) / Real(2);
+}
+
 /// Raw upwind flux q [m2/s] of a layer, diffusion included. Outside an open side only the pure layer has depth.
 template <class Real> Real Solver<Real>::raw_flux(Layer layer, const Axis& ax, int a, int b) const {
     const bool rim = a == 0 || a == ax.along();
@@ -27,6 +55,7 @@ template <class Real> Real Solver<Real>::raw_flux(Layer layer, const Axis& ax, i
     const Real h_right = a < ax.along() ? h[ax.cell(a, b)] : outside;
     const Real u = velocity.along(ax)[face];
     Real q = std::max(u, Real(0)) * h_left + std::min(u, Real(0)) * h_right;
+    if (layer != Layer::sand && has(EFFECT_SECOND_ORDER_WATER)) q = u * face_depth(layer, ax, a, b, u);
     if (layer == Layer::mixed && has(EFFECT_DIFFUSION)) q += diffusion_flux.along(ax)[face];
     if (layer == Layer::sand && has(EFFECT_BED_SHEAR)) q += bed_load.along(ax)[face];
     return q;
@@ -92,6 +121,37 @@ void Solver<Real>::advect_velocity(const Field<Real>& height, const Faces<Real>&
         const Real from_along = std::max(-Q_E, Real(0)) * (u_E - u) + std::max(Q_W, Real(0)) * (u_W - u);
         const Real from_across = std::max(-Q_N, Real(0)) * (u_N - u) + std::max(Q_S, Real(0)) * (u_S - u);
         velocity.along(ax)[ax.face(a, b)] = u + (from_along + from_across) / hb;
+    });
+}
+
+/// 2.16 in place of 2.3.
+template <class Real>
+void Solver<Real>::advect_velocity_second_order(const Field<Real>& height, const Faces<Real>& flux, Faces<Real>& velocity) const {
+    const Faces<Real> old = velocity;
+    for_inner_faces([&](const Axis& ax, int a, int b) {
+        const Real hb = mean(height[ax.cell(a - 1, b)], height[ax.cell(a, b)]);
+        if (hb <= P.eps) return;
+        // Offsets along and across; beyond the last face or row its value again.
+        const auto at = [&](int da, int db) {
+            return old.along(ax)[ax.face(std::clamp(a + da, 0, ax.along()), std::clamp(b + db, 0, ax.across() - 1))];
+        };
+        // Volume that enters (positive) through the side at offset (da, db), from the fluxes of the two cells there.
+        const auto inflow = [&](int da, int db) {
+            if (da != 0) return Real(-da) * mean(flux.along(ax)[ax.face(a, b)], flux.along(ax)[ax.face(a + da, b)]);
+            const int row = db > 0 ? b + 1 : b;
+            return Real(-db) * mean(flux.across(ax)[ax.cross(a - 1, row)], flux.across(ax)[ax.cross(a, row)]);
+        };
+        const Real u = at(0, 0);
+        const auto gain = [&](int da, int db) {
+            const Real in = inflow(da, db);
+            const Real share = std::max(Real(0), Real(1) - std::abs(in) / hb) / Real(2);
+            const Real neighbour = at(da, db);
+            if (in > Real(0)) return in * ((neighbour - u) + share * centred_slope(at(2 * da, 2 * db), neighbour, u));
+            return in * share * centred_slope(at(-da, -db), u, neighbour);
+        };
+        const Real moved = u + ((gain(-1, 0) + gain(1, 0)) + (gain(0, -1) + gain(0, 1))) / hb;
+        const auto around = {u, at(-1, 0), at(1, 0), at(0, -1), at(0, 1)};
+        velocity.along(ax)[ax.face(a, b)] = std::clamp(moved, std::min(around), std::max(around));
     });
 }
 

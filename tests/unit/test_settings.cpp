@@ -82,6 +82,9 @@ TEST_CASE("settings: saturation, quantum, caps, names") {
                }),
                "method.velocity_clamp: 1.5 is outside 0.01 ... 1 (semi_lagrangian"));
     CHECK(message([](Settings& s) { s.method.velocity_clamp = 1.5; }).empty());
+    CHECK(message([](Settings& s) { s.method.water_transport_order = 2; }).empty());
+    CHECK(says(message([](Settings& s) { s.method.water_transport_order = 3; }),
+               "method.water_transport_order: 3 is outside 1 ... 2"));
     CHECK(says(message([](Settings& s) { s.method.name = "robst"; }), "did you mean \"robust\"?"));
     CHECK(says(message([](Settings& s) { s.effects = {{"cohesoin", Force::off}}; }), "did you mean \"cohesion\"?"));
     CHECK(message([](Settings& s) { s.effects = {{"bed_friction", Force::on}}; }).empty());

@@ -170,6 +170,23 @@ TEST_CASE("choices of method are passes of their own at their place in the order
     scene.settings.method.strain_transport = StrainTransport::direct; // no sand: nothing to act on
     scene.settings.method.velocity_transport = VelocityTransport::semi_lagrangian;
     CHECK(effects_required(scene.settings, content_of(scene.fields))->mask == (EFFECT_WATER | EFFECT_SEMI_LAGRANGIAN));
+    scene.settings.method = {};
+    scene.settings.method.water_transport_order = 2;
+    CHECK(effects_required(scene.settings, content_of(scene.fields))->mask == (EFFECT_WATER | EFFECT_SECOND_ORDER_WATER));
+    // The same passes and buffers: the fluxes read the terrain as well.
+    const auto second = make_step_plan(EFFECT_WATER | EFFECT_SECOND_ORDER_WATER, 3), first = make_step_plan(EFFECT_WATER, 3);
+    CHECK(order(second.water_passes) == order(first.water_passes));
+    CHECK(second.field_buffers() == first.field_buffers());
+    const auto reads_terrain = [](const StepPlan& p) {
+        return std::count_if(p.water_passes.begin(), p.water_passes.end(), [](const PlanPass& pass) {
+            return std::find(pass.fields.begin(), pass.fields.end(), "terrain") != pass.fields.end();
+        });
+    };
+    CHECK(reads_terrain(second) == reads_terrain(first) + 2);
+    auto dry = test::flat_scene(8, 8, 1, 0.01);
+    dry.fill(dry.fields.sand, [](double, double) { return 1; });
+    dry.settings.method.water_transport_order = 2; // no water: nothing to act on
+    CHECK((effects_required(dry.settings, content_of(dry.fields))->mask & EFFECT_SECOND_ORDER_WATER) == 0);
 }
 
 TEST_CASE("effects follow from the scene, with a reason, and a level may force them") {
