@@ -83,6 +83,8 @@ Status StateReader::read(const std::string& name, const Region& region, std::spa
         return status ? read_cells(output_[0], region, values) : status;
     }
     if (state_.plan().find(name) == nullptr) {
+        if (std::find(std::begin(hashed_fields), std::end(hashed_fields), name) == std::end(hashed_fields))
+            return error(Code::bad_argument, "read: no field is called '" + name + "'");
         std::fill(values.begin(), values.end(), 0.0F);
         return ok_status();
     }

@@ -22,6 +22,7 @@ class StateReader {
 
     /// The floats in a region of a field by its plan name ("water_height", ...), at cell centres for velocities, or of a
     /// published field ("water_depth", "free_surface", "surface_saturation"). A field the mask lacks is zero.
+    /// Errors: bad_argument for any other name; device_lost.
     Status read(const std::string& name, const Region& region, std::span<float> values);
     Result<WorldStats> stats();
     /// The hash of the statistics alone: fields are read, nothing is run.

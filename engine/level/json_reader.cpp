@@ -126,6 +126,10 @@ void ObjectReader::number(const char* key, double& out, double least, double mos
     if (const Json* value = find(key)) out = read_number(*value, path_of(key), least, most, *status_);
 }
 
+void ObjectReader::required_number(const char* key, double& out, double least, double most) {
+    if (require(key) != nullptr) number(key, out, least, most);
+}
+
 void ObjectReader::whole_number(const char* key, int& out, int least, int most) {
     const Json* value = find(key);
     if (value == nullptr) return;

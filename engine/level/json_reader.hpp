@@ -2,6 +2,7 @@
 #pragma once
 #include "engine/compute/status.hpp"
 #include <array>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -16,6 +17,9 @@ Result<Json> parse_json(const std::string& text);
 
 /// A value as a message shows it: at most 40 characters.
 std::string json_text(const Json& value);
+
+/// A bound where validate() knows the range.
+inline constexpr double ANY_NUMBER = std::numeric_limits<double>::max();
 
 /// One JSON object. Getters leave `out` as it is when the key is absent; after the first error they do nothing.
 /// finish() then refuses keys that nobody asked for and required keys that were not there.
@@ -34,6 +38,8 @@ class ObjectReader {
     Status& status() { return *status_; }
 
     void number(const char* key, double& out, double least, double most);
+    /// The same for a key that must be there.
+    void required_number(const char* key, double& out, double least, double most);
     void whole_number(const char* key, int& out, int least, int most);
     void boolean(const char* key, bool& out);
     void string(const char* key, std::string& out);

@@ -9,10 +9,6 @@ namespace {
 constexpr double RADIUS_LEAST = 1e-9;    // as wadi_edit
 constexpr double AMOUNT_READ_MOST = 2e6; // validate() knows method.largest_height
 
-void require_number(ObjectReader& reader, const char* key, double& out, double least, double most) {
-    if (reader.require(key) != nullptr) reader.number(key, out, least, most);
-}
-
 void require_point(ObjectReader& reader, const char* key, double& x, double& y) {
     Point point = {0, 0};
     if (reader.require(key) != nullptr) reader.pair(key, point, -POSITION_MOST, POSITION_MOST);
@@ -21,7 +17,7 @@ void require_point(ObjectReader& reader, const char* key, double& x, double& y) 
 }
 
 void read_times(ObjectReader& reader, ScriptedEdit& script) {
-    require_number(reader, "time", script.time, 0, EDIT_TIME_MOST);
+    reader.required_number("time", script.time, 0, EDIT_TIME_MOST);
     const bool every = reader.find("every") != nullptr;
     if (every != (reader.find("until") != nullptr)) reader.require(every ? "until" : "every");
     reader.number("every", script.every, EDIT_EVERY_LEAST, EDIT_TIME_MOST);
@@ -37,7 +33,7 @@ void read_shape(ObjectReader& reader, Edit& edit) {
     if (reader.failed()) return;
     require_point(reader, edit.capsule ? "from" : "center", edit.x0, edit.y0);
     if (edit.capsule) require_point(reader, "to", edit.x1, edit.y1);
-    require_number(reader, "radius", edit.radius, RADIUS_LEAST, POSITION_MOST);
+    reader.required_number("radius", edit.radius, RADIUS_LEAST, POSITION_MOST);
     edit.softness = 0.5;
     reader.number("softness", edit.softness, 0, 1);
 }
@@ -50,7 +46,7 @@ void read_effect(ObjectReader& reader, Edit& edit) {
         reader.require("layer");
         reader.choice("layer", {"terrain", "sand", "water"}, layer);
         edit.layer = static_cast<EditLayer>(layer);
-        require_number(reader, "amount", edit.amount, -AMOUNT_READ_MOST, AMOUNT_READ_MOST);
+        reader.required_number("amount", edit.amount, -AMOUNT_READ_MOST, AMOUNT_READ_MOST);
         return;
     }
     edit.kind = EditKind::push;

@@ -41,10 +41,6 @@ void require_pair(ObjectReader& reader, const char* key, Point& out) {
     if (reader.require(key) != nullptr) reader.pair(key, out, -POSITION_MOST, POSITION_MOST);
 }
 
-void require_number(ObjectReader& reader, const char* key, double& out, double least, double most) {
-    if (reader.require(key) != nullptr) reader.number(key, out, least, most);
-}
-
 /// The outline of a box, cylinder or ridge.
 void read_outline(ObjectReader& reader, Shape& shape) {
     if (shape.kind == ShapeKind::box) {
@@ -55,9 +51,9 @@ void read_outline(ObjectReader& reader, Shape& shape) {
                 reader.fail("to[" + std::to_string(axis) + "]", "must be greater than from[" + std::to_string(axis) + "]");
     }
     if (shape.kind == ShapeKind::cylinder || shape.kind == ShapeKind::cone) require_pair(reader, "center", shape.center);
-    if (shape.kind == ShapeKind::cylinder) require_number(reader, "radius", shape.radius, 1e-6, POSITION_MOST);
+    if (shape.kind == ShapeKind::cylinder) reader.required_number("radius", shape.radius, 1e-6, POSITION_MOST);
     if (shape.kind != ShapeKind::ridge) return;
-    require_number(reader, "width", shape.width, 1e-6, POSITION_MOST);
+    reader.required_number("width", shape.width, 1e-6, POSITION_MOST);
     const Json* points = reader.require("points");
     if (points == nullptr) return;
     const std::string path = reader.path_of("points");
@@ -88,8 +84,8 @@ void read_sides(ObjectReader& reader, Layer& layer) {
 }
 
 void read_noise(ObjectReader& reader, Shape& shape) {
-    require_number(reader, "amplitude", shape.amplitude, 0, HEIGHT_MOST);
-    require_number(reader, "wavelength", shape.wavelength, 1e-3, POSITION_MOST);
+    reader.required_number("amplitude", shape.amplitude, 0, HEIGHT_MOST);
+    reader.required_number("wavelength", shape.wavelength, 1e-3, POSITION_MOST);
     reader.whole_number("octaves", shape.octaves, 1, OCTAVES_MOST);
     int seed = 0;
     reader.whole_number("seed", seed, 0, 2147483647);

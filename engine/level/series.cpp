@@ -2,7 +2,6 @@
 #include "engine/level/settings_reader.hpp"
 #include <charconv>
 #include <cstddef>
-#include <limits>
 #include <string_view>
 
 namespace wadi {
@@ -10,7 +9,6 @@ namespace {
 
 constexpr std::size_t SAMPLES_MOST = 1000000;
 constexpr std::uint64_t SERIES_BYTES_MOST = 64u << 20;
-constexpr double ANY = std::numeric_limits<double>::max();
 
 std::string_view trimmed(std::string_view text) {
     const char* blank = " \t\r";
@@ -67,12 +65,12 @@ TimeSeries read_series(const Json& value, const std::string& path, const FileRea
     } else if (value.is_array()) {
         const auto elements = read_array(value, path, SAMPLES_MOST, status);
         for (std::size_t n = 0; n < elements.size() && status; ++n) {
-            const auto sample = read_pair(*elements[n], path + "[" + std::to_string(n) + "]", -ANY, ANY, status);
+            const auto sample = read_pair(*elements[n], path + "[" + std::to_string(n) + "]", -ANY_NUMBER, ANY_NUMBER, status);
             series.samples.emplace_back(sample[0], sample[1]);
         }
         if (elements.empty() && status) status = error(Code::bad_file, path + ": an empty list; give [[time, value], ...]");
     } else if (value.is_number()) {
-        series.samples.emplace_back(0, read_number(value, path, -ANY, ANY, status));
+        series.samples.emplace_back(0, read_number(value, path, -ANY_NUMBER, ANY_NUMBER, status));
     } else if (status) {
         status = error(Code::bad_file,
                        path + ": expected a number, a list of [time, value] or {\"file\": ...}, found " + json_text(value));

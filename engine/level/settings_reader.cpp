@@ -2,13 +2,11 @@
 #include "engine/level/setting_fields.hpp"
 #include "engine/method_presets.hpp"
 #include <cstddef>
-#include <limits>
 
 namespace wadi {
 namespace {
 
-constexpr double ANY = std::numeric_limits<double>::max(); // the range is checked by validate()
-constexpr std::size_t SOURCES_READ = 1000;                 // more than a world holds; validate() names the limit
+constexpr std::size_t SOURCES_READ = 1000; // more than a world holds; validate() names the limit
 
 template <class Owner, std::size_t COUNT>
 void read_fields(ObjectReader& reader, Owner& owner, const SettingField<Owner, double> (&fields)[COUNT]) {
@@ -70,8 +68,8 @@ void read_sides(const Json& value, const FileReader& files, std::array<Side, 4>&
         side_reader.require("kind");
         side_reader.choice("kind", {"wall", "discharge", "level", "outflow"}, kind);
         side.kind = static_cast<SideKind>(kind);
-        side_reader.number("from", side.from, 0, ANY);
-        side_reader.number("to", side.to, 0, ANY);
+        side_reader.number("from", side.from, 0, ANY_NUMBER);
+        side_reader.number("to", side.to, 0, ANY_NUMBER);
         if (const Json* series = side_reader.find("value")) side.value = read_series(*series, path + ".value", files, status);
         side_reader.finish();
     }
@@ -93,16 +91,16 @@ Source read_source(const Json& value, const std::string& path, const FileReader&
         std::array<double, 2> to = {0, 0};
         reader.require("from");
         reader.require("to");
-        reader.pair("from", from, -ANY, ANY);
-        reader.pair("to", to, -ANY, ANY);
+        reader.pair("from", from, -ANY_NUMBER, ANY_NUMBER);
+        reader.pair("to", to, -ANY_NUMBER, ANY_NUMBER);
         source.box = {from[0], from[1], to[0], to[1]};
     } else {
         reader.require("center");
-        reader.pair("center", source.center, -ANY, ANY);
+        reader.pair("center", source.center, -ANY_NUMBER, ANY_NUMBER);
     }
     if (source.shape == SourceShape::disc) {
         reader.require("radius");
-        reader.number("radius", source.radius, 0, ANY);
+        reader.number("radius", source.radius, 0, ANY_NUMBER);
     }
     if (const Json* rate = reader.require("rate")) source.rate = read_series(*rate, path + ".rate", files, status);
     source.set_velocity = reader.find("velocity") != nullptr;

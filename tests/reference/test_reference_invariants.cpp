@@ -111,7 +111,8 @@ TEST_CASE_TEMPLATE("reference: a lake over dunes and a shore is a fixed point", 
     }
 }
 
-TEST_CASE("reference: without quantum and rest rule a lake over dunes keeps rounding-level velocities") {
+TEST_CASE("reference: without quantum and rest rule a lake over dunes keeps rounding-level velocities" *
+          doctest::test_suite("long")) {
     Settings set = make_settings(48, 40, 0.1, 0.01);
     set.method.quantum = 0;
     set.method.rest_surface = 0;

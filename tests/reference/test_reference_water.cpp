@@ -114,7 +114,7 @@ TEST_CASE("reference: Thacker's radial bowl, one period") {
     }
 }
 
-TEST_CASE("reference: steady subcritical flow over a bump, discharge and level sides") {
+TEST_CASE("reference: steady subcritical flow over a bump, discharge and level sides" * doctest::test_suite("long")) {
     const double most[2][2] = {{2.98e-3, 1.52e-3}, {1.4e-3, 0.7e-3}};
     const double L = 25, q = 4.42, hl = 2, g = 9.81;
     for (int turn = 0; turn < 4; ++turn) {

@@ -61,7 +61,8 @@ TEST_CASE("a lake over dunes, an island and a shore keeps every bit") {
     }
 }
 
-TEST_CASE("negative control: a lake that is not level moves, and without quantum and rest rule it only nearly rests") {
+TEST_CASE("negative control: a lake that is not level moves, and without quantum and rest rule it only nearly rests" *
+          doctest::test_suite("long")) {
     auto tilted = lake();
     for (auto& w : tilted.fields.water) w = w > 0.5F ? w + 0.001F : w;
     CHECK_FALSE(unchanged_after(*make_world(tilted), 2));

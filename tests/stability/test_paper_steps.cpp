@@ -4,7 +4,8 @@
 using namespace wadi;
 using namespace wadi::test;
 
-TEST_CASE("the paper's time steps, on grids of the levels' Courant number: no checkerboard in water or sand, exact mass") {
+TEST_CASE("the paper's time steps, on grids of the levels' Courant number: no checkerboard in water or sand, exact mass" *
+          doctest::test_suite("long")) {
     struct Row {
         const char* level;
         int nx, ny;

@@ -21,7 +21,8 @@ Scene lake() {
 
 } // namespace
 
-TEST_CASE("10 000 steps without quantum and rest rule: a lake over a dune keeps velocities of rounding, without growth") {
+TEST_CASE("10 000 steps without quantum and rest rule: a lake over a dune keeps velocities of rounding, without growth" *
+          doctest::test_suite("long")) {
     auto world = make_world(lake());
     step(*world, 2000);
     const double early = stats_of(*world).largest_water_speed;
@@ -41,7 +42,8 @@ TEST_CASE("10 000 steps without quantum and rest rule: a lake over a dune keeps 
     }
 }
 
-TEST_CASE("10 000 steps without quantum and rest rule: a pile within its slope keeps every height, above it moves") {
+TEST_CASE("10 000 steps without quantum and rest rule: a pile within its slope keeps every height, above it moves" *
+          doctest::test_suite("long")) {
     const auto displaced = [](double slope, int steps) {
         auto scene = flat_scene(24, 24, 0.1, 0.009);
         auto& method = scene.settings.method;

@@ -73,3 +73,15 @@ TEST_CASE("ground raised through a lake sheds its water, and the lake calms down
     edit_world(*world, brush(EditLayer::terrain, 3, 4, 1.5, 0.5));
     CHECK(worst(*world, 100, 20, water_checkerboard) > 0.02);
 }
+
+TEST_CASE("a field that the effects lack reads as zero, one of another name is refused") {
+    auto scene = flat_scene(8, 8, 1, 0.01);
+    scene.fill(scene.fields.water, [](double, double) { return 0.5; });
+    auto world = make_world(scene);
+    std::vector<float> values(64, 1);
+    REQUIRE(world->read("sand_height", values));
+    CHECK(values == std::vector<float>(64, 0));
+    const auto status = world->read("sand_hieght", values);
+    CHECK(status.code == Code::bad_argument);
+    CHECK(status.message == "read: no field is called 'sand_hieght'");
+}

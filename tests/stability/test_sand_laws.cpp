@@ -81,7 +81,8 @@ Slopes poured_slope(double friction) {
 
 } // namespace
 
-TEST_CASE("a dry column of aspect up to 1 runs out as far as in the laboratory, with the friction of quartz sand") {
+TEST_CASE("a dry column of aspect up to 1 runs out as far as in the laboratory, with the friction of quartz sand" *
+          doctest::test_suite("long")) {
     const auto as_measured = [](double aspect, double friction) {
         const double laboratory = 1.24 * aspect;
         const double here = run_out(aspect, friction);
@@ -95,7 +96,8 @@ TEST_CASE("a dry column of aspect up to 1 runs out as far as in the laboratory, 
     }
 }
 
-TEST_CASE("a heap poured slowly stands at the friction slope along the axes and the diagonals, and at rest") {
+TEST_CASE("a heap poured slowly stands at the friction slope along the axes and the diagonals, and at rest" *
+          doctest::test_suite("long")) {
     const auto within = [](double slope, double friction) { return std::fabs(slope / friction - 1) < 0.08; };
     for (const double friction : {0.4, 0.7}) {
         const Slopes slopes = poured_slope(friction);

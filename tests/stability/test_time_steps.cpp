@@ -47,7 +47,8 @@ TEST_CASE("gravity CFL 0.4 to 20: water stays free of a checkerboard and gains n
     }
 }
 
-TEST_CASE("elastic CFL 0.3 to 5: a damp pile comes to rest; without the elastic cap it shakes for ever") {
+TEST_CASE("elastic CFL 0.3 to 5: a damp pile comes to rest; without the elastic cap it shakes for ever" *
+          doctest::test_suite("long")) {
     for (const double courant : {0.3, 0.8, 1.5, 5.0}) {
         CAPTURE(courant);
         auto scene = stiff_pile(courant);

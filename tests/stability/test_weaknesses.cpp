@@ -29,7 +29,8 @@ Scene elastic_disc(bool gravity, double bulk_viscosity) {
 } // namespace
 
 TEST_CASE(
-    "noise in thin edges of elastic sand grows without gravity; with gravity and friction, or with bulk viscosity, it does not") {
+    "noise in thin edges of elastic sand grows without gravity; with gravity and friction, or with bulk viscosity, it does not" *
+    doctest::test_suite("long")) {
     const auto speed_after = [](bool gravity, double bulk_viscosity, int steps) {
         auto world = make_world(elastic_disc(gravity, bulk_viscosity));
         step(*world, steps);
@@ -42,7 +43,8 @@ TEST_CASE(
     CHECK(speed_after(false, 1, 1200) < 2e-6);
 }
 
-TEST_CASE("a released pile of damp sand tears a pit in its middle of a third of its height at most; bulk viscosity closes it") {
+TEST_CASE("a released pile of damp sand tears a pit in its middle of a third of its height at most; bulk viscosity closes it" *
+          doctest::test_suite("long")) {
     const auto middle = [](double wet, double bulk_viscosity) {
         auto scene = flat_scene(56, 56, 0.1, 0.009);
         scene.settings.method.bulk_viscosity = bulk_viscosity;
@@ -115,7 +117,8 @@ TEST_CASE(
 }
 
 TEST_CASE(
-    "stiff sand beyond both caps: a checkerboard where dt lets the elastic cap act on moving sand; caps of 0.1 keep it smooth") {
+    "stiff sand beyond both caps: a checkerboard where dt lets the elastic cap act on moving sand; caps of 0.1 keep it smooth" *
+    doctest::test_suite("long")) {
     for (const double dt : {0.015, 0.03, 0.1, 0.3}) {
         CAPTURE(dt);
         auto scene = mixed_scene(40, 36);

@@ -80,7 +80,8 @@ TEST_CASE("a steeper bank slumps at the water line to the slope that buoyant fri
     CHECK(steepest > 0.5 * held);
 }
 
-TEST_CASE("a damp pile creeps only as fast as it dries: its strength falls with its water, not by itself") {
+TEST_CASE("a damp pile creeps only as fast as it dries: its strength falls with its water, not by itself" *
+          doctest::test_suite("long")) {
     const auto creep = [](const Scene& scene) {
         auto world = make_world(scene);
         step(*world, 1000);

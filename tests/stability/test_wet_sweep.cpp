@@ -23,7 +23,8 @@ Scene levee(int smoothing) {
 
 } // namespace
 
-TEST_CASE("a levee from dry to soaked stands where it is damp and nowhere else, smooth; without the low-pass it is rough") {
+TEST_CASE("a levee from dry to soaked stands where it is damp and nowhere else, smooth; without the low-pass it is rough" *
+          doctest::test_suite("long")) {
     auto rough = make_world(levee(0));
     step(*rough, 250);
     on_every_backend(levee(2), [](World& world) { step(world, 20); });
@@ -39,7 +40,8 @@ TEST_CASE("a levee from dry to soaked stands where it is damp and nowhere else, 
     CHECK(checkerboard(cells_of(*rough, "sand_height")) > 2e-4);
 }
 
-TEST_CASE("a damp column soaked by rain falls, and stays as it fell when it dries; smooth all the time") {
+TEST_CASE("a damp column soaked by rain falls, and stays as it fell when it dries; smooth all the time" *
+          doctest::test_suite("long")) {
     const auto soak = [](int smoothing) {
         auto scene = flat_scene(48, 48, 0.1, 0.009);
         scene.settings.method.saturation_smoothing = smoothing;
