@@ -3,8 +3,8 @@ import html
 import math
 
 import charts
-import scenes
 import sweep
+from scene import NORMS
 
 
 def number(value):
@@ -44,8 +44,13 @@ class Page:
                                               + "\n".join(self.html) + "</html>\n")
 
 
+def unguarded(rows, scene):
+    """A scene's rows with an error and with every effect and guard on: what may lie on its frontier."""
+    return [row for row in rows if row["scene"] == scene.key and row.get("error") is not None and not row["off"] and row["choice"] not in sweep.GUARDS]
+
+
 def pareto(page, scene, rows):
-    good = [row for row in rows if row["scene"] == scene.key and row.get("error") is not None and not row["off"] and row["choice"] not in sweep.GUARDS]
+    good = unguarded(rows, scene)
     best = sweep.frontier(good)
     by_size = {}
     for row in good:
@@ -58,35 +63,85 @@ def pareto(page, scene, rows):
                [[f"`{row['point']}`", number(row["error"]), number(row["ms_per_second"]), number(row["ms_per_step"])] for row in best])
 
 
-def order(rows):
-    """Least-squares slope of log error over log dx."""
-    points = [(math.log(row["dx"]), math.log(row["error"])) for row in rows if row.get("error")]
+ROUNDING = 0.01  # [%]: an error below it is that of single precision and of the quantum
+
+
+def norm_of(row, norm):
+    """An error norm of a row [%]; None where the case has one number only."""
+    return next((value for name, _, value, _ in row["measures"] if name.startswith(norm + " error of depth")), None)
+
+
+def order(pairs):
+    """Least-squares slope of log error over log dx, of [(dx, error)]."""
+    points = [(math.log(dx), math.log(error)) for dx, error in pairs if error]
     if len(points) < 2:
-        return None
+        return ""
+    if max(error for _, error in pairs if error) < ROUNDING:
+        return "rounding"
     mx, my = (sum(p[k] for p in points) / len(points) for k in (0, 1))
-    below = sum((x - mx) ** 2 for x, _ in points)
-    return sum((x - mx) * (y - my) for x, y in points) / below if below else None
+    return f"{sum((x - mx) * (y - my) for x, y in points) / sum((x - mx) ** 2 for x, _ in points):.2f}"
+
+
+def by_size(rows, scene, choice):
+    """Rows of a scene with known answer at its base step, by cells."""
+    return sorted((r for r in rows if r["scene"] == scene.key and r["choice"] == choice and r["dt_factor"] == 1 and r["T"] == 3 and "failed" not in r), key=lambda r: r["n"])
 
 
 def convergence(page, all_scenes, rows):
     page.heading("Errors against exact solutions and the laboratory")
-    page.text("Error in percent by cells along x, at the base time step (dt proportional to dx); order: slope of the error over dx.")
-    body, series = [], []
+    page.text("Error in percent by cells along x, at the base time step (dt proportional to dx): L1 where a whole profile is compared, with L2 and largest at the finest "
+              "grid; order: slope of the error over dx, \"rounding\" where every error is below 0.01 %.")
+    body = []
     for scene in all_scenes:
         if scene.sweep:
             continue
-        for choice in ("robust", "published"):
-            mine = sorted((r for r in rows if r["scene"] == scene.key and r["choice"] == choice and r["dt_factor"] == 1 and "failed" not in r), key=lambda r: r["n"])
+        for choice in ("robust", "second_order", "published"):
+            mine = by_size(rows, scene, choice)
             if not mine:
                 continue
-            slope = order(mine)
             finest = mine[-1]
-            body.append([scene.title, choice, ", ".join(f"{r['n']}: {number(r['error'])}" for r in mine), "" if slope is None or scene.truth != "exact" else f"{slope:.2f}",
-                         "; ".join(f"{name} {number(value)} {unit} (right {number(right)})" for name, unit, value, right in finest["measures"][1:] if right)])
-            if scene.truth == "exact" and scene.kind == "water":
-                series.append((f"{scene.key}, {choice}", [(r["dx"], r["error"]) for r in mine if r.get("error")], "line" if choice == "robust" else "dash"))
-    page.table(["case", "method", "error [%]", "order", "at the finest"], body)
-    page.chart("convergence", charts.line_chart("Water: error by cell size", "dx [m]", "error [%]", [s for s in series if s[1]], x_log=True, y_log=True))
+            cells = [scene.title, choice, ", ".join(f"{r['n']}: {number(r['error'])}" for r in mine), order([(r["dx"], r["error"]) for r in mine]) if scene.truth == "exact" else ""]
+            for norm in NORMS[1:]:
+                value = norm_of(finest, norm)
+                cells.append("" if value is None else f"{number(value)} (order {order([(r['dx'], norm_of(r, norm)) for r in mine])})")
+            body.append([*cells, "; ".join(f"{name} {number(value)} {unit}" + ("" if right is None else f" (right {number(right)})")
+                                           for name, unit, value, right in finest["measures"][1:] if " error of depth" not in name)])
+    page.table(["case", "method", "error [%]", "order", "L2 [%]", "largest [%]", "at the finest"], body)
+
+
+VERDICTS = ("yes: better than twice the cells along x and y", "a little: less than twice the cells give", "no")
+
+
+def second_order(page, all_scenes, rows):
+    """Where method.water_transport_order = 2 pays."""
+    body, series = [], []
+    for scene in all_scenes:
+        if scene.kind == "dry sand":
+            continue
+        first, second = by_size(rows, scene, "robust"), by_size(rows, scene, "second_order")
+        first, second = ([r for r in side if not r["off"] and r["error"]] for side in (first, second))
+        at = {r["n"]: r for r in first}
+        pairs = [(at[r["n"]], r, at[2 * r["n"]]) for r in second if r["n"] in at and 2 * r["n"] in at]
+        if not pairs or max(r["error"] for r in first) < ROUNDING:
+            continue
+        one, two, finer = pairs[-1]
+        ratio = two["error"] / one["error"]
+        verdict = VERDICTS[0 if two["error"] < finer["error"] else 1 if ratio < 0.9 else 2]
+        slopes = [order([(r["dx"], r["error"]) for r in side]) for side in (first, second)]
+        body.append([scene.title, str(one["n"]), number(one["error"]), number(two["error"]), number(finer["error"]), f"{ratio:.2f}", " / ".join(slopes),
+                     f"{two['ms_per_step'] / one['ms_per_step']:.1f}", verdict])
+        if scene.kind == "water":
+            colour = len(series) // 2
+            series += [(f"{scene.key}, order {n}", [(r["dx"], r["error"]) for r in side], style, colour) for n, side, style in ((1, first, "dash"), (2, second, "line"))]
+    if not body:
+        return
+    page.heading("Second order for water: where it pays")
+    page.text("method.water_transport_order = 2 (engine/NUMERICS.md 2.16; choice second_order in a point) moves the water's heights and velocities with limited slopes. It pays where water "
+              "is smooth or a bore or front runs through it: waves, dam breaks, streams over a bump with and without a jump. It does not pay where shores move over "
+              "sloping ground (both of Thacker's bowls): cells beside dry ones stay of first order and rule the error, and more cells are the better buy. Water inside sand gains "
+              "where it flows as one body (the mound), not where drag or a boundary sets its error (the pair, Dupuit's dam). Doubling the cells along x and y costs eight times the work.")
+    page.table(["case", "cells", "order 1 [%]", "order 2 [%]", "order 1, twice the cells [%]", "2 over 1", "measured order, 1 / 2", "time of a step, 2 over 1", "pays?"], body)
+    page.chart("convergence", charts.line_chart("Water: error by cell size, order 1 (dashed) and 2", "dx [m]", "error [%]", series, x_log=True, y_log=True))
 
 
 def ratios(page, all_scenes, rows):
@@ -104,23 +159,34 @@ def ratios(page, all_scenes, rows):
                     for step in steps])
 
 
+PRESETS = (("draft", 0.5, "robust"), ("balanced", 1, "robust"), ("balanced with order 2", 1, "second_order"), ("twice the cells, order 1", 2, "robust"),
+           ("accurate", 2, "second_order"))
+
+
 def presets(page, all_scenes, rows):
-    found = {(r["scene"], r["n"], r["T"]): r for r in rows if r["choice"] == "robust" and r["dt_factor"] == 1 and not r["off"]}
-    body, mean = [], {}
+    found = {(r["scene"], r["n"], r["T"], r["choice"]): r for r in rows if r["dt_factor"] == 1 and not r["off"]}
+    body, factors, frontiers = [], {}, []
     for scene in all_scenes:
         n, ratio = scene.n // 2, 3 if scene.kind == "water" else 2
-        line = [found.get((scene.key, cells, ratio)) for cells in (n // 2, n, 2 * n)]
+        # Sand alone has no order of water: its rows are those of order 1.
+        line = [found.get((scene.key, round(n * factor), ratio, choice if scene.kind != "dry sand" else "robust")) for _, factor, choice in PRESETS]
         if not scene.sweep or any(row is None for row in line):
             continue
-        for name, row in zip(("draft", "balanced", "accurate"), line):
-            mean.setdefault(name, []).append(row["error"] / line[1]["error"])
+        base = line[1]
+        for (name, *_), row in zip(PRESETS, line):
+            factors.setdefault(name, []).append((row["error"] / base["error"], row["ms_per_second"] / base["ms_per_second"]))
         body.append([scene.key, *(f"{number(row['error'])} %, {number(row['ms_per_second'])} ms" for row in line)])
+        best = {row["point"] for row in sweep.frontier(unguarded(rows, scene))}
+        frontiers.append([f"{scene.key}: on the frontier", *("yes" if row["point"] in best else "no" for row in line)])
     if not body:
         return
     page.heading("Presets")
-    page.text("Error and ms per simulated second with half, all and twice the cells along x and y, the step in proportion, two sand steps per water step. "
-              "On grids this small a GPU's time is that of its launches; on large ones it goes with the third power of the factor.")
-    page.table(["", "draft", "balanced", "accurate"], [*body, ["error, factor", *(f"{sum(v) / len(v):.2f}" for v in mean.values())]])
+    page.text("Error and ms per simulated second with half, all and twice the cells along x and y, the step in proportion, two sand steps per water step (three where there is "
+              "only water); accurate also has order 2 for water. Two columns are no presets. On the frontier: of all points of the scene, as in its chart; sand alone has no order of water. On grids this small a GPU's time is that of its launches; on large ones it goes with the third power of the factor.")
+    geometric = lambda values: math.prod(values) ** (1 / len(values))
+    page.table(["", *(name for name, *_ in PRESETS)],
+               [*body, *frontiers, ["error over balanced, mean", *(f"{sum(e for e, _ in v) / len(v):.2f}" for v in factors.values())],
+                ["time over balanced, geometric mean", *(f"{geometric([t for _, t in v]):.2g}" for v in factors.values())]])
 
 
 def choices(page, all_scenes, rows):
@@ -177,6 +243,7 @@ def write(out, all_scenes, rows, cost, cost_size, quick):
     presets(page, all_scenes, rows)
     ratios(page, all_scenes, rows)
     choices(page, all_scenes, rows)
+    second_order(page, all_scenes, rows)
     convergence(page, all_scenes, rows)
     price_list(page, rows, cost, cost_size)
     page.write()
