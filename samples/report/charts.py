@@ -60,6 +60,7 @@ def line_chart(title, x_label, y_label, series, *, x_log=False, y_log=False, x_m
             out += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3" fill="{colour}"><title>{escape(name)}: {px:.4g}, {py:.4g}</title></circle>'
                     for (x, y), (px, py) in zip(places, points)]
         line = TOP + 12 + 18 * n
-        out.append(f'<rect x="{LEFT + WIDTH + 12}" y="{line - 9}" width="14" height="4" fill="{colour}"/>'
+        key = ' stroke-dasharray="4 3"' if style == "dash" else ""
+        out.append(f'<line x1="{LEFT + WIDTH + 10}" x2="{LEFT + WIDTH + 27}" y1="{line - 7}" y2="{line - 7}" stroke="{colour}" stroke-width="4"{key}/>'
                    f'<text x="{LEFT + WIDTH + 32}" y="{line - 3}">{escape(name)}</text>')
     return "\n".join([*out, "</svg>", ""])
