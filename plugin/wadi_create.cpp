@@ -108,7 +108,8 @@ wadi_result wadi_list_accuracy_presets(wadi_accuracy_preset* presets, uint32_t* 
         uint32_t found = 0;
         for (const AccuracyPreset& preset : accuracy_presets()) {
             if (found < capacity)
-                presets[found] = {preset.name, preset.cells, preset.substeps, preset.error, preset.gpu_cost, preset.cpu_cost};
+                presets[found] = {preset.name,  preset.cells,    preset.substeps, preset.water_order,
+                                  preset.error, preset.gpu_cost, preset.cpu_cost};
             ++found;
         }
         *count = found;

@@ -70,7 +70,11 @@ Result<Frame> apply_overrides(const LevelOverrides& overrides, Settings& setting
     }
     if (overrides.dt) settings.dt = *overrides.dt;
     if (overrides.method && *overrides.method != settings.method.name) choose_method(settings.method, *overrides.method);
-    if (overrides.accuracy) settings.method.substeps = find_accuracy_preset(*overrides.accuracy)->substeps;
+    if (overrides.accuracy) {
+        const AccuracyPreset& preset = *find_accuracy_preset(*overrides.accuracy);
+        settings.method.substeps = preset.substeps;
+        if (preset.water_order != 0) settings.method.water_transport_order = preset.water_order;
+    }
     frame.nx = settings.grid.nx;
     frame.ny = settings.grid.ny;
     frame.dx = settings.grid.dx;

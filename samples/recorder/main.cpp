@@ -125,7 +125,8 @@ int main_checked(int argc, char** argv) {
     app.add_flag("--validate", options.validate, "switch the Vulkan validation layers on");
     app.add_option("--method", options.method, "method preset instead of the level's");
     app.add_option("--variant", options.variant, "a variant of the level (--list-levels shows them)");
-    app.add_option("--accuracy", options.accuracy, "draft, balanced or accurate: half, all or twice the cells, two sand steps");
+    app.add_option("--accuracy", options.accuracy,
+                   "draft, balanced or accurate: half, all or twice the cells, two sand steps; accurate: order 2 for water");
     app.add_option("--size", size, "grid NxM instead of the level's; keeps the x extent");
     app.add_option("--dt", options.dt, "water time step [s] instead of the level's")->check(CLI::Range(1e-7, 100.0));
     app.add_option("--seconds", options.seconds, "simulated time [s]; default: the level's duration")

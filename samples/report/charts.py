@@ -30,9 +30,10 @@ class Axis:
 
 
 def line_chart(title, x_label, y_label, series, *, x_log=False, y_log=False, x_marks=None):
-    """series: [(name, [(x, y), ...], style)], style "line", "dash" or "points"; logarithmic axes want values above 0."""
-    xs = [x for _, points, _ in series for x, _ in points]
-    ys = [y for _, points, _ in series for _, y in points]
+    """series: [(name, [(x, y), ...], style)], style "line", "dash" or "points"; logarithmic axes want values above 0. A fourth member of a
+    series is the number of its colour: series that belong together share one."""
+    xs = [x for _, points, *_ in series for x, _ in points]
+    ys = [y for _, points, *_ in series for _, y in points]
     across = Axis(xs, x_log, LEFT, WIDTH, x_marks)
     up = Axis(ys, y_log, TOP + HEIGHT, -HEIGHT)
     out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{LEFT + WIDTH + LEGEND}" height="{TOP + HEIGHT + BOTTOM}" '
@@ -48,8 +49,8 @@ def line_chart(title, x_label, y_label, series, *, x_log=False, y_log=False, x_m
                    f'<text x="{x:.1f}" y="{TOP + HEIGHT + 16}" text-anchor="middle">{mark:.6g}</text>')
     out.append(f'<text x="{LEFT + WIDTH / 2}" y="{TOP + HEIGHT + 38}" text-anchor="middle">{escape(x_label)}</text>')
     out.append(f'<text transform="translate(16 {TOP + HEIGHT / 2}) rotate(-90)" text-anchor="middle">{escape(y_label)}</text>')
-    for n, (name, points, style) in enumerate(series):
-        colour = COLOURS[n % len(COLOURS)]
+    for n, (name, points, style, *shared) in enumerate(series):
+        colour = COLOURS[(shared[0] if shared else n) % len(COLOURS)]
         places = [(across.at(x), up.at(y)) for x, y in points]
         if style != "points":
             dash = ' stroke-dasharray="6 4"' if style == "dash" else ""
@@ -59,6 +60,7 @@ def line_chart(title, x_label, y_label, series, *, x_log=False, y_log=False, x_m
             out += [f'<circle cx="{x:.1f}" cy="{y:.1f}" r="3" fill="{colour}"><title>{escape(name)}: {px:.4g}, {py:.4g}</title></circle>'
                     for (x, y), (px, py) in zip(places, points)]
         line = TOP + 12 + 18 * n
-        out.append(f'<rect x="{LEFT + WIDTH + 12}" y="{line - 9}" width="14" height="4" fill="{colour}"/>'
+        key = ' stroke-dasharray="4 3"' if style == "dash" else ""
+        out.append(f'<line x1="{LEFT + WIDTH + 10}" x2="{LEFT + WIDTH + 27}" y1="{line - 7}" y2="{line - 7}" stroke="{colour}" stroke-width="4"{key}/>'
                    f'<text x="{LEFT + WIDTH + 32}" y="{line - 3}">{escape(name)}</text>')
     return "\n".join([*out, "</svg>", ""])

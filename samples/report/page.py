@@ -5,6 +5,7 @@ import math
 import charts
 import scenes
 import sweep
+from scene import NORMS
 
 
 def number(value):
@@ -44,59 +45,117 @@ class Page:
                                               + "\n".join(self.html) + "</html>\n")
 
 
+def unguarded(rows, scene):
+    """A scene's rows with an error and with every effect and guard on: what may lie on its frontier."""
+    return [row for row in rows if row["scene"] == scene.key and row.get("error") is not None and not row["off"] and row["choice"] not in sweep.GUARDS]
+
+
 def pareto(page, scene, rows):
-    good = [row for row in rows if row["scene"] == scene.key and row.get("error") is not None and not row["off"] and row["choice"] not in sweep.GUARDS]
+    good = unguarded(rows, scene)
     best = sweep.frontier(good)
     by_size = {}
     for row in good:
-        by_size.setdefault(("robust", row["n"]) if row["choice"] == "robust" else (row["choice"], ""), []).append((row["ms_per_second"], max(row["error"], 1e-3)))
+        by_size.setdefault((row["choice"], row["n"] if row["choice"] in ("robust", "second_order") else 0), []).append((row["ms_per_second"], max(row["error"], 1e-3)))
     series = [("frontier", [(row["ms_per_second"], max(row["error"], 1e-3)) for row in best], "dash")]
-    series += [(f"{choice} {n}".strip() + (" cells" if n else ""), sorted(points), "points") for (choice, n), points in sorted(by_size.items(), key=str)]
+    series += [(f"{choice} {n} cells" if n else choice, sorted(points), "points") for (choice, n), points in sorted(by_size.items())]
     page.heading(f"{scene.kind}: {scene.title}", 3)
     page.chart(f"pareto_{scene.key}", charts.line_chart(f"{scene.title}: error against time", "ms per simulated second", "error [%]", series, x_log=True, y_log=True))
     page.table(["on the frontier", "error [%]", "ms per simulated second", "ms per step"],
                [[f"`{row['point']}`", number(row["error"]), number(row["ms_per_second"]), number(row["ms_per_step"])] for row in best])
 
 
-def order(rows):
-    """Least-squares slope of log error over log dx."""
-    points = [(math.log(row["dx"]), math.log(row["error"])) for row in rows if row.get("error")]
+ROUNDING = 0.01  # [%]: an error below it is that of single precision and of the quantum
+
+
+def norm_of(row, norm):
+    """An error norm of a row [%]; None where the case has one number only."""
+    return next((value for name, _, value, _ in row["measures"] if name.startswith(norm + " error of depth")), None)
+
+
+def order(pairs):
+    """Least-squares slope of log error over log dx, of [(dx, error)]."""
+    points = [(math.log(dx), math.log(error)) for dx, error in pairs if error]
     if len(points) < 2:
-        return None
+        return ""
+    if max(error for _, error in pairs if error) < ROUNDING:
+        return "rounding"
     mx, my = (sum(p[k] for p in points) / len(points) for k in (0, 1))
-    below = sum((x - mx) ** 2 for x, _ in points)
-    return sum((x - mx) * (y - my) for x, y in points) / below if below else None
+    return f"{sum((x - mx) * (y - my) for x, y in points) / sum((x - mx) ** 2 for x, _ in points):.2f}"
+
+
+def by_size(rows, scene, choice):
+    """Rows of a scene with known answer at its base step, by cells."""
+    return sorted((r for r in rows if r["scene"] == scene.key and r["choice"] == choice and r["dt_factor"] == 1 and r["T"] == 3 and "failed" not in r), key=lambda r: r["n"])
 
 
 def convergence(page, all_scenes, rows):
     page.heading("Errors against exact solutions and the laboratory")
-    page.text("Error in percent by cells along x, at the base time step (dt proportional to dx); order: slope of the error over dx.")
-    body, series = [], []
+    page.text("Error in percent by cells along x, at the base time step (dt proportional to dx): L1 where a whole profile is compared, with L2 and largest at the finest "
+              "grid; order: slope of the error over dx, \"rounding\" where every error is below 0.01 %.")
+    body = []
     for scene in all_scenes:
         if scene.sweep:
             continue
-        for choice in ("robust", "published"):
-            mine = sorted((r for r in rows if r["scene"] == scene.key and r["choice"] == choice and r["dt_factor"] == 1 and "failed" not in r), key=lambda r: r["n"])
+        for choice in ("robust", "second_order", "published"):
+            mine = by_size(rows, scene, choice)
             if not mine:
                 continue
-            slope = order(mine)
             finest = mine[-1]
-            body.append([scene.title, choice, ", ".join(f"{r['n']}: {number(r['error'])}" for r in mine), "" if slope is None or scene.truth != "exact" else f"{slope:.2f}",
-                         "; ".join(f"{name} {number(value)} {unit} (right {number(right)})" for name, unit, value, right in finest["measures"][1:] if right)])
-            if scene.truth == "exact" and scene.kind == "water":
-                series.append((f"{scene.key}, {choice}", [(r["dx"], r["error"]) for r in mine if r.get("error")], "line" if choice == "robust" else "dash"))
-    page.table(["case", "method", "error [%]", "order", "at the finest"], body)
-    page.chart("convergence", charts.line_chart("Water: error by cell size", "dx [m]", "error [%]", [s for s in series if s[1]], x_log=True, y_log=True))
+            cells = [scene.title, choice, ", ".join(f"{r['n']}: {number(r['error'])}" for r in mine), order([(r["dx"], r["error"]) for r in mine]) if scene.truth == "exact" else ""]
+            for norm in NORMS[1:]:
+                value = norm_of(finest, norm)
+                cells.append("" if value is None else f"{number(value)} (order {order([(r['dx'], norm_of(r, norm)) for r in mine])})")
+            body.append([*cells, "; ".join(f"{name} {number(value)} {unit}" + (f" (right {number(right)})" if right else "")
+                                           for name, unit, value, right in finest["measures"][1:] if " error of depth" not in name)])
+    page.table(["case", "method", "error [%]", "order", "L2 [%]", "largest [%]", "at the finest"], body)
+
+
+VERDICTS = ("yes: better than twice the cells along x and y", "yes: better than more cells in the same time", "no: more cells are the better buy")
+
+
+def second_order(page, all_scenes, rows):
+    """Where method.water_transport_order = 2 pays."""
+    body, series = [], []
+    for scene in all_scenes:
+        if scene.kind == "dry sand":
+            continue
+        first, second = by_size(rows, scene, "robust"), by_size(rows, scene, "second_order")
+        first, second = ([r for r in side if not r["off"] and r["error"]] for side in (first, second))
+        at = {r["n"]: r for r in first}
+        pairs = [(at[r["n"]], r, at[2 * r["n"]]) for r in second if r["n"] in at and 2 * r["n"] in at]
+        if not pairs or max(r["error"] for r in first) < ROUNDING:
+            continue
+        one, two, finer = pairs[-1]
+        slopes = [order([(r["dx"], r["error"]) for r in side]) for side in (first, second)]
+        slower = two["ms_per_step"] / one["ms_per_step"]
+        same_time = one["error"] * slower ** (-float(slopes[0]) / 3)  # time goes with the third power of the cells along x
+        verdict = VERDICTS[0 if two["error"] < finer["error"] else 1 if two["error"] < same_time else 2]
+        body.append([scene.title, str(one["n"]), number(one["error"]), number(two["error"]), number(finer["error"]), f"{two['error'] / one['error']:.2f}", " / ".join(slopes),
+                     f"{slower:.1f}", number(same_time), verdict])
+        if scene.kind == "water" and scene.truth == "exact":
+            colour = len(series) // 2
+            series += [(f"{scene.key}, order {n}", [(r["dx"], r["error"]) for r in side], style, colour) for n, side, style in ((1, first, "dash"), (2, second, "line"))]
+    if not body:
+        return
+    page.heading("Second order for water: where it pays")
+    page.text("method.water_transport_order = 2 (engine/NUMERICS.md 2.16; choice second_order in a point) moves the water's heights and velocities with limited slopes. It pays where water "
+              "is smooth or a bore or front runs through it: waves, dam breaks, streams over a bump with and without a jump. It does not pay where shores move over "
+              "sloping ground (both of Thacker's bowls): cells beside dry ones stay of first order and rule the error, and more cells are the better buy. Water inside sand gains "
+              "where it flows as one body (the mound), not where drag or a boundary sets its error (the pair, Dupuit's dam). Doubling the cells along x and y costs eight times the work.")
+    page.table(["case", "cells", "order 1 [%]", "order 2 [%]", "order 1, twice the cells [%]", "2 over 1", "measured order, 1 / 2", "time of a step, 2 over 1", "order 1, cells for that time [%]", "pays?"], body)
+    if series:
+        page.chart("convergence", charts.line_chart("Water: error by cell size, order 1 (dashed) and 2", "dx [m]", "error [%]", series, x_log=True, y_log=True))
 
 
 def ratios(page, all_scenes, rows):
     page.heading("Sand steps per water step")
-    page.text("Error [%] and ms per simulated second, robust, finest grid of the sweep. Along a row of dt the water step is fixed and T divides it.")
+    page.text("Error [%] and ms per simulated second, robust, finest grid with every ratio. Along a row of dt the water step is fixed and T divides it.")
     for scene in all_scenes:
         mine = [r for r in rows if r["scene"] == scene.key and scene.sweep and r["choice"] == "robust" and not r["off"]]
         if not mine or scene.kind == "water":
             continue
-        n = max(r["n"] for r in mine)
+        sizes = [r["n"] for r in mine]
+        n = max(sizes, key=lambda size: (sizes.count(size), size))  # the fullest table
         found = {(r["dt_factor"], r["T"]): r for r in mine if r["n"] == n}
         steps, counts = sorted({k[0] for k in found}), sorted({k[1] for k in found})
         page.table([f"{scene.key}, {n} cells", *(f"T = {t}" for t in counts)],
@@ -104,23 +163,35 @@ def ratios(page, all_scenes, rows):
                     for step in steps])
 
 
+PRESETS = (("draft", 0.5, "robust"), ("balanced", 1, "robust"), ("balanced with order 2", 1, "second_order"), ("twice the cells, order 1", 2, "robust"),
+           ("accurate", 2, "second_order"))
+
+
 def presets(page, all_scenes, rows):
-    found = {(r["scene"], r["n"], r["T"]): r for r in rows if r["choice"] == "robust" and r["dt_factor"] == 1 and not r["off"]}
-    body, mean = [], {}
+    found = {(r["scene"], r["n"], r["T"], r["choice"]): r for r in rows if r["dt_factor"] == 1 and not r["off"]}
+    body, factors, frontiers = [], {}, []
     for scene in all_scenes:
         n, ratio = scene.n // 2, 3 if scene.kind == "water" else 2
-        line = [found.get((scene.key, cells, ratio)) for cells in (n // 2, n, 2 * n)]
+        # Sand alone has no order of water: its rows are those of order 1.
+        line = [found.get((scene.key, round(n * factor), ratio, choice if scene.kind != "dry sand" else "robust")) for _, factor, choice in PRESETS]
         if not scene.sweep or any(row is None for row in line):
             continue
-        for name, row in zip(("draft", "balanced", "accurate"), line):
-            mean.setdefault(name, []).append(row["error"] / line[1]["error"])
+        base = line[1]
+        for (name, *_), row in zip(PRESETS, line):
+            factors.setdefault(name, []).append((row["error"] / base["error"], row["ms_per_second"] / base["ms_per_second"]))
         body.append([scene.key, *(f"{number(row['error'])} %, {number(row['ms_per_second'])} ms" for row in line)])
+        best = {row["point"] for row in sweep.frontier(unguarded(rows, scene))}
+        frontiers.append([f"{scene.key}: on the frontier", *("yes" if row["point"] in best else "no" for row in line)])
     if not body:
         return
     page.heading("Presets")
-    page.text("Error and ms per simulated second with half, all and twice the cells along x and y, the step in proportion, two sand steps per water step. "
+    page.text("Error and ms per simulated second with half, all and twice the cells along x and y, the step in proportion, two sand steps per water step (three where there is "
+              "only water); accurate also has order 2 for water. Two columns are no presets. On the frontier: of all points of the scene, as in its chart; sand alone has no order of water. "
               "On grids this small a GPU's time is that of its launches; on large ones it goes with the third power of the factor.")
-    page.table(["", "draft", "balanced", "accurate"], [*body, ["error, factor", *(f"{sum(v) / len(v):.2f}" for v in mean.values())]])
+    geometric = lambda values: math.prod(values) ** (1 / len(values))
+    page.table(["", *(name for name, *_ in PRESETS)],
+               [*body, *frontiers, ["error over balanced, mean", *(f"{sum(e for e, _ in v) / len(v):.2f}" for v in factors.values())],
+                ["time over balanced, geometric mean", *(f"{geometric([t for _, t in v]):.2g}" for v in factors.values())]])
 
 
 def choices(page, all_scenes, rows):
@@ -132,7 +203,7 @@ def choices(page, all_scenes, rows):
         line = [choice]
         for scene in swept:
             mine = [r for r in rows if r["scene"] == scene.key and r["choice"] == choice and not r["off"] and r["T"] == 3]
-            n = max((r["n"] for r in mine), default=0)
+            n = max((r["n"] for r in mine if r["dt_factor"] == 0.25), default=0)
             at = {r["dt_factor"]: r for r in mine if r["n"] == n}
             line.append(", ".join(f"{number(at[f].get('error'))} ({number(at[f]['ms_per_step'])} ms)" for f in (1, 0.25) if f in at))
         if any(line[1:]):
@@ -142,18 +213,19 @@ def choices(page, all_scenes, rows):
 
 def price_list(page, rows, cost, n):
     everything = cost[0]
+    at = {(r["choice"], r["dt_factor"]): r for r in rows if r["scene"] == "wall" and r["choice"] in sweep.GUARDS}
+    base = {r["dt_factor"]: r for r in rows if r["scene"] == "wall" and r["choice"] == "robust" and r["T"] == 3 and not r["off"] and r["n"] == max((q["n"] for q in at.values()), default=0)}
     page.heading("What effects cost, and what leaving one out changes")
     change = {r["off"]: r for r in rows if r["off"]}
-    page.text(f"Scene wall on {n} cells along x: ms per step, passes per step and bytes per cell; error: against the reference with everything on, at the sweep's size.")
-    page.table(["", "ms per step", "saved [%]", "passes", "bytes per cell", "error without it [%]"],
+    page.text(f"Scene wall on {n} cells along x: ms per step, passes per step and bytes per cell; error: against the reference with everything on, at the sweep's size. "
+              "On so coarse a grid one error can offset another: what leaving an effect out changes by itself is in effects/README.md of samples/report.")
+    page.table(["", "ms per step", "saved [%]", "passes", "bytes per cell", "error [%]"],
                [[what, f"{ms:.4g}", f"{100 * (1 - ms / everything[1]):.0f}", str(passes), f"{size:.0f}",
-                 number(change[what.split()[1]].get("error")) if what.startswith("effect") and what.split()[1] in change else ""]
+                 "".join(number(row.get("error")) for row in (change.get(what.removeprefix("effect ").removesuffix(" off")), base.get(1) if what == "everything" else None) if row)]
                 for what, ms, passes, size in cost if what == "everything" or what.startswith("effect")])
     page.heading("What safety costs")
     page.text("One guard off at a time (negative: it costs more without). Error and mass drift at the base step and at four times it, where the guards work. "
               "Strict floats: 6 to 16 % of a step (tests/conformance/results). The ledger of open sides and sources is part of their passes.")
-    at = {(r["choice"], r["dt_factor"]): r for r in rows if r["scene"] == "wall" and r["choice"] in sweep.GUARDS}
-    base = {r["dt_factor"]: r for r in rows if r["scene"] == "wall" and r["choice"] == "robust" and r["T"] == 3 and not r["off"] and r["n"] == max((q["n"] for q in at.values()), default=0)}
     both = lambda table, key: [f"{number(table[key].get('error'))} %, drift {number(table[key].get('drift', 0))}" if key in table else "" ]
     body = [["everything on", f"{everything[1]:.4g}", "", *both(base, 1), *both(base, 4)]]
     for what, ms, _, _ in cost:
@@ -168,7 +240,9 @@ def write(out, all_scenes, rows, cost, cost_size, quick):
     backend = next((r["backend"] for r in rows if "backend" in r), "")
     page.heading("What accuracy costs in time", 1)
     page.text(f"{'Quick' if quick else 'Full'} run on {backend}: {device}. Error: mean absolute error of sand and water surface in percent of the range over which they moved, "
-              "or as the case says; time: of stepping alone, per simulated second. A point such as wall@n64,dt1,T3,robust is 64 cells along x, the base time step, "
+              "or as the case says; time: of stepping alone, per simulated second. "
+              f"Truth of island, heap and wall: double precision on {scenes.SOLVED_N} x {scenes.SOLVED_N // 2} cells "
+              f"with second order for water. A point such as wall@n64,dt1,T3,robust is 64 cells along x, the base time step, "
               "three sand steps per water step, method robust; samples/report/wadi-report BIN --point POINT measures it again.")
     page.heading("Error against time")
     for scene in all_scenes:
@@ -177,6 +251,7 @@ def write(out, all_scenes, rows, cost, cost_size, quick):
     presets(page, all_scenes, rows)
     ratios(page, all_scenes, rows)
     choices(page, all_scenes, rows)
+    second_order(page, all_scenes, rows)
     convergence(page, all_scenes, rows)
     price_list(page, rows, cost, cost_size)
     page.write()

@@ -59,14 +59,20 @@ def parse(text):
 
 def points_of(scene, quick):
     """Without order or repetition of meaning: the caller drops doubles."""
-    sand = scene.kind != "water"
+    sand, wet = scene.kind != "water", scene.kind != "dry sand"
     if scene.sweep:
-        sizes = (scene.n // 2, scene.n) if not quick else (scene.n // 4, scene.n // 2)
-        for n in sizes if quick else (scene.n // 4, *sizes):
+        preset_sizes = (scene.n // 4, scene.n // 2, scene.n)
+        sizes = preset_sizes if not quick else preset_sizes[:2]
+        for n in sizes:
             for dt in (1, 2) if quick else STEPS:
                 for ratio in ((1, 3) if quick else RATIOS) if sand else (3,):
                     yield Point(scene.key, n, dt, ratio)
-        for choice in ("robust", "published") if quick else CHOICES_OF[scene.kind]:
+        for n in preset_sizes:
+            for choice in ("robust", "second_order") if wet else ("robust",):
+                for dt in (1, 2) if quick else (0.5, 1, 2):
+                    for ratio in (2, 3) if sand else (3,):
+                        yield Point(scene.key, n, dt, ratio, choice)
+        for choice in [c for c in CHOICES_OF[scene.kind] if not quick or c in ("robust", "published", "second_order")]:
             yield Point(scene.key, sizes[-1], 1, 3, choice)
             yield Point(scene.key, sizes[-1], 0.25, 3, choice)
     else:
@@ -74,10 +80,9 @@ def points_of(scene, quick):
         if scene.key == "monai":
             sizes = [scene.n // 2] if quick else [scene.n // 2, scene.n, 2 * scene.n - 1]
         for n in sizes:
-            for choice in ("robust", "published") if scene.key != "monai" or not quick else ("robust",):
-                yield Point(scene.key, n, 1, 3, choice)
-            if not quick and scene.kind != "dry sand":
-                yield Point(scene.key, n, 1, 3, "second_order")
+            for choice in ("robust", "second_order", "published") if scene.key != "monai" or not quick else ("robust", "second_order"):
+                if choice != "second_order" or wet:
+                    yield Point(scene.key, n, 1, 3, choice)
         for dt in () if quick else (0.5, 2):
             yield Point(scene.key, scene.n, dt)
 

@@ -323,6 +323,10 @@ TEST_CASE("level: an accuracy preset scales cells and time step and sets the sub
     overrides.accuracy = "accurate";
     const Level accurate = must(parse(R"("accuracy": "draft")", "", overrides));
     CHECK(accurate.settings.grid.nx == 2 * plain.settings.grid.nx);
+    CHECK(accurate.settings.method.water_transport_order == 2);
+    CHECK(draft.settings.method.water_transport_order == 1);
+    CHECK(must(parse(R"("accuracy": "draft", "method": {"water_transport_order": 2})")).settings.method.water_transport_order ==
+          2);
     overrides.size = {12, 8};
     CHECK(must(parse(R"("accuracy": "draft")", "", overrides)).settings.grid.nx == 12);
     overrides.accuracy = "exact";

@@ -98,15 +98,17 @@ typedef struct wadi_level_overrides {
     const char* method;        /* "robust" or "published" */
     const char* variant;       /* one of the level's variants; NULL = the level as it is. Not for terrain maps */
     const char* accuracy;      /* "draft", "balanced" or "accurate": half, all or twice the level's cells along x and y (nx, ny win) and
-                                  two sand steps per water step; NULL = what the level says. samples/report has errors and costs */
+                                  two sand steps per water step, "accurate" also second order for water; NULL = what the level says.
+                                  samples/report has errors and costs */
 } wadi_level_overrides;
 WADI_API wadi_level_overrides wadi_default_level_overrides(void);
 
-/** An accuracy preset, with what it was measured to err and to cost against "balanced" (samples/report, full runs). */
+/** An accuracy preset, with what it was measured to err and to cost against "balanced" (samples/report). */
 typedef struct wadi_accuracy_preset {
     const char* name;
     double cells;              /* factor on the level's cells along x and y */
     int32_t substeps;          /* sand steps per water step */
+    int32_t water_order;       /* method.water_transport_order; 0 = the level's */
     double error;              /* mean absolute error, factor */
     double gpu_cost, cpu_cost; /* time per simulated second, factor: one H100, 16 CPU threads */
 } wadi_accuracy_preset;

@@ -1,0 +1,140 @@
+#!/usr/bin/env python3
+"""Effect by effect, what leaving it out changes: the level that shows it best, with it and without, as a pair of pictures and in numbers.
+Writes samples/report/effects.
+
+usage: samples/report/effects.py BIN_FOLDER [--backend cpu] [--only EFFECT ...] [--out DIR | --check]
+--check: half the cells along x and y, no files; fails where a pair does not differ, where the same run twice does, or where an effect that
+the engine knows has no pair.
+"""
+import argparse
+import math
+import pathlib
+import re
+import subprocess
+import sys
+
+import pairs
+import recordings
+
+# effect: (level, cells, seconds, what the level is changed by, what to look at)
+SHOWN = {
+    "water": ("letters", (160, 80), 5, {}, "No wave, and no damp that holds the letters: they run out."),
+    "sand": ("dam_break", (96, 96), 7, {}, "No columns that the flood has to run round."),
+    "mixture": ("letters", (160, 80), 10, {}, "One velocity for all water: letters hold the whole stream up, and most of them stay."),
+    "diffusion": ("piles", (168, 112), 5.4, {"material": {"diffusion_rate": 0.5}}, "Water stays in its pile; with diffusion it spreads to drier sand and out at the foot."),
+    "drag": ("castle", (128, 64), 6, {}, "Water fills the sand unhindered and does not push it: the castle slumps to a sheet where it stood."),
+    "elastoplastic": ("castle", (128, 64), 3, {}, "Sand that only rubs: the walls run apart before the wave is there."),
+    "cohesion": ("piles", (168, 112), 5.4, {}, "Damp piles run out as dry ones do."),
+    "sources": ("spring", (128, 128), 8, {}, "No spring: the hollow stays dry."),
+    "rain": ("canyon", (100, 128), 40, {"rain": 0.005, "sources": []}, "A cloudburst of 5 mm/s in place of the flood fills hollows and the lakes behind the dams."),
+    "open_sides": ("beach", (160, 128), 28, {}, "No waves come in."),
+    "bed_friction": ("letters", (160, 80), 5, {"material": {"bed_friction": 0.1}}, "The wave runs further over the ground."),
+    "bed_shear": ("spring", (128, 128), 8, {}, "Clear water slides over the sand: a small pit in place of a wide crater."),
+}
+NEEDED_BY = {"water": ("mixture", "diffusion", "drag", "cohesion", "rain", "bed_friction", "bed_shear", "sources", "open_sides"),
+             "sand": ("mixture", "diffusion", "drag", "elastoplastic", "cohesion", "bed_shear"), "mixture": ("diffusion", "bed_shear"), "elastoplastic": ("cohesion",)}
+LEAST_PIXELS, LEAST_ERROR = 1.0, 0.2  # [%]: a pair differs from here on, to the eye and in its fields
+
+
+def merged(level, changes):
+    return {**level, **{key: {**level.get(key, {}), **value} if isinstance(value, dict) else value for key, value in changes.items()}}
+
+
+def known(recorder):
+    """The effects that the engine has, by a level's plan."""
+    plan = subprocess.run([recorder.program, "piles", "--backend", recorder.backend, "--print-plan"], capture_output=True, text=True, check=True).stdout
+    return re.findall(r"^  (?:on|- ) +(\w+)", plan, re.M)
+
+
+def left_out(with_it, without, seconds):
+    """[(what, MAE in percent of the range over which it moved with the effect on)]."""
+    result = []
+    for name, what in (("hs", "sand"), ("surface", "water surface")):
+        start, a, b = with_it.field(name, 0), with_it.field(name, seconds), without.field(name, seconds)
+        moved = [y - x for x, y in zip(start, a)]
+        span = max(moved) - min(moved)
+        if span > 1e-6:
+            result.append((what, 100 * math.fsum(abs(x - y) for x, y in zip(a, b)) / len(a) / span))
+    return result
+
+
+def run(recorder, effect, off, cells, repeats):
+    level, _, seconds, changes, _ = SHOWN[effect]
+    level = merged(recordings.read_level(level), changes)
+    if off:
+        level = merged(level, {"effects": {name: "off" for name in (effect, *NEEDED_BY.get(effect, ()))}})
+    runs = [recorder.record(level, size=cells, seconds=seconds, times=(0, seconds), pictures=2) for _ in range(repeats)]
+    recording, summary = runs[0]
+    return recording, summary, min(other["ms_per_step"] for _, other in runs), pairs.map_of(recording.folder / "frame_00001.png", recording.nx, recording.ny)
+
+
+def number(value):
+    return f"{value:.3g}"
+
+
+def pair(recorder, effect, cells, repeats=1):
+    with_it, without = (run(recorder, effect, off, cells, repeats) for off in (False, True))
+    errors = left_out(with_it[0], without[0], SHOWN[effect][2])
+    pixels = pairs.differing(with_it[3], without[3])
+    print(f"{effect}: " + ", ".join(f"{what} {number(error)} %" for what, error in errors) + f", {number(pixels)} % of the pixels", flush=True)
+    return with_it, without, errors, pixels
+
+
+def write_page(recorder, only, out):
+    out.mkdir(parents=True, exist_ok=True)
+    numbers, shown = [], []
+    for effect, (level, cells, seconds, changes, look) in SHOWN.items():
+        if only and effect not in only:
+            continue
+        with_it, without, errors, pixels = pair(recorder, effect, cells, 2)
+        pairs.write(out / f"{effect}.png", with_it[3], without[3])
+        by_field = dict(errors)
+        both = lambda pick: f"{pick(with_it)} / {pick(without)}"
+        numbers.append([f"[{effect}](#{effect})", level, *(number(by_field[what]) if what in by_field else "" for what in ("sand", "water surface")), number(pixels),
+                        both(lambda side: number(side[2])), both(lambda side: f"{side[1]['passes']['per_step']}"), both(lambda side: f"{side[1]['bytes_per_cell']:.0f}")])
+        extra = "".join(f", `{key}` {value}" for key, value in changes.items())
+        shown += [f"## {effect}", f"`{level}`, {cells[0]} x {cells[1]} cells, {seconds} s{extra}. {look}", "", f"![{effect}: with it, without it]({effect}.png)", ""]
+    if only:
+        return
+    head = ["without", "level", "sand [%]", "water surface [%]", "pixels [%]", "ms per step, with / without", "passes", "bytes per cell"]
+    device = with_it[1]["device"]
+    lines = ["# Effect by effect", "", "What leaving one effect out of a level changes (`\"effects\": { NAME: \"off\" }`, what needs it off as well); left with it, right without. Sand and water "
+             "surface: mean absolute difference in percent of the range over which they moved with the effect on. Pixels: of the picture, different by a tenth or more. "
+             f"Made by `samples/report/effects.py BIN` on {device['backend']}: {device['name']}.", "",
+             "| " + " | ".join(head) + " |", "| --- | --- " + "| ---: " * (len(head) - 2) + "|", *("| " + " | ".join(row) + " |" for row in numbers), "", *shown]
+    (out / "README.md").write_text("\n".join(lines))
+
+
+def check(recorder):
+    lacking, unknown = set(known(recorder)) - set(SHOWN), set(SHOWN) - set(known(recorder))
+    good = not lacking and not unknown and len(SHOWN) > 5
+    print(f"{'OK  ' if good else 'FAIL'} every effect has a pair" + "".join(f"; {name}: none" for name in lacking) + "".join(f"; {name}: no effect" for name in unknown))
+    for effect, (_, cells, *_) in SHOWN.items():
+        with_it, _, errors, pixels = pair(recorder, effect, tuple(n // 2 for n in cells))
+        fine = pixels > LEAST_PIXELS and max(error for _, error in errors) > LEAST_ERROR
+        good &= fine
+        print(f"{'OK  ' if fine else 'FAIL'} {effect} shows: {number(pixels)} % of the pixels (above {LEAST_PIXELS:g})")
+    again = run(recorder, effect, False, tuple(n // 2 for n in SHOWN[effect][1]), 1)
+    same = pairs.differing(with_it[3], again[3])
+    good &= same == 0
+    print(f"{'OK  ' if same == 0 else 'FAIL'} control: the same run twice differs in {number(same)} % of the pixels")
+    return good
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("programs", type=pathlib.Path)
+    parser.add_argument("--backend", default="cpu")
+    parser.add_argument("--only", nargs="*", default=[], choices=SHOWN, metavar="EFFECT")
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent / "effects")
+    parser.add_argument("--check", action="store_true")
+    options = parser.parse_args()
+    with recordings.Recorder(options.programs / "wadi-recorder", options.backend) as recorder:
+        if options.check:
+            return 0 if check(recorder) else 1
+        write_page(recorder, options.only, options.out)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,52 @@
+"""Two of the recorder's frames beside each other, small, as one PNG; and how much of them differs. No packages."""
+import math
+import struct
+import sys
+import zlib
+
+import recordings
+
+sys.path.insert(0, str(recordings.ROOT / "tests" / "viewer"))
+import pictures  # noqa: E402  reads PNG files
+
+CAPTION = 38  # rows above the map in a frame
+WIDTH, GAP = 400, 8  # pixels
+LEVELS = 32  # grey levels kept per colour: what the eye hardly sees costs half the file
+
+
+def map_of(frame, nx, ny):
+    """The map of a recorder's frame, averaged over blocks down to WIDTH or less: (width, height, rows of RGB bytes)."""
+    width, _, rows = pictures.read_png(frame)
+    zoom = width // nx
+    block = math.ceil(width / WIDTH)
+    rows = rows[CAPTION:CAPTION + ny * zoom]
+    small = []
+    for top in range(0, len(rows) - block + 1, block):
+        line = bytearray()
+        for left in range(0, width - block + 1, block):
+            for channel in range(3):
+                line.append(sum(rows[y][3 * x + channel] for y in range(top, top + block) for x in range(left, left + block)) // (block * block))
+        small.append(bytes(line))
+    return len(small[0]) // 3, len(small), small
+
+
+def differing(one, other, least=24):
+    """Share of the pixels of two maps that differ by `least` of 255 or more in a colour [%]."""
+    count = sum(1 for a, b in zip(one[2], other[2]) for x in range(one[0]) if max(abs(a[3 * x + c] - b[3 * x + c]) for c in range(3)) >= least)
+    return 100 * count / (one[0] * one[1])
+
+
+def write(path, one, other):
+    width, step, before = one[0] + GAP + other[0], 256 // LEVELS, None
+    packed = bytearray()
+    for a, b in zip(one[2], other[2]):
+        line = bytes(value // step * step + step // 2 for value in a) + b"\xff" * (3 * GAP) + bytes(value // step * step + step // 2 for value in b)
+        above = before or bytes(len(line))
+        packed += b"\x02" + bytes((value - up) & 255 for value, up in zip(line, above))  # filter: up
+        before = line
+
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, one[1], 8, 2, 0, 0, 0)) + chunk(b"IDAT", zlib.compress(bytes(packed), 9))
+                     + chunk(b"IEND", b""))
