@@ -184,6 +184,19 @@ std::string check_log(const Case& c, Session& session, const Base& base) {
     return wrong.empty() ? wrong : "log played: " + wrong;
 }
 
+// Tiles that are left out while nothing changes in them, with the same edits.
+std::string check_tiles(const Case& c, Session& session, const Base& base, Random& random, Weaken weaken) {
+    Case tiled = c;
+    tiled.scene.settings.active_tiles = random.chance(0.7) ? 8 : random.chance(0.5) ? 16 : 32;
+    Run run = open(tiled, session);
+    if (run.world != nullptr && !run.world->device().capabilities().exact_float) return {};
+    if (run.good() && weaken == Weaken::rings) run.note("rings", run.world->stepper().set_tile_rings(0));
+    queue(run, tiled);
+    step(run, c.steps);
+    const std::string wrong = same(run, hash(run), base.hash);
+    return wrong.empty() ? wrong : "tiles of " + std::to_string(tiled.scene.settings.active_tiles) + " cells: " + wrong;
+}
+
 // Not where steps may turn F inside out (no gradient clamp): the angle of an inverted F that stays on its axes is +pi, and its
 // image's as well, though it should be -pi.
 std::string check_image(const Case& c, Session& session, Base& base, Image image) {
@@ -298,6 +311,7 @@ Outcome run_case(const Case& c, Devices& devices, Weaken weaken, const std::stri
     made("driver", 0.4, [&] { return check_driver(weakened, *devices.plain, base, random); });
     made("save", 0.4, [&] { return check_save(weakened, *devices.plain, base, random); });
     made("log", 0.4, [&] { return check_log(weakened, *devices.plain, base); });
+    made("tiles", 0.5, [&] { return check_tiles(weakened, *devices.others.back(), base, random, weaken); });
     return outcome;
 }
 

@@ -18,7 +18,7 @@ struct Devices {
 Result<Devices> open_devices(const std::vector<std::string>& backends);
 
 /// What is made wrong on purpose, to see it found.
-enum class Weaken { nothing, limiter, bits };
+enum class Weaken { nothing, limiter, bits, rings };
 
 struct Outcome {
     std::string refused;              // why the world could not be made; not a failure

@@ -137,7 +137,7 @@ int replay(const Options& options) {
         std::fprintf(stderr, "%s\n", status.message.c_str());
         return 2;
     }
-    for (const std::string check : {"books", "bits", "image", "reference", "driver", "save", "log"}) {
+    for (const std::string check : {"books", "bits", "image", "reference", "driver", "save", "log", "tiles"}) {
         if (!options.check.empty() && check != options.check) continue;
         const Outcome outcome = run_case(*c, *devices, options.weaken, check);
         if (!outcome.failed() && outcome.refused.empty()) continue;
@@ -161,16 +161,19 @@ int main(int argc, char** argv) {
     app.add_option("--backend", options.backends, "backends to compare with the plain CPU; default: all that have a device")
         ->delimiter(',');
     app.add_option("--check", options.check, "this check alone, in every scene")
-        ->check(CLI::IsMember({"books", "bits", "image", "reference", "driver", "save", "log"}));
+        ->check(CLI::IsMember({"books", "bits", "image", "reference", "driver", "save", "log", "tiles"}));
     app.add_option("--level", options.level, "runs a level that a failure left, instead of random scenes");
     app.add_option("--out", options.out, "folder for the levels of failures");
     app.add_option("--csv", options.csv, "a line per scene");
     app.add_option("--failures", options.most_failures, "stops after so many")->check(CLI::Range(1, 1000));
     app.add_option("--shrink-seconds", options.shrink_seconds, "time for making a failure small")->check(CLI::Range(0.0, 1e4));
     app.add_option("--weaken", weaken, "breaks something on purpose, which must then be found")
-        ->check(CLI::IsMember({"nothing", "limiter", "bits"}));
+        ->check(CLI::IsMember({"nothing", "limiter", "bits", "rings"}));
     CLI11_PARSE(app, argc, argv);
-    options.weaken = weaken == "limiter" ? Weaken::limiter : weaken == "bits" ? Weaken::bits : Weaken::nothing;
+    options.weaken = weaken == "limiter" ? Weaken::limiter
+                     : weaken == "bits"  ? Weaken::bits
+                     : weaken == "rings" ? Weaken::rings
+                                         : Weaken::nothing;
     if (options.backends.empty()) options.backends = all_backends();
     if (options.jobs == 0) options.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     if (!options.level.empty()) return replay(options);
