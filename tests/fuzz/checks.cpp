@@ -1,7 +1,6 @@
 #include "tests/fuzz/checks.hpp"
-#include "engine/world.hpp"
 #include "tests/conformance/symmetry.hpp"
-#include "tests/fuzz/random.hpp"
+#include "tests/fuzz/run.hpp"
 #include "tests/reference/solver.hpp"
 #include <algorithm>
 #include <cmath>
@@ -9,83 +8,6 @@
 namespace wadi::fuzz {
 
 namespace {
-
-using conformance::Session;
-using WorldHandle = std::unique_ptr<World>;
-
-std::string text(double value) {
-    char buffer[32];
-    std::snprintf(buffer, sizeof buffer, "%.9g", value);
-    return buffer;
-}
-
-/// One run and what went wrong in it; a refusal to make the world is kept apart.
-struct Run {
-    WorldHandle world;
-    std::string refused, failure;
-    bool good() const { return refused.empty() && failure.empty(); }
-    void note(const char* what, const Status& status) {
-        if (!status && failure.empty()) failure = std::string(what) + ": " + code_name(status.code) + ": " + status.message;
-    }
-};
-
-Run open(const Case& c, Session& session) {
-    Run run;
-    auto world = conformance::open_world(session, c.scene);
-    if (world)
-        run.world = std::move(*world);
-    else
-        run.refused = world.status().message;
-    return run;
-}
-
-void queue(Run& run, const Case& c, std::uint64_t from = 0) {
-    std::vector<Edit> later;
-    for (const Edit& edit : c.commands)
-        if (edit.step >= from) later.push_back(edit);
-    if (run.good() && !later.empty()) run.note("edit", run.world->edit(later));
-}
-
-void step(Run& run, int count) {
-    if (run.good() && count > 0) run.note("step", run.world->step(static_cast<std::uint32_t>(count)));
-}
-
-std::uint64_t hash(Run& run) {
-    if (!run.good()) return 0;
-    auto value = run.world->hash();
-    run.note("hash", value.status());
-    return value ? *value : 0;
-}
-
-// Where the books are exact: a quantum, a limiter, and no column that could pass the declared largest height.
-std::string check_books(Run& run, const Case& c, const WorldStats& s) {
-    const auto& m = c.scene.settings.method;
-    if (m.name == "published") return {}; // promises none of this: no limiter, no caps
-    if (s.not_finite > 0) return std::to_string(s.not_finite) + " values are not finite";
-    double ground = 0;
-    for (const float h : c.scene.fields.terrain) ground = std::max(ground, std::fabs(static_cast<double>(h)));
-    for (const Edit& edit : c.commands)
-        if (edit.kind != EditKind::push && edit.layer == EditLayer::terrain) ground += std::fabs(edit.amount);
-    const bool small = ground + s.largest_sand + s.largest_water < m.largest_height;
-    if (s.smallest_height < 0) return "a height is " + text(s.smallest_height) + " m";
-    const std::int64_t water = s.water_quanta - (s.water_initial + s.ledger.water_in - s.ledger.water_out),
-                       sand = s.sand_quanta - (s.sand_initial + s.ledger.sand_in - s.ledger.sand_out);
-    if (height_quantum(m) > 0 && small && (water != 0 || sand != 0))
-        return "off the books by " + std::to_string(water) + " quanta of water and " + std::to_string(sand) + " of sand";
-    const auto& set = run.world->settings();
-    const double clamp = m.velocity_clamp * set.grid.dx / set.dt * (1 + 1e-6);
-    if (s.largest_water_speed > clamp) return "water at " + text(s.largest_water_speed) + " m/s, the clamp is " + text(clamp);
-    if (s.largest_sand_speed > clamp * m.substeps)
-        return "sand at " + text(s.largest_sand_speed) + " m/s, the clamp is " + text(clamp * m.substeps);
-    return {};
-}
-
-/// The run that all others are compared with.
-struct Base {
-    Run run;
-    std::uint64_t hash = 0, hash_before = 0; // after the last step, and one ahead of it
-    bool finite = true;
-};
 
 Base run_base(const Case& c, Session& session) {
     Base base;
@@ -107,22 +29,21 @@ Base run_base(const Case& c, Session& session) {
     return base;
 }
 
-std::string same(Run& run, std::uint64_t got, std::uint64_t expected) {
-    if (!run.refused.empty()) return "refused: " + run.refused;
-    if (!run.failure.empty()) return run.failure;
-    return got == expected ? "" : "other bits in the end";
-}
-
-std::string check_backend(const Case& c, Session& session, const Base& base, Weaken weaken) {
-    Case changed = c;
-    if (weaken == Weaken::bits && !changed.scene.fields.water.empty())
-        changed.scene.fields.water[0] += static_cast<float>(2 * height_quantum(c.scene.settings.method) + 1e-5);
-    Run run = open(changed, session);
+std::string check_backend(const Case& c, const Case& twin, Session& session, const Base& base) {
+    Run run = open(twin, session);
     if (run.world != nullptr && !run.world->device().capabilities().exact_float) return {};
     queue(run, c);
     step(run, c.steps);
     const std::string wrong = same(run, hash(run), base.hash);
     return wrong.empty() ? wrong : session.target().label() + ": " + wrong;
+}
+
+// The case, or with Weaken::bits another by two quanta of water, which stands in where the same bits are to come out.
+Case twin_of(const Case& c, Weaken weaken) {
+    Case twin = c;
+    if (weaken == Weaken::bits && !c.scene.fields.water.empty())
+        twin.scene.fields.water[0] += static_cast<float>(2 * height_quantum(c.scene.settings.method) + 1e-5);
+    return twin;
 }
 
 // Saved after a random step, loaded into another world, and on from there.
@@ -164,26 +85,6 @@ std::string check_driver(const Case& c, Session& session, const Base& base, Rand
     return same(run, got, run.world->steps() == wanted ? base.hash_before : base.hash);
 }
 
-// Each edit called ahead of its step with the log on, and the log played elsewhere.
-std::string check_log(const Case& c, Session& session, const Base& base) {
-    Run run = open(c, session), replay = open(c, session);
-    if (run.good()) run.world->commands().remember(true);
-    for (int done = 0; done < c.steps && run.good(); ++done) {
-        for (Edit edit : c.commands) {
-            if (edit.step != static_cast<std::uint64_t>(done)) continue;
-            edit.step = 0; // the next one
-            run.note("edit", run.world->edit(std::span(&edit, 1)));
-        }
-        step(run, 1);
-    }
-    if (const std::string wrong = same(run, hash(run), base.hash); !wrong.empty()) return "edits in time: " + wrong;
-    const auto bytes = run.world->commands().bytes();
-    if (replay.good()) replay.note("play", replay.world->commands().play(bytes));
-    step(replay, c.steps);
-    const std::string wrong = same(replay, hash(replay), base.hash);
-    return wrong.empty() ? wrong : "log played: " + wrong;
-}
-
 // Tiles that are left out while nothing changes in them, with the same edits.
 std::string check_tiles(const Case& c, Session& session, const Base& base, Random& random, Weaken weaken) {
     Case tiled = c;
@@ -194,7 +95,11 @@ std::string check_tiles(const Case& c, Session& session, const Base& base, Rando
     queue(run, tiled);
     step(run, c.steps);
     const std::string wrong = same(run, hash(run), base.hash);
-    return wrong.empty() ? wrong : "tiles of " + std::to_string(tiled.scene.settings.active_tiles) + " cells: " + wrong;
+    const std::string tiles = "tiles of " + std::to_string(tiled.scene.settings.active_tiles) + " cells: ";
+    if (!wrong.empty()) return tiles + wrong;
+    // Once more with a host that writes regions and changes the material between steps.
+    const std::string called = random.chance(0.5) ? check_calls(c, tiled, session) : "";
+    return called.empty() ? called : tiles + called;
 }
 
 // Not where steps may turn F inside out (no gradient clamp): the angle of an inverted F that stays on its axes is +pi, and its
@@ -255,6 +160,12 @@ std::string check_reference(const Case& c, Session& session) {
 
 } // namespace
 
+const std::vector<std::string>& check_names() {
+    static const std::vector<std::string> names = {"books", "bits", "image", "reference", "driver",
+                                                   "save",  "log",  "calls", "shift",     "tiles"};
+    return names;
+}
+
 Result<Devices> open_devices(const std::vector<std::string>& backends) {
     Devices devices;
     compute::DeviceOptions options;
@@ -285,6 +196,7 @@ Outcome run_case(const Case& c, Devices& devices, Weaken weaken, const std::stri
         method.outflow_limiter = false;
         method.velocity_clamp = std::max(method.velocity_clamp, 0.9);
     }
+    const Case twin = twin_of(weakened, weaken);
     Outcome outcome;
     Random random(c.seed ^ 0x5bd1e995u);
     Base base = run_base(weakened, *devices.plain);
@@ -304,13 +216,20 @@ Outcome run_case(const Case& c, Devices& devices, Weaken weaken, const std::stri
         ++outcome.count["blown up"];
         return outcome;
     }
-    for (auto& session : devices.others) made("bits", 1, [&] { return check_backend(weakened, *session, base, weaken); });
+    for (auto& session : devices.others) made("bits", 1, [&] { return check_backend(weakened, twin, *session, base); });
     const auto image = static_cast<Image>(random.whole(0, 2));
     made("image", 0.5, [&] { return check_image(weakened, *devices.plain, base, image); });
     made("reference", 0.5, [&] { return check_reference(weakened, *devices.plain); });
     made("driver", 0.4, [&] { return check_driver(weakened, *devices.plain, base, random); });
     made("save", 0.4, [&] { return check_save(weakened, *devices.plain, base, random); });
     made("log", 0.4, [&] { return check_log(weakened, *devices.plain, base); });
+    made("calls", 0.4, [&] { return check_calls(weakened, twin, *devices.plain); });
+    made("shift", 0.3, [&] {
+        bool compared = false;
+        auto failure = check_shift(weakened, twin, *devices.plain, random, compared);
+        if (!compared) ++outcome.count["rim reached"];
+        return failure;
+    });
     made("tiles", 0.5, [&] { return check_tiles(weakened, *devices.others.back(), base, random, weaken); });
     return outcome;
 }

@@ -17,6 +17,9 @@ struct Devices {
 /// Errors: not_found for a backend that is not there.
 Result<Devices> open_devices(const std::vector<std::string>& backends);
 
+/// Names of all checks (README.md).
+const std::vector<std::string>& check_names();
+
 /// What is made wrong on purpose, to see it found.
 enum class Weaken { nothing, limiter, bits, rings };
 

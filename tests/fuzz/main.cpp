@@ -137,7 +137,7 @@ int replay(const Options& options) {
         std::fprintf(stderr, "%s\n", status.message.c_str());
         return 2;
     }
-    for (const std::string check : {"books", "bits", "image", "reference", "driver", "save", "log", "tiles"}) {
+    for (const auto& check : check_names()) {
         if (!options.check.empty() && check != options.check) continue;
         const Outcome outcome = run_case(*c, *devices, options.weaken, check);
         if (!outcome.failed() && outcome.refused.empty()) continue;
@@ -160,8 +160,7 @@ int main(int argc, char** argv) {
     app.add_option("--jobs", options.jobs, "threads, each with devices of its own; 0 = all cores")->check(CLI::Range(0, 256));
     app.add_option("--backend", options.backends, "backends to compare with the plain CPU; default: all that have a device")
         ->delimiter(',');
-    app.add_option("--check", options.check, "this check alone, in every scene")
-        ->check(CLI::IsMember({"books", "bits", "image", "reference", "driver", "save", "log", "tiles"}));
+    app.add_option("--check", options.check, "this check alone, in every scene")->check(CLI::IsMember(check_names()));
     app.add_option("--level", options.level, "runs a level that a failure left, instead of random scenes");
     app.add_option("--out", options.out, "folder for the levels of failures");
     app.add_option("--csv", options.csv, "a line per scene");
