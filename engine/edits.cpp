@@ -1,5 +1,6 @@
 #include "engine/edits.hpp"
 #include "engine/scripted_edits.hpp"
+#include "engine/wakes.hpp"
 #include <algorithm>
 
 namespace wadi {
@@ -105,6 +106,7 @@ Status Edits::submit() {
             if (pack_edit(due_[taken], stamps_, state_.settings().grid, to)) ++input.edit_count;
         }
         if (input.edit_count > 0) {
+            wake_edits(state_, input);
             if (auto ticket = program_.submit(input); !ticket) return ticket.status();
         }
         due_.erase(due_.begin(), due_.begin() + static_cast<std::ptrdiff_t>(taken));

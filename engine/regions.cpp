@@ -160,6 +160,7 @@ Status write_region(WorldState& state, Stepper& stepper, EditLayer layer, const 
             written.at(i, j) = value;
         }
     }
+    state.wake_all();
     if (terrain) {
         repeat_edges(layout, written, first, end);
         return written.write();

@@ -228,6 +228,9 @@ Status validate(const Settings& settings) {
         return refuse("edits: " + std::to_string(settings.edits.size()) + " are more than " + std::to_string(EDITS_MOST));
     for (std::size_t n = 0; n < settings.edits.size(); ++n)
         if (Status status = check_scripted_edit(settings, n); !status) return status;
+    if (const int side = settings.active_tiles; side != 0 && side != 8 && side != 16 && side != 32 && side != 64)
+        return refuse("active_tiles: " + std::to_string(side) + " is not 0 (off), 8, 16, 32 or 64");
+    if (Status status = check_range("active_tiles_most", settings.active_tiles_most, 0, 1); !status) return status;
     for (const auto& [name, force] : settings.effects) {
         const auto& names = effect_names();
         if (std::find(names.begin(), names.end(), name) == names.end())

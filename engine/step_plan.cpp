@@ -22,6 +22,7 @@ const std::set<std::string> state_fields = {
 FieldRole role_of(const std::string& name) {
     if (state_fields.contains(name)) return FieldRole::state;
     if (name.ends_with("ledger")) return FieldRole::ledger;
+    if (name.starts_with("activ")) return FieldRole::tiles;
     return name == "source_shapes" ? FieldRole::shapes : FieldRole::scratch;
 }
 
@@ -131,6 +132,10 @@ void plan_sand_forces(Builder b) {
     b.run("apply_friction", moved, drag);
 }
 
+void plan_active_tiles(Builder b) {
+    for (const char* stage : {"mark_active_tiles", "count_active_tiles", "list_active_tiles"}) b.run(stage);
+}
+
 // Scratch fields whose lives do not overlap share memory. A life runs from the first to the last pass that names the field;
 // what is written before the substeps and read in them lives through all of them.
 void share_scratch(StepPlan& plan) {
@@ -156,6 +161,7 @@ void share_scratch(StepPlan& plan) {
     std::sort(lives.begin(), lives.end(), [](const Life& a, const Life& b) { return a.first < b.first; });
     std::vector<std::size_t> busy_until; // per block
     for (auto& life : lives) {
+        if (plan.active_tiles) life.last = order.size();
         std::size_t block = 0;
         while (block < busy_until.size() && busy_until[block] >= life.first) ++block;
         if (block == busy_until.size()) busy_until.push_back(0);
@@ -180,10 +186,12 @@ const PlanField* StepPlan::find(const std::string& name) const {
     return found == fields.end() ? nullptr : &*found;
 }
 
-StepPlan make_step_plan(std::uint32_t effects, int substeps) {
+StepPlan make_step_plan(std::uint32_t effects, int substeps, bool active_tiles) {
     StepPlan plan;
+    plan.active_tiles = active_tiles;
     plan.effects = effects;
     plan.substeps = substeps;
+    if (active_tiles) plan_active_tiles(Builder(effects, plan.water_passes, false));
     plan_water(Builder(effects, plan.water_passes, false));
     plan_sand(Builder(effects, plan.substep_passes, true));
     if (!plan.substep_passes.empty()) plan.substep_passes.back().flips.push_back("sand_height");
@@ -204,6 +212,12 @@ StepPlan make_step_plan(std::uint32_t effects, int substeps) {
         }
     }
     share_scratch(plan);
+    const auto reach = [](const std::vector<PlanPass>& passes) {
+        int sum = 0;
+        for (const auto& pass : passes) sum += compute::stage_table()[static_cast<std::size_t>(pass.stage)].reach;
+        return sum;
+    };
+    plan.reach = reach(plan.water_passes) + substeps * reach(plan.substep_passes);
     return plan;
 }
 

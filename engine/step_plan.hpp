@@ -18,7 +18,7 @@ struct PlanPass {
     bool in_substep = false;
 };
 
-enum class FieldRole { state, scratch, ledger, shapes };
+enum class FieldRole { state, scratch, ledger, shapes, tiles };
 
 struct PlanField {
     std::string name;
@@ -34,6 +34,9 @@ struct StepPlan {
     std::vector<PlanPass> substep_passes; // run T times
     std::vector<PlanField> fields;
     int scratch_blocks = 0;
+    bool active_tiles = false;
+    /// Cells that one step carries a change along at most: the sum of what its passes read around them.
+    int reach = 0;
 
     /// Buffers of nx * ny floats: state, ping-pong partners and shared scratch.
     int field_buffers() const;
@@ -42,6 +45,7 @@ struct StepPlan {
     const PlanField* find(const std::string& name) const;
 };
 
-StepPlan make_step_plan(std::uint32_t effects, int substeps);
+/// With active tiles every scratch field has memory of its own: what a tile that is left out computed last must stay readable.
+StepPlan make_step_plan(std::uint32_t effects, int substeps, bool active_tiles = false);
 
 } // namespace wadi

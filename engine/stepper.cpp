@@ -18,7 +18,7 @@ void Stepper::drop_programs() {
     }
 }
 
-Result<compute::Program> Stepper::record_step(Parity& parity, bool timestamps) {
+Result<compute::Program> Stepper::record_step(int turn, Parity& parity, bool timestamps) {
     compute::ProgramBuilder builder(timestamps ? "timed step" : "step");
     if (timestamps) builder.timestamp("start");
     const auto add = [&](const PlanPass& pass) {
@@ -29,6 +29,9 @@ Result<compute::Program> Stepper::record_step(Parity& parity, bool timestamps) {
     };
     for (const auto& pass : state_.plan().water_passes) {
         if (auto status = add(pass); !status) return status;
+    }
+    if (state_.plan().active_tiles) {
+        if (auto status = active_.append(builder, turn); !status) return status;
     }
     for (int t = 0; t < state_.plan().substeps; ++t) {
         for (const auto& pass : state_.plan().substep_passes) {
@@ -44,7 +47,7 @@ Status Stepper::record() {
     Parity parity;
     for (int turn = 0; turn < 2; ++turn) {
         state_.set_start_parity(turn, parity);
-        auto program = record_step(parity, false);
+        auto program = record_step(turn, parity, false);
         if (!program) {
             state_.device().destroy_program(fresh[0]);
             return state_.note(program.status());
@@ -119,6 +122,9 @@ Status Stepper::record_parts(std::size_t turn) {
         for (const auto& pass : part == 0 ? state_.plan().water_passes : state_.plan().substep_passes) {
             if (auto status = state_.append(builder, pass, parity); !status) return status;
         }
+        if (part == 0 && state_.plan().active_tiles) {
+            if (auto status = active_.append(builder, static_cast<int>(turn)); !status) return status;
+        }
         auto program = state_.device().compile(builder, state_.params());
         if (!program) return program.status();
         part_programs_[turn].push_back(*program);
@@ -129,7 +135,8 @@ Status Stepper::record_parts(std::size_t turn) {
 // Submits parts until `parts` of the step are done; the last one makes the step whole.
 Status Stepper::finish(int parts) {
     const auto turn = static_cast<std::size_t>(state_.turn());
-    if (part_programs_[turn].empty()) {
+    if (asleep_) parts_done_ = parts;
+    if (!asleep_ && part_programs_[turn].empty()) {
         if (auto status = record_parts(turn); !status) return state_.note(status);
     }
     for (; parts_done_ < parts; ++parts_done_) {
@@ -139,6 +146,7 @@ Status Stepper::finish(int parts) {
             return state_.note(ticket.status());
         }
         ticket_ = *ticket;
+        if (parts_done_ == 0) note_submitted(input_);
     }
     return parts_done_ < this->parts() ? ok_status() : complete_step();
 }
@@ -147,15 +155,34 @@ Status Stepper::begin_step() { return before_step_ ? before_step_() : ok_status(
 
 Status Stepper::complete_step() {
     parts_done_ = 0;
+    asleep_ = false;
     state_.set_turn(1 - state_.turn());
     ++state_.steps;
     return after_step_ ? after_step_() : ok_status();
+}
+
+StepInput Stepper::next_input() {
+    StepInput input = inputs_.next(static_cast<int>(state_.steps));
+    wakes_.wake(input);
+    state_.put_wakes(input);
+    return input;
+}
+
+bool Stepper::may_sleep(const StepInput& input) {
+    return state_.plan().active_tiles && !profiling_ && active_.asleep() && input.wake_count == 0;
+}
+
+void Stepper::note_submitted(const StepInput& input) {
+    active_.submitted(state_.turn(), ticket_, input.wake_count > 0);
+    state_.forget_wakes();
 }
 
 HostTotals Stepper::totals() const { return {state_.steps, state_.sand_initial, state_.water_initial, inputs_.totals()}; }
 
 void Stepper::set_totals(const HostTotals& totals) {
     parts_done_ = 0;
+    asleep_ = false;
+    state_.wake_all();
     state_.steps = totals.steps;
     state_.sand_initial = totals.sand_initial;
     state_.water_initial = totals.water_initial;
@@ -166,7 +193,8 @@ Status Stepper::step_part() {
     if (!state_.lost()) return state_.lost();
     if (parts_done_ == 0) {
         if (auto status = begin_step(); !status) return status;
-        input_ = inputs_.next(static_cast<int>(state_.steps));
+        input_ = next_input();
+        asleep_ = may_sleep(input_);
     }
     return finish(parts_done_ + 1);
 }
@@ -176,13 +204,15 @@ Status Stepper::step() {
     if (parts_done_ > 0) return finish(parts());
     if (auto status = begin_step(); !status) return status;
     const auto turn = static_cast<std::size_t>(state_.turn());
-    auto ticket = state_.device().submit(profiling_ ? timed_programs_[turn] : programs_[turn],
-                                         inputs_.next(static_cast<int>(state_.steps)));
+    const StepInput input = next_input();
+    if (may_sleep(input)) return complete_step();
+    auto ticket = state_.device().submit(profiling_ ? timed_programs_[turn] : programs_[turn], input);
     if (!ticket) {
         inputs_.undo();
         return state_.note(ticket.status());
     }
     ticket_ = *ticket;
+    note_submitted(input);
     if (profiling_) {
         pending_timings_.push_back(*ticket);
         if (auto status = collect_timings(false); !status) return state_.note(status);
@@ -195,7 +225,7 @@ Status Stepper::set_profiling(bool on) {
     if (on && timed_programs_[0].id == 0) {
         for (int turn = 0; turn < 2; ++turn) {
             Parity parity = state_.parity_of(turn);
-            auto program = record_step(parity, true);
+            auto program = record_step(turn, parity, true);
             if (!program) return state_.note(program.status());
             timed_programs_[static_cast<std::size_t>(turn)] = *program;
         }

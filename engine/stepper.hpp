@@ -1,6 +1,8 @@
 // Runs the step plan: a water step is one program for each of the two buffer parities, or one water part and T sand parts.
 #pragma once
+#include "engine/active_count.hpp"
 #include "engine/step_inputs.hpp"
+#include "engine/wakes.hpp"
 #include "engine/world_state.hpp"
 #include <functional>
 
@@ -26,7 +28,7 @@ class Stepper {
 
     /// Records the step programs for the state's plan, and which buffers are current before each. After a change of the plan too.
     Status record();
-    /// Submits one whole water step, or what is left of one that was begun in parts.
+    /// Submits one whole water step, or what is left of one that was begun in parts. Nothing, where the world is asleep.
     Status step();
     /// Submits the next of a water step's parts: the water passes, then each sand substep. The same bits as step().
     Status step_part();
@@ -44,6 +46,12 @@ class Stepper {
     /// Other numbers for sand and water from the next step on; between two steps only. Effects follow as in hold(); waits for the
     /// device, but builds no pipeline where they stay. Errors: out_of_memory, not_ready (inside a recording), nothing changed.
     Status set_material(const Material& material);
+
+    /// For tests: with fewer rings of active tiles than the plan's reach calls for, bits must turn out wrong.
+    Status set_tile_rings(int rings) {
+        state_.set_tile_rings(rings);
+        return record();
+    }
 
     /// Compiles what any hold() that the level allows would need.
     Status prepare();
@@ -65,16 +73,23 @@ class Stepper {
     const StepInputs& inputs() const { return inputs_; }
 
   private:
-    Result<compute::Program> record_step(Parity& parity, bool timestamps);
+    Result<compute::Program> record_step(int turn, Parity& parity, bool timestamps);
     Status record_parts(std::size_t turn);
     Status finish(int parts);
     Status begin_step();
     Status complete_step();
     Status collect_timings(bool all);
     void drop_programs();
+    /// The input of the step that comes, with the tiles that it wakes.
+    StepInput next_input();
+    bool may_sleep(const StepInput& input);
+    void note_submitted(const StepInput& input);
 
     WorldState& state_;
     StepInputs inputs_;
+    InputWakes wakes_{state_};
+    ActiveCount active_{state_};
+    bool asleep_ = false; // the present step submits nothing
     std::array<compute::Program, 2> programs_{}, timed_programs_{};
     std::array<std::vector<compute::Program>, 2> part_programs_;
     int parts_done_ = 0;

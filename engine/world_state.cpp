@@ -61,7 +61,8 @@ WorldState::WorldState(const Settings& settings, std::unique_ptr<compute::Device
 
 Status WorldState::open(const EffectChoice& effects) {
     effects_ = effects;
-    plan_ = make_step_plan(effects.mask, settings_.method.substeps);
+    plan_ = make_step_plan(effects.mask, settings_.method.substeps, settings_.active_tiles > 0);
+    derive();
     const std::uint64_t bytes = layout_.size() * 4, limit = device_->capabilities().largest_buffer_bytes;
     if (limit != 0 && bytes > limit) {
         return error(Code::not_supported, "grid " + std::to_string(layout_.nx) + " x " + std::to_string(layout_.ny) +
@@ -74,7 +75,35 @@ Status WorldState::open(const EffectChoice& effects) {
 
 void WorldState::set_material(const Material& material) {
     settings_.material = material;
+    derive();
+}
+
+void WorldState::derive() {
     params_ = derive_params(settings_);
+    if (plan_.active_tiles) params_.tile_rings = (plan_.reach + params_.tile_size - 1) / params_.tile_size;
+    wake_all();
+}
+
+void WorldState::wake(int i0, int j0, int i1, int j1) {
+    const int size = params_.tile_size;
+    if (size == 0 || i1 <= i0 || j1 <= j0) return;
+    const auto tile = [&](int at, int count) { return std::clamp(at / size, 0, count - 1); };
+    const std::array<int, 4> tiles = {tile(i0, params_.tile_columns), tile(j0, params_.tile_rows),
+                                      tile(i1 - 1, params_.tile_columns), tile(j1 - 1, params_.tile_rows)};
+    if (std::find(wakes_.begin(), wakes_.end(), tiles) != wakes_.end()) return;
+    if (wakes_.size() < MAX_WAKES) {
+        wakes_.push_back(tiles);
+        return;
+    }
+    for (std::size_t n = 0; n < 4; ++n)
+        wakes_[0][n] = n < 2 ? std::min(wakes_[0][n], tiles[n]) : std::max(wakes_[0][n], tiles[n]);
+}
+
+void WorldState::put_wakes(StepInput& input) const {
+    for (const auto& tiles : wakes_) {
+        const auto at = [&](std::size_t n) { return static_cast<float>(tiles[n]); };
+        input.wake[input.wake_count++] = {at(0), at(1), at(2), at(3)};
+    }
 }
 
 Result<compute::Buffer> WorldState::make_buffer(const compute::BufferDesc& desc) {
@@ -103,6 +132,11 @@ std::vector<KeptField> WorldState::kept_fields(const StepPlan& plan) const {
 
 std::uint64_t WorldState::field_bytes(const PlanField& field) const {
     if (field.role == FieldRole::shapes) return 2 * MAX_SOURCES * sizeof(vec4);
+    if (field.role == FieldRole::tiles) {
+        const auto columns = static_cast<std::uint64_t>(params_.tile_columns),
+                   rows = static_cast<std::uint64_t>(params_.tile_rows);
+        return 4 * (field.name == "active_dispatch" ? 4 : field.name == "active_counts" ? rows : columns * rows);
+    }
     if (field.role != FieldRole::ledger) return layout_.size() * 4;
     if (field.name != "source_ledger") return static_cast<std::uint64_t>(layout_.rim()) * 4 * 4;
     return std::uint64_t{2 * LEDGER_ENTRIES} * static_cast<std::uint64_t>(layout_.strips()) *
@@ -140,7 +174,7 @@ void WorldState::free_others(const FieldBuffers& buffers, const std::vector<comp
 }
 
 Status WorldState::adopt(const EffectChoice& effects) {
-    StepPlan plan = make_step_plan(effects.mask, settings_.method.substeps);
+    StepPlan plan = make_step_plan(effects.mask, settings_.method.substeps, settings_.active_tiles > 0);
     const auto listed = [](const FieldBuffers& buffers, std::vector<compute::Buffer> all) {
         for (const auto& [name, pair] : buffers) all.insert(all.end(), pair.begin(), pair.end());
         return all;
@@ -168,16 +202,17 @@ Status WorldState::adopt(const EffectChoice& effects) {
     start_parity_ = {};
     turn_ = 0;
     ++recording_;
+    derive();
     return ok_status();
 }
 
 Status WorldState::prepare(std::uint32_t effects) const {
-    const StepPlan plan = make_step_plan(effects, settings_.method.substeps);
+    const StepPlan plan = make_step_plan(effects, settings_.method.substeps, settings_.active_tiles > 0);
     std::set<int> stages = {compute::find_stage("apply_edits")};
     for (const auto* passes : {&plan.water_passes, &plan.substep_passes})
         for (const auto& pass : *passes) stages.insert(pass.stage);
     for (const int stage : stages) {
-        if (auto made = device_->create_pipeline(stage, effects, group_); !made) return made.status();
+        if (auto made = device_->create_pipeline(stage, effects, group_of(stage)); !made) return made.status();
     }
     return ok_status();
 }
@@ -224,12 +259,23 @@ compute::Buffer WorldState::buffer(const std::string& name, const Parity& parity
     return buffers_.at(base)[next ? 1 - current : current];
 }
 
+compute::GroupSize WorldState::group_of(int stage) const {
+    auto group = group_;
+    if (compute::stage_table()[static_cast<std::size_t>(stage)].marks) group.tile = settings_.active_tiles;
+    return group;
+}
+
 Status WorldState::append(compute::ProgramBuilder& builder, const PlanPass& pass, Parity& parity) const {
     const auto& stage = compute::stage_table()[static_cast<std::size_t>(pass.stage)];
-    auto pipeline = device_->create_pipeline(pass.stage, plan_.effects, group_);
+    auto pipeline = device_->create_pipeline(pass.stage, plan_.effects, group_of(pass.stage));
     if (!pipeline) return pipeline.status();
     compute::Dispatch dispatch{
         *pipeline, pass.stage, plan_.effects, {}, compute::extent_range(stage.extent, params_), std::string(stage.name)};
+    if (plan_.active_tiles && stage.marks) {
+        const auto list = [&](const char* name) { return buffer(name, parity); };
+        dispatch.tiles = {list("activity"), list("active_tiles"), list("active_counts"), list("active_list"),
+                          list("active_dispatch")};
+    }
     for (const auto& name : pass.fields) dispatch.slots.push_back(name.empty() ? compute::Buffer{} : buffer(name, parity));
     builder.dispatch(std::move(dispatch));
     for (const auto& name : pass.flips) {

@@ -76,6 +76,16 @@ class WorldState {
 
     /// Tells the host what happens to the world: other effects, a lost device. May be empty.
     compute::Log log;
+    /// Active tiles: cells [i0, i1) x [j0, j1) may be another than the last steps left them, so that the next step must run
+    /// there.
+    void wake(int i0, int j0, int i1, int j1);
+    void wake_all() { wake(0, 0, layout_.nx + 1, layout_.ny + 1); }
+    /// Puts what is to be woken into a step's input; forgotten once the step is submitted.
+    void put_wakes(StepInput& input) const;
+    void forget_wakes() { wakes_.clear(); }
+    /// Stepper::set_tile_rings().
+    void set_tile_rings(int rings) { params_.tile_rings = rings; }
+
     /// Whole water steps done.
     std::uint64_t steps = 0;
     /// Quanta of sand and water at creation.
@@ -112,6 +122,11 @@ class WorldState {
     void free_others(const FieldBuffers& buffers, const std::vector<compute::Buffer>& scratch,
                      const std::vector<compute::Buffer>& kept);
 
+    /// Of a pass of the plan.
+    compute::GroupSize group_of(int stage) const;
+    /// Numbers that follow from the plan.
+    void derive();
+
     Settings settings_;
     const FieldLayout layout_;
     WorldParams params_;
@@ -126,6 +141,7 @@ class WorldState {
     int turn_ = 0;
     std::uint64_t recording_ = 0, device_bytes_ = 0;
     std::vector<MemoryItem> memory_;
+    std::vector<std::array<int, 4>> wakes_; // first column, row, last column, row of tiles
     Status lost_;
 };
 

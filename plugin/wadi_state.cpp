@@ -97,6 +97,8 @@ wadi_result wadi_world_get_stats(wadi_world_id id, wadi_world_stats* stats) {
         stats->clamped_faces = now->clamped_faces;
         stats->capped_faces = now->capped_faces;
         stats->limited_cells = now->limited_cells;
+        stats->tiles = now->tiles;
+        stats->active_tiles = now->active_tiles;
         stats->hash = now->hash;
         return report(ok_status());
     });

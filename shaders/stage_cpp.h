@@ -33,6 +33,7 @@ template <class T> struct StageBuffer {
         WorldParams P;                                                                                                 \
         const StepInput& S;
 #define EXTENT(KIND)
+#define REACH(CELLS)
 #define END_STAGE                                                                                                      \
     }                                                                                                                  \
     ;

@@ -15,6 +15,7 @@ typedef unsigned int uint;
         WorldParams P;                                                                                                 \
         const StepInput& S;
 #define EXTENT(KIND)
+#define REACH(CELLS)
 #define END_STAGE                                                                                                      \
     }                                                                                                                  \
     ;

@@ -3,6 +3,7 @@
 #define REF(T) inout T
 #define STAGE(NAME)
 #define EXTENT(KIND)
+#define REACH(CELLS)
 #define END_STAGE
 #define HELPER
 #define HELPER_CONST
@@ -18,6 +19,7 @@
 
 layout(local_size_x_id = 1, local_size_y_id = 2, local_size_z = 1) in;
 layout(constant_id = 0) const uint EFFECTS = 0u;
+layout(constant_id = 4) const uint ACTIVE_TILES = 0u; // 1: over a list of tiles, or telling which tiles changed
 
 #include "effects.h"
 #include "step_params.h"

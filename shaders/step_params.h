@@ -17,6 +17,7 @@
 #define LAYER_SAND 1
 #define LAYER_WATER 2
 #define POINT_ROW 64     // points in one row of a POINTS stage
+#define MAX_WAKES 36     // rectangles of active tiles that one step wakes: all sources and all sides have room
 #define SAMPLE_FLOATS 12 // results per point of sample_points
 #define SOURCE_DISC 0
 #define SOURCE_BOX 1
@@ -119,6 +120,12 @@ struct WorldParams {
     float slope01;              // (c1 - c0)/phi1
     float slope12;              // (c2 - c1)/(phi2 - phi1)
     float slope23;              // c2/(phi3 - phi2)
+    // Active tiles
+    int tile_size;              // side [cells]; 0 = every cell runs
+    int tile_rings;             // tiles around a changed one that run in the two steps after it
+    int tile_columns;           // of all tiles, the last column and row of faces included
+    int tile_rows;
+
     float smooth0;              // weights of the saturation low-pass at distance 0, 1, 2 cells
     float smooth1;
     float smooth2;
@@ -137,9 +144,10 @@ struct StepInput {
     // 1/length^2, kind), brush (amount [m], layer, 0, 0), push (strength, velocity x, y [m/s], 0). Stamp: (x, y of the low
     // corner, width, height), (columns, rows, page, kind), (metres per unit of the image, layer, columns and rows per cell).
     vec4 edit[EDIT_VECTORS * MAX_EDITS];
+    vec4 wake[MAX_WAKES];       // tiles woken in this step: first column, row, last column, row
     int edit_count;             // edits in this submission of apply_edits
     int point_count;            // points of a POINTS stage
+    int wake_count;
     int pad0;
-    int pad1;
 };
 #endif

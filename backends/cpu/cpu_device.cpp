@@ -187,6 +187,9 @@ Result<compute::Program> CpuDevice::compile(const compute::ProgramBuilder& build
             }
             step.range = d->range;
             step.rows_per_grab = std::max(1, (d->range.j1 - d->range.j0) / (8 * pool_.size()));
+            if (d->tiles.on()) {
+                if (auto status = set_active(*d, stage, params, step); !status) return status;
+            }
             largest = std::max(largest, area(d->range));
         } else if (const auto* copy = std::get_if<compute::Copy>(&op)) {
             auto* from = find(copy->from);
@@ -219,6 +222,29 @@ Result<compute::Program> CpuDevice::compile(const compute::ProgramBuilder& build
     const compute::Program handle{next_program_++};
     programs_.emplace(handle.id, std::move(recorded));
     return handle;
+}
+
+Status CpuDevice::set_active(const compute::Dispatch& d, const compute::StageInfo& stage, const WorldParams& params, Step& step) {
+    const auto words = [&](compute::Buffer buffer) -> std::uint32_t* {
+        auto* memory = find(buffer);
+        return memory == nullptr || memory->host ? nullptr : reinterpret_cast<std::uint32_t*>(memory->data);
+    };
+    auto& active = step.active;
+    active.activity = words(d.tiles.activity);
+    active.flags = words(d.tiles.flags);
+    active.counts = words(d.tiles.counts);
+    if (active.activity == nullptr || active.flags == nullptr || active.counts == nullptr || params.tile_size < 1)
+        return error(Code::bad_argument, "'" + d.label + "': active tiles without their lists");
+    active.rim = stage.extent == compute::Extent::rim;
+    for (std::size_t b = 0; b < stage.bindings.size(); ++b) {
+        if (stage.bindings[b].access == compute::Access::in || step.buffers[b] == nullptr) continue;
+        active.outputs.push_back({static_cast<std::uint32_t*>(step.buffers[b]), stage.bindings[b].type == compute::Scalar::u32});
+    }
+    if (active.outputs.size() > ActiveStage::most_outputs)
+        return error(Code::internal,
+                     "'" + d.label + "' writes more than " + std::to_string(ActiveStage::most_outputs) + " buffers");
+    step.rows_per_grab = std::min(step.rows_per_grab, params.tile_size);
+    return ok_status();
 }
 
 void CpuDevice::destroy_program(compute::Program program) {
@@ -282,7 +308,9 @@ void CpuDevice::device_thread() {
 }
 
 void CpuDevice::run_rows(Step& step, const WorldParams& params, const StepInput& input, int first, int last) {
-    if (step.block != nullptr) {
+    if (step.active.activity != nullptr) {
+        run_active(step.active, {step.block, step.buffers.data(), step.sizes.data(), params, input, step.range}, first, last);
+    } else if (step.block != nullptr) {
         step.block(step.buffers.data(), step.sizes.data(), &params, &input, step.range.i0, step.range.i1, step.range.j0 + first,
                    step.range.j0 + last);
     } else if (step.from != nullptr) {

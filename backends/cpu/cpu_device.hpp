@@ -1,7 +1,7 @@
 // The compute interface on the CPU's own threads. submit() queues and returns; one device thread runs the queue in order and
 // shares each pass with the pool.
 #pragma once
-#include "backends/cpu/cpu_stages.hpp"
+#include "backends/cpu/cpu_active_tiles.hpp"
 #include "backends/cpu/thread_pool.hpp"
 #include "engine/compute/device.hpp"
 #include <atomic>
@@ -49,6 +49,7 @@ class CpuDevice final : public compute::Device {
         std::vector<void*> buffers;
         std::vector<unsigned long> sizes;
         compute::Range2 range{};
+        ActiveStage active;
         int rows_per_grab = 1;
         std::byte* from = nullptr; // copy
         std::byte* to = nullptr;   // copy and fill
@@ -88,6 +89,8 @@ class CpuDevice final : public compute::Device {
     void drain();
     void device_thread();
     void execute(Recorded& program, const StepInput& input, std::vector<compute::Timing>& timings);
+    /// Errors: bad_argument (a list that does not exist).
+    Status set_active(const compute::Dispatch& dispatch, const compute::StageInfo& stage, const WorldParams& params, Step& step);
     static void run_rows(Step& step, const WorldParams& params, const StepInput& input, int first, int last);
 
     const InstructionSet& set_;

@@ -10,6 +10,10 @@ namespace {
 // Both are among the sizes that stagec compiles for.
 Result<compute::GroupSize> choose_group(const compute::StageInfo& info, compute::GroupSize asked) {
     compute::GroupSize group = info.extent == compute::Extent::rim ? compute::GroupSize{256, 1} : compute::GroupSize{64, 4};
+    if (asked.tile > 0) { // active_kernels() are compiled for groups of at most 256 threads
+        if (info.extent != compute::Extent::rim) group = {asked.tile, std::min(asked.tile, 256 / asked.tile)};
+        asked = {};
+    }
     if (asked.x > 0) group.x = asked.x;
     if (asked.y > 0) group.y = asked.y;
     const bool negative = asked.x < 0 || asked.y < 0;
@@ -30,14 +34,18 @@ Result<compute::Pipeline> Pipelines::create(int stage, std::uint32_t effects, co
     const compute::StageInfo& info = table[static_cast<std::size_t>(stage)];
     auto group = choose_group(info, asked);
     if (!group) return group.status();
-    StagePipeline made{stage, effects & info.tested_effects, group->x, group->y, nullptr};
+    StagePipeline made{stage, effects & info.tested_effects, group->x, group->y, asked.tile > 0, nullptr};
     const auto same = [&](const StagePipeline& p) {
-        return p.stage == made.stage && p.effects == made.effects && p.group_x == made.group_x && p.group_y == made.group_y;
+        return p.stage == made.stage && p.effects == made.effects && p.group_x == made.group_x && p.group_y == made.group_y &&
+               p.active_tiles == made.active_tiles;
     };
     const auto known = std::find_if(pipelines_.begin(), pipelines_.end(), same);
     if (known != pipelines_.end()) return compute::Pipeline{static_cast<std::uint32_t>(known - pipelines_.begin()) + 1};
 
-    made.kernel = kernels()[static_cast<std::size_t>(stage)](made.effects, made.group_x, made.group_y);
+    made.kernel = made.active_tiles ? active_kernels()[static_cast<std::size_t>(stage)](made.effects)
+                                    : kernels()[static_cast<std::size_t>(stage)](made.effects, made.group_x, made.group_y);
+    if (made.kernel == nullptr && made.active_tiles && !info.marks)
+        return error(Code::bad_argument, "stage " + std::string(info.name) + " cannot run over active tiles");
     if (made.kernel == nullptr) {
         return error(Code::internal,
                      "stage " + std::string(info.name) + " has no kernel for the effects " + std::to_string(made.effects));

@@ -9,6 +9,7 @@ struct StagePipeline {
     int stage = -1;
     std::uint32_t effects = 0; // those that the stage tests
     int group_x = 0, group_y = 0;
+    bool active_tiles = false;
     const void* kernel = nullptr;
 };
 

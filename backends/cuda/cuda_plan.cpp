@@ -7,6 +7,8 @@ namespace {
 
 constexpr std::uint32_t most_groups_x = 0x7fffffff, most_groups_y = 65535; // of every compute capability that CUDA supports
 
+constexpr std::uint32_t active_groups = 1024; // 8 of 256 threads on each of 128 multiprocessors
+
 // A timestamp waits for all that is ahead of it and holds up all that follows, so that it separates what it times.
 void add_timestamps(const std::vector<compute::Op>& ops, std::vector<std::vector<int>>& waits) {
     int last = -1; // newest timestamp ahead of operation n
@@ -66,7 +68,9 @@ class Planner {
             return fail(Code::bad_argument, where,
                         "the pipeline was made for another stage or other effects than " + std::string(info.name));
         }
-        KernelCall call{pipeline->kernel, {}, {}, {}};
+        if (pipeline->active_tiles != d.tiles.on())
+            return fail(Code::bad_argument, where, "the pipeline was made with or without active tiles, the dispatch is not");
+        KernelCall call{pipeline->kernel, {}, {}, {}, {}};
         for (std::size_t slot = 0; slot < info.bindings.size(); ++slot) {
             const compute::StageBinding& binding = info.bindings[slot];
             const bool on = (d.effects & binding.condition) == binding.condition;
@@ -80,12 +84,22 @@ class Planner {
             call.slots.push_back(on ? memory->data : nullptr);
         }
         if (call.slots.empty()) call.slots.push_back(nullptr); // the kernel's struct of slots holds at least one
+        if (d.tiles.on()) {
+            std::size_t n = 0;
+            for (const compute::Buffer list : {d.tiles.list, d.tiles.dispatch, d.tiles.activity}) {
+                const Memory* memory = buffers_.find(list);
+                if (memory == nullptr || memory->host) return fail(Code::bad_argument, where, "active tiles without their lists");
+                call.tiles[n++] = memory->data;
+            }
+        }
         if (d.range.i1 <= d.range.i0 || d.range.j1 <= d.range.j0) return Call(NoCall{});
         const auto groups = [](int first, int last, int size) {
             return static_cast<std::uint32_t>((last - first - 1) / size + 1);
         };
         call.groups = dim3(groups(d.range.i0, d.range.i1, pipeline->group_x), groups(d.range.j0, d.range.j1, pipeline->group_y));
         call.threads = dim3(static_cast<std::uint32_t>(pipeline->group_x), static_cast<std::uint32_t>(pipeline->group_y));
+        // Enough groups to fill the GPU; each takes every so many-th tile of the list.
+        if (d.tiles.on() && info.extent != compute::Extent::rim) call.groups = dim3(active_groups);
         if (call.groups.x > most_groups_x || call.groups.y > most_groups_y) {
             return fail(Code::not_supported, where,
                         std::to_string(call.groups.x) + " x " + std::to_string(call.groups.y) + " groups; CUDA allows " +

@@ -3,6 +3,7 @@
 #include "backends/cuda/cuda_memory.hpp"
 #include "backends/cuda/cuda_pipelines.hpp"
 #include "engine/compute/program.hpp"
+#include <array>
 #include <variant>
 #include <vector>
 
@@ -11,7 +12,8 @@ namespace wadi::cuda {
 struct KernelCall {
     const void* kernel;
     dim3 groups, threads;
-    std::vector<void*> slots; // device addresses; null where the condition is off
+    std::vector<void*> slots;           // device addresses; null where the condition is off
+    std::array<const void*, 3> tiles{}; // list, count and activity of active tiles; null without
 };
 struct CopyCall {
     void* to;

@@ -4,10 +4,12 @@
 namespace wadi::cuda {
 namespace {
 
-/// What cudaLaunchKernel and kernel nodes take: the addresses of the three arguments. They are copied during the call.
+/// What cudaLaunchKernel and kernel nodes take: the addresses of the arguments, of which only kernels over active tiles have a
+/// fourth. They are copied during the call.
 struct Arguments {
-    Arguments(WorldParams& params, const void*& input, std::vector<void*>& slots) : addresses{&params, &input, slots.data()} {}
-    void* addresses[3];
+    Arguments(WorldParams& params, const void*& input, KernelCall& call)
+        : addresses{&params, &input, call.slots.data(), call.tiles.data()} {}
+    void* addresses[4];
 };
 
 struct GraphOwner {
@@ -85,7 +87,7 @@ Status CompiledProgram::add_nodes(cudaGraph_t graph, const std::vector<std::vect
 Status CompiledProgram::add_node(cudaGraphNode_t& node, cudaGraph_t graph, const std::vector<cudaGraphNode_t>& after, Call& call,
                                  std::size_t slot) {
     if (auto* k = std::get_if<KernelCall>(&call)) {
-        Arguments arguments(params_, input_, k->slots);
+        Arguments arguments(params_, input_, *k);
         cudaKernelNodeParams kernel{};
         kernel.func = const_cast<void*>(k->kernel);
         kernel.gridDim = k->groups;
@@ -130,7 +132,7 @@ Status CompiledProgram::launch(std::size_t slot) {
 // The stream alone keeps the order.
 Status CompiledProgram::run(Call& call, std::size_t slot) {
     if (auto* k = std::get_if<KernelCall>(&call)) {
-        Arguments arguments(params_, input_, k->slots);
+        Arguments arguments(params_, input_, *k);
         const cudaError_t r = cudaLaunchKernel(k->kernel, k->groups, k->threads, arguments.addresses, 0, c_.stream);
         return c_.check(r, "cudaLaunchKernel", label_);
     }

@@ -9,9 +9,14 @@ namespace wadi::cuda {
 /// Arguments: WorldParams by value, the device address of StepInput, the slots' device addresses by value.
 using KernelSelect = const void* (*)(unsigned effects, int group_x, int group_y);
 
+/// The kernel that runs over active tiles, or that tells which tiles it changed (rim). Null for stages that can do neither, and
+/// for masks outside the stage's. One argument more, by value: device addresses of list, count and activity.
+using ActiveKernelSelect = const void* (*)(unsigned effects);
+
 inline constexpr int largest_group = 1024;
 
 /// Defined in the generated file, in the order of the stage table.
 std::span<const KernelSelect> kernels();
+std::span<const ActiveKernelSelect> active_kernels();
 
 } // namespace wadi::cuda

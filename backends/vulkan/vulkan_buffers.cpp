@@ -27,7 +27,7 @@ Result<compute::Buffer> Buffers::create(const compute::BufferDesc& desc) {
     buffers_.reserve(buffers_.size() + 1); // so that nothing can fail once the buffer exists
     auto owner = std::make_unique<Memory>();
     const bool host = desc.host != compute::HostAccess::none;
-    auto memory = allocate(c_, desc.bytes, host ? 0u : VkBufferUsageFlags{VK_BUFFER_USAGE_STORAGE_BUFFER_BIT},
+    auto memory = allocate(c_, desc.bytes, host ? 0u : VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT,
                            host ? Place::host : Place::device, desc.label);
     if (!memory) return memory.status();
     *owner = std::move(*memory);

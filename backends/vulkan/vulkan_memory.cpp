@@ -48,6 +48,7 @@ VkPipelineStageFlags stages(Kinds kinds) {
     VkPipelineStageFlags flags = 0;
     if (kinds.compute) flags |= VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT;
     if (kinds.transfer) flags |= VK_PIPELINE_STAGE_TRANSFER_BIT;
+    if (kinds.indirect) flags |= VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT;
     if (kinds.host) flags |= VK_PIPELINE_STAGE_HOST_BIT;
     return flags;
 }
@@ -96,6 +97,7 @@ void record_barrier(const Context& c, VkCommandBuffer commands, Kinds before, Ki
     if (after.compute)
         barrier.dstAccessMask |= VK_ACCESS_UNIFORM_READ_BIT | VK_ACCESS_SHADER_READ_BIT | VK_ACCESS_SHADER_WRITE_BIT;
     if (after.transfer) barrier.dstAccessMask |= VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
+    if (after.indirect) barrier.dstAccessMask |= VK_ACCESS_INDIRECT_COMMAND_READ_BIT;
     if (after.host) barrier.dstAccessMask |= VK_ACCESS_HOST_READ_BIT;
     c.vk.vkCmdPipelineBarrier(commands, stages(before), stages(after), 0, 1, &barrier, 0, nullptr, 0, nullptr);
 }

@@ -27,7 +27,8 @@ void release(Context& context, Memory& memory);
 struct Kinds {
     bool compute = false;
     bool transfer = false;
-    bool host = false; // reading mapped memory; only ever `after`
+    bool indirect = false; // reading the groups of a dispatch; only ever `after`
+    bool host = false;     // reading mapped memory; only ever `after`
 };
 
 /// A global memory barrier: everything of the kinds `before` ahead of it, then everything of the kinds `after`.

@@ -17,6 +17,12 @@ Constants default_group(compute::Extent extent, const Limits& limits) {
 
 Result<Constants> choose_group(const compute::StageInfo& info, compute::GroupSize asked, const Limits& limits) {
     Constants group = default_group(info.extent, limits);
+    if (asked.tile > 0 && !info.marks)
+        return error(Code::bad_argument, "stage " + std::string(info.name) + " cannot run over active tiles");
+    group.active_tiles = asked.tile > 0 ? 1 : 0;
+    // As list_active_tiles counts the groups of a tile.
+    if (asked.tile > 0 && info.extent != compute::Extent::rim)
+        asked = {asked.tile, std::min(asked.tile, 256 / asked.tile), asked.tile};
     const bool negative = asked.x < 0 || asked.y < 0;
     if (asked.x > 0) group.group_x = static_cast<std::uint32_t>(asked.x);
     if (asked.y > 0) group.group_y = static_cast<std::uint32_t>(asked.y);
@@ -76,8 +82,9 @@ Result<VkPipeline> create_compute_pipeline(Context& c, VkPipelineCache cache, Vk
         {1, offsetof(Constants, group_x), sizeof(constants.group_x)},
         {2, offsetof(Constants, group_y), sizeof(constants.group_y)},
         {3, offsetof(Constants, corrected_division), sizeof(constants.corrected_division)},
+        {4, offsetof(Constants, active_tiles), sizeof(constants.active_tiles)},
     };
-    const VkSpecializationInfo specialization{4, entries, sizeof(constants), &constants};
+    const VkSpecializationInfo specialization{5, entries, sizeof(constants), &constants};
     auto info = vk_struct<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
     info.stage = vk_struct<VkPipelineShaderStageCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO);
     info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
@@ -112,10 +119,10 @@ Status Pipelines::prepare_stage(int stage) {
     const compute::StageInfo& info = compute::stage_table()[static_cast<std::size_t>(stage)];
     StageObjects& objects = stages_[static_cast<std::size_t>(stage)];
     if (info.spirv.empty()) return error(Code::not_supported, "this build has no SPIR-V for stage " + std::string(info.name));
-    if (info.bindings.size() > c_.limits.storage_buffers) {
-        return error(Code::not_supported, "stage " + std::string(info.name) + " binds " + std::to_string(info.bindings.size()) +
-                                              " buffers; " + c_.capabilities.name + " allows " +
-                                              std::to_string(c_.limits.storage_buffers));
+    const auto storage = static_cast<std::uint32_t>(info.bindings.size()) + (info.marks ? active_bindings : 0);
+    if (storage > c_.limits.storage_buffers) {
+        return error(Code::not_supported, "stage " + std::string(info.name) + " binds " + std::to_string(storage) + " buffers; " +
+                                              c_.capabilities.name + " allows " + std::to_string(c_.limits.storage_buffers));
     }
     if (objects.module == VK_NULL_HANDLE) {
         auto module = create_module(c_, info.spirv, info.name);
@@ -123,7 +130,7 @@ Status Pipelines::prepare_stage(int stage) {
         objects.module = *module;
     }
     if (objects.set_layout == VK_NULL_HANDLE) {
-        auto layout = create_set_layout(c_, first_slot_binding, static_cast<std::uint32_t>(info.bindings.size()), info.name);
+        auto layout = create_set_layout(c_, first_slot_binding, storage, info.name);
         if (!layout) return layout.status();
         objects.set_layout = *layout;
     }
@@ -148,7 +155,7 @@ Result<compute::Pipeline> Pipelines::create(int stage, std::uint32_t effects, co
     constants->corrected_division = c_.corrected_division ? 1 : 0;
     const auto same = [&](const StagePipeline& p) {
         return p.stage == stage && p.effects == constants->effects && p.group_x == constants->group_x &&
-               p.group_y == constants->group_y;
+               p.group_y == constants->group_y && p.active_tiles == (constants->active_tiles != 0);
     };
     const auto known = std::find_if(pipelines_.begin(), pipelines_.end(), same);
     if (known != pipelines_.end()) return compute::Pipeline{static_cast<std::uint32_t>(known - pipelines_.begin()) + 1};
@@ -158,7 +165,8 @@ Result<compute::Pipeline> Pipelines::create(int stage, std::uint32_t effects, co
     const StageObjects& objects = stages_[static_cast<std::size_t>(stage)];
     auto handle = create_compute_pipeline(c_, cache_, objects.module, objects.layout, *constants, info.name);
     if (!handle) return handle.status();
-    pipelines_.push_back({stage, constants->effects, constants->group_x, constants->group_y, *handle});
+    pipelines_.push_back(
+        {stage, constants->effects, constants->group_x, constants->group_y, constants->active_tiles != 0, *handle});
     return compute::Pipeline{static_cast<std::uint32_t>(pipelines_.size())};
 }
 

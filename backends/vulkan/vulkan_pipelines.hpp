@@ -16,11 +16,15 @@ Result<VkDescriptorSetLayout> create_set_layout(Context& context, std::uint32_t 
 Result<VkPipelineLayout> create_pipeline_layout(Context& context, VkDescriptorSetLayout set, std::string_view label);
 Result<VkShaderModule> create_module(Context& context, std::span<const std::uint32_t> spirv, std::string_view label);
 
-/// Values of the specialisation constants 0 to 3.
+/// Storage buffers behind the slots of a stage that can run over active tiles: their list, and their activity.
+inline constexpr std::uint32_t active_bindings = 2;
+
+/// Values of the specialisation constants 0 to 4.
 struct Constants {
     std::uint32_t effects = 0;
     std::uint32_t group_x = 1, group_y = 1;
     std::int32_t corrected_division = 0;
+    std::uint32_t active_tiles = 0;
 };
 Result<VkPipeline> create_compute_pipeline(Context& context, VkPipelineCache cache, VkShaderModule module,
                                            VkPipelineLayout layout, const Constants& constants, std::string_view label);
@@ -36,6 +40,7 @@ struct StagePipeline {
     int stage = -1;
     std::uint32_t effects = 0; // only bits that the stage tests
     std::uint32_t group_x = 0, group_y = 0;
+    bool active_tiles = false;
     VkPipeline handle = VK_NULL_HANDLE;
 };
 

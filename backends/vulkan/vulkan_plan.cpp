@@ -26,10 +26,14 @@ class Planner {
         for (std::size_t n = 0; n < ops.size(); ++n) {
             if (c_.options.full_barriers) {
                 constexpr Kinds all{.compute = true, .transfer = true};
-                plan_.commands.emplace_back(BarrierCommand{all, all});
-            } else if (planned[n]) {
-                plan_.commands.emplace_back(BarrierCommand{before, kinds_until_barrier(ops, planned, n)});
+                plan_.commands.emplace_back(BarrierCommand{all, {.compute = true, .transfer = true, .indirect = true}});
+            } else if (planned[n] || reads_groups(ops[n])) {
+                Kinds after = kinds_until_barrier(ops, planned, n);
+                after.indirect = reads_groups(ops[n]);
+                if (!before.compute && !before.transfer) before.compute = true; // an earlier submission's
+                plan_.commands.emplace_back(BarrierCommand{before, after});
             }
+            note_groups(ops[n]);
             const Kinds kinds = kinds_of(ops[n]);
             before = {before.compute || kinds.compute, before.transfer || kinds.transfer};
             if (Status s = std::visit([&](const auto& op) { return add(op); }, ops[n]); !s) return s;
@@ -50,13 +54,33 @@ class Planner {
         return all;
     }
 
+    static const compute::Dispatch* over_tiles(const compute::Op& op) {
+        const auto* d = std::get_if<compute::Dispatch>(&op);
+        if (d == nullptr || !d->tiles.on()) return nullptr;
+        return compute::stage_table()[static_cast<std::size_t>(d->stage)].extent == compute::Extent::rim ? nullptr : d;
+    }
+    // A barrier that lets a dispatch read its groups costs more than others: only the first behind each change of them has one.
+    bool reads_groups(const compute::Op& op) const {
+        const auto* d = over_tiles(op);
+        return d != nullptr && !(d->tiles.dispatch == groups_seen_);
+    }
+    void note_groups(const compute::Op& op) {
+        for (const auto& use : compute::buffer_uses(op)) {
+            if (use.writes && use.buffer == groups_seen_) groups_seen_ = {};
+        }
+        if (const auto* d = over_tiles(op)) groups_seen_ = d->tiles.dispatch;
+    }
+
     Status fail(Code code, const std::string& where, const std::string& what) const {
         return error(code, "program '" + builder_.label() + "', " + where + ": " + what);
     }
 
+    static bool marks(int stage) { return compute::stage_table()[static_cast<std::size_t>(stage)].marks; }
+
     static SetKey key_of(const compute::Dispatch& d) {
         SetKey key{d.stage, {}};
         for (const compute::Buffer b : d.slots) key.second.push_back(b.id);
+        if (marks(d.stage)) key.second.insert(key.second.end(), {d.tiles.list.id, d.tiles.activity.id});
         return key;
     }
 
@@ -69,6 +93,12 @@ class Planner {
         if (pipeline->stage != d.stage || pipeline->effects != (d.effects & info.tested_effects)) {
             return fail(Code::bad_argument, where,
                         "the pipeline was made for another stage or other effects than " + std::string(info.name));
+        }
+        if (pipeline->active_tiles != d.tiles.on())
+            return fail(Code::bad_argument, where, "the pipeline was made with or without active tiles, the dispatch is not");
+        for (const compute::Buffer b : {d.tiles.activity, d.tiles.list, d.tiles.dispatch}) {
+            if (d.tiles.on() && (p_.buffers.find(b) == nullptr || !p_.buffers.mapped(b).empty()))
+                return fail(Code::bad_argument, where, "active tiles without their lists");
         }
         for (std::size_t slot = 0; slot < d.slots.size(); ++slot) {
             if (d.slots[slot].id != 0 && p_.buffers.find(d.slots[slot]) == nullptr) {
@@ -90,7 +120,7 @@ class Planner {
             if (d == nullptr) continue;
             if (Status s = check_dispatch(*d); !s) return s;
             if (sets_.emplace(key_of(*d), VkDescriptorSet{VK_NULL_HANDLE}).second)
-                storage += static_cast<std::uint32_t>(d->slots.size());
+                storage += static_cast<std::uint32_t>(key_of(*d).second.size());
         }
         if (sets_.empty()) return ok_status();
         const auto count = static_cast<std::uint32_t>(sets_.size());
@@ -142,6 +172,7 @@ class Planner {
 
     Status add(const compute::Dispatch& d) {
         if (d.range.i1 <= d.range.i0 || d.range.j1 <= d.range.j0) return ok_status();
+        if (over_tiles(d) != nullptr) return add_over_tiles(d);
         const StagePipeline& pipeline = *p_.pipelines.find(d.pipeline);
         const auto groups = [](int first, int last, std::uint32_t size) {
             return (static_cast<std::uint32_t>(last - first) + size - 1) / size;
@@ -155,6 +186,19 @@ class Planner {
         }
         plan_.commands.emplace_back(
             DispatchCommand{pipeline.handle, p_.pipelines.stage(d.stage).layout, sets_.at(key_of(d)), x, y});
+        return ok_status();
+    }
+
+    Status add_over_tiles(const compute::Dispatch& d) {
+        const Memory* list = p_.buffers.find(d.tiles.list);
+        if (list->bytes / 4 > c_.limits.group_count[0]) {
+            return fail(Code::not_supported, "dispatch '" + d.label + "'",
+                        std::to_string(list->bytes / 4) + " active tiles; " + c_.capabilities.name + " allows " +
+                            std::to_string(c_.limits.group_count[0]));
+        }
+        const VkBuffer groups = p_.buffers.find(d.tiles.dispatch)->buffer;
+        plan_.commands.emplace_back(DispatchCommand{p_.pipelines.find(d.pipeline)->handle, p_.pipelines.stage(d.stage).layout,
+                                                    sets_.at(key_of(d)), 0, 0, groups});
         return ok_status();
     }
 
@@ -203,7 +247,8 @@ class Planner {
     Plan& plan_;
     std::map<SetKey, VkDescriptorSet> sets_;
     std::uint32_t timestamps_ = 0;
-    bool host_reads_ = false; // a copy goes to mapped memory
+    compute::Buffer groups_seen_; // since the last barrier that lets a dispatch read them
+    bool host_reads_ = false;     // a copy goes to mapped memory
 };
 
 } // namespace

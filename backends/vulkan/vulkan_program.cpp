@@ -99,7 +99,11 @@ void CompiledProgram::record_command(VkCommandBuffer commands, const Command& co
         }
         bound_pipeline_ = d->pipeline;
         bound_set_ = d->set;
-        c_.vk.vkCmdDispatch(commands, d->groups_x, d->groups_y, 1);
+        if (d->groups != VK_NULL_HANDLE) {
+            c_.vk.vkCmdDispatchIndirect(commands, d->groups, 0);
+        } else {
+            c_.vk.vkCmdDispatch(commands, d->groups_x, d->groups_y, 1);
+        }
     } else if (const auto* copy = std::get_if<CopyCommand>(&command)) {
         c_.vk.vkCmdCopyBuffer(commands, copy->from, copy->to, 1, &copy->region);
     } else if (const auto* fill = std::get_if<FillCommand>(&command)) {

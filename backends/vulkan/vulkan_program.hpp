@@ -17,6 +17,7 @@ struct DispatchCommand {
     VkPipelineLayout layout;
     VkDescriptorSet set;
     std::uint32_t groups_x, groups_y;
+    VkBuffer groups = VK_NULL_HANDLE; // read on the device in place of the two
 };
 struct CopyCommand {
     VkBuffer from, to;

@@ -86,8 +86,10 @@ struct BufferDesc {
 };
 
 /// Threads per group along i and j (GPU backends; the CPU ignores it). 0 = the backend's choice for the stage.
+/// tile: side of the active tiles that the pipeline's dispatches run over, 0 = none; over them cells and faces have groups of a
+/// tile's width whatever x and y say.
 struct GroupSize {
-    int x = 0, y = 0;
+    int x = 0, y = 0, tile = 0;
 };
 
 struct Timing {

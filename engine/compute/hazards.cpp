@@ -22,6 +22,11 @@ std::vector<BufferUse> buffer_uses(const Op& op) {
             uses.push_back({dispatch->slots[static_cast<std::size_t>(binding.slot)], binding.access != Access::out,
                             binding.access != Access::in});
         }
+        const auto& tiles = dispatch->tiles;
+        if (tiles.on()) {
+            uses.push_back({tiles.activity, true, true});
+            for (const auto list : {tiles.flags, tiles.counts, tiles.list, tiles.dispatch}) uses.push_back({list, true, false});
+        }
     } else if (const auto* copy = std::get_if<Copy>(&op)) {
         uses.push_back({copy->from, true, false});
         uses.push_back({copy->to, false, true});
@@ -105,6 +110,11 @@ Status validate(const ProgramBuilder& builder) {
             if (d->slots.size() != stage.bindings.size()) {
                 return fail(where + ": " + std::to_string(d->slots.size()) + " slots, the stage has " +
                             std::to_string(stage.bindings.size()));
+            }
+            if (d->tiles.on()) {
+                if (!stage.marks) return fail(where + ": the stage cannot run over active tiles");
+                for (const auto list : {d->tiles.flags, d->tiles.counts, d->tiles.list, d->tiles.dispatch})
+                    if (list.id == 0) return fail(where + ": active tiles without their lists");
             }
             std::map<std::uint32_t, Touched> touched;
             for (const auto& binding : stage.bindings) {

@@ -15,6 +15,7 @@ static_assert(sizeof(WorldParams) % 4 == 0 && alignof(WorldParams) == 4);
 static_assert(sizeof(StepInput) <= 2048, "StepInput must stay within 2 KiB");
 static_assert(offsetof(StepInput, source) == 16 && offsetof(StepInput, side) == 16 + 16 * MAX_SOURCES);
 static_assert(offsetof(StepInput, edit) == offsetof(StepInput, side) + 16 * 4 && sizeof(StepInput) % 16 == 0);
+static_assert(offsetof(StepInput, wake) == offsetof(StepInput, edit) + 16 * EDIT_VECTORS * MAX_EDITS);
 
 /// The layout every field shares: GHOST ghost cells around, one more column and row for the last faces.
 /// u[i,j] is the west face and v[i,j] the south face of cell (i,j).
@@ -31,5 +32,7 @@ struct FieldLayout {
     /// Tiles of STRIP x STRIP cells in a row of them; the last may hold no cell.
     int tile_columns() const { return (nx + STRIP) / STRIP; }
     int rim() const { return 2 * (nx + ny); }
+    /// Active tiles of `size` x `size` along one axis of `cells` cells and one face more.
+    static int active_tiles(int cells, int size) { return cells / size + 1; }
 };
 } // namespace wadi

@@ -21,6 +21,14 @@ struct Program {
     std::uint32_t id = 0;
 };
 
+/// The active tiles of a step, as mark_, count_ and list_active_tiles write them. A dispatch that has them runs over those tiles
+/// instead of its range, a rim stage over all of its range; both put the step's number into `activity` of every tile in which
+/// they change a bit. What a dispatch writes must then be what the stage's marks say: StageInfo::marks.
+struct ActiveTiles {
+    Buffer activity, flags, counts, list, dispatch;
+    bool on() const { return activity.id != 0; }
+};
+
 struct Dispatch {
     Pipeline pipeline;
     int stage = -1;            // index into stage_table()
@@ -28,6 +36,7 @@ struct Dispatch {
     std::vector<Buffer> slots; // one per binding of the stage, in slot order; null where the condition is off
     Range2 range{};            // what the kernel covers
     std::string label;         // for errors and profiles
+    ActiveTiles tiles{};
 };
 struct Copy {
     Buffer from, to;

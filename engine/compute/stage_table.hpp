@@ -17,8 +17,9 @@ enum class Scalar : std::uint8_t { f32, u32, i32, vec2, vec4 };
 /// Which (i, j) a stage runs over.
 /// cells: nx x ny. faces: (nx+1) x (ny+1). rim: 2(nx+ny) x 1, the outer faces in the order west, east, south, north.
 /// strips: nx+1 columns x ceil((ny+1)/STRIP). source_box: the strips that hold all sources (origin not zero).
+/// tiles: tile_columns x tile_rows active tiles. tile_rows: 1 x tile_rows.
 /// points: no grid, a list; point n is i = n % POINT_ROW, j = n / POINT_ROW. StepInput::point_count says how many there are.
-enum class Extent : std::uint8_t { cells, faces, rim, strips, source_box, points };
+enum class Extent : std::uint8_t { cells, faces, rim, strips, source_box, points, tiles, tile_rows };
 
 struct StageBinding {
     std::string_view name;
@@ -31,6 +32,8 @@ struct StageBinding {
 struct StageInfo {
     std::string_view name; // file name without extension, as in the paper's Algorithm 1
     Extent extent;
+    int reach;                    // cells from a thread's own index to the farthest that it reads
+    bool marks;                   // can run over active tiles (cells, faces), or tell which tiles it changed (rim)
     std::uint32_t tested_effects; // bits that HAS() asks in its body or bindings
     std::span<const StageBinding> bindings;
     std::span<const std::uint32_t> spirv; // empty when the build has no Vulkan

@@ -129,6 +129,9 @@ int main_checked(int argc, char** argv) {
                    "draft, balanced or accurate: half, all or twice the cells, two sand steps; accurate: order 2 for water");
     app.add_option("--size", size, "grid NxM instead of the level's; keeps the x extent");
     app.add_option("--dt", options.dt, "water time step [s] instead of the level's")->check(CLI::Range(1e-7, 100.0));
+    app.add_option("--active-tiles", options.active_tiles,
+                   "8, 16, 32 or 64: tiles of so many cells in which nothing changes are left out; -1 = none are")
+        ->check(CLI::IsMember({-1, 8, 16, 32, 64}));
     app.add_option("--seconds", options.seconds, "simulated time [s]; default: the level's duration")
         ->check(CLI::Range(0.0, 1e9));
     app.add_option("--every", options.every, "time between frames [s]; default: a tenth of the recording")

@@ -39,6 +39,8 @@ struct Options {
     std::string variant;         // empty = the level as it is
     std::string accuracy;        // empty = what the level says
 
+    std::int32_t active_tiles = 0; // 0 = the level's, -1 = off
+
     double seconds = -1;    // simulated time, -1 = the level's duration
     double every = 0;       // between frames [s], 0 = a tenth of the recording
     double water_scale = 0; // depth drawn in deep blue [m], 0 = derived

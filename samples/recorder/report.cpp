@@ -114,6 +114,9 @@ std::string format_table(const Report& report) {
     append_count(text, "cells with limited outflow", report.limited_cells);
     append_count(text, "values that are not finite", report.not_finite);
     append(text, "  %-36s %12.5g (least of all frames)\n", "smallest depth [m]", report.smallest_height);
+    if (stats.tiles > 0)
+        append(text, "  %-36s %12llu of %llu (last step)\n", "active tiles", static_cast<unsigned long long>(stats.active_tiles),
+               static_cast<unsigned long long>(stats.tiles));
     append(text, "\nhash      %s\n", hash_text(stats.hash).c_str());
     return text;
 }
@@ -152,6 +155,7 @@ std::string format_summary(const Report& report) {
                       {"capped_faces", count_json(report.capped_faces)},
                       {"limited_cells", count_json(report.limited_cells)},
                       {"not_finite", count_json(report.not_finite)}};
+    if (stats.tiles > 0) json["active_tiles"] = {{"last_step", stats.active_tiles}, {"of", stats.tiles}};
     json["hash"] = hash_text(stats.hash);
     json["passes"] = {{"per_water_step", info.passes_per_water_step},
                       {"per_sand_substep", info.passes_per_sand_substep},

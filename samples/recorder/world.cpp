@@ -33,6 +33,7 @@ Failure World::create(const Options& options) {
     overrides.nx = options.nx;
     overrides.ny = options.ny;
     overrides.dt = options.dt;
+    overrides.active_tiles = options.active_tiles;
     overrides.method = options.method.empty() ? nullptr : options.method.c_str();
     overrides.variant = options.variant.empty() ? nullptr : options.variant.c_str();
     overrides.accuracy = options.accuracy.empty() ? nullptr : options.accuracy.c_str();

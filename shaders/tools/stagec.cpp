@@ -53,11 +53,12 @@ struct Binding {
 
 struct Stage {
     std::string path, name, struct_name, extent;
+    int reach = -1; // cells from the kernel's own index to the farthest that it reads
     std::vector<Binding> bindings;
     std::vector<std::string> tested; // effect names that HAS() or a condition asks
 };
 
-const std::set<std::string> extents = {"CELLS", "FACES", "RIM", "STRIPS", "SOURCE_BOX", "POINTS"};
+const std::set<std::string> extents = {"CELLS", "FACES", "RIM", "STRIPS", "SOURCE_BOX", "POINTS", "TILES", "TILE_ROWS"};
 
 std::string strip_comments(const std::string& text) {
     std::string out;
@@ -121,6 +122,8 @@ Stage parse(const std::string& path) {
             stage.struct_name = arguments(text, end).at(0);
         } else if (word == "EXTENT") {
             stage.extent = arguments(text, end).at(0);
+        } else if (word == "REACH") {
+            stage.reach = std::atoi(arguments(text, end).at(0).c_str());
         } else if (word == "HAS") {
             note_effects(arguments(text, end).at(0));
         } else if (conditional || word == "IN" || word == "OUT" || word == "INOUT") {
@@ -141,7 +144,11 @@ Stage parse(const std::string& path) {
         }
     }
     if (stage.struct_name.empty()) fail(path + ": no STAGE(Name)");
-    if (!extents.count(stage.extent)) fail(path + ": EXTENT must be CELLS, FACES, RIM, STRIPS, SOURCE_BOX or POINTS");
+    if (!extents.count(stage.extent))
+        fail(path + ": EXTENT must be CELLS, FACES, RIM, STRIPS, SOURCE_BOX, POINTS, TILES or TILE_ROWS");
+    const bool grid = stage.extent == "CELLS" || stage.extent == "FACES" || stage.extent == "RIM";
+    if (stage.reach < 0) stage.reach = grid ? 1 : 0;
+    if (stage.reach > 2) fail(path + ": REACH is at most 2, the width of the ghosts");
     stage.tested.assign(tested.begin(), tested.end());
     return stage;
 }
@@ -186,6 +193,8 @@ std::string guard(const std::string& extent) {
     if (extent == "FACES") return "i <= P.nx && j <= P.ny";
     if (extent == "RIM") return "i < 2 * (P.nx + P.ny) && j < 1";
     if (extent == "STRIPS") return "i <= P.nx && j < P.strips";
+    if (extent == "TILES") return "i < P.tile_columns && j < P.tile_rows";
+    if (extent == "TILE_ROWS") return "i < 1 && j < P.tile_rows";
     if (extent == "POINTS") return "i < POINT_ROW && j * POINT_ROW + i < S.point_count";
     return "i < P.source_i1 && j < P.source_s1";
 }
@@ -195,11 +204,81 @@ std::string origin(const std::string& extent, const char* axis) {
     return axis[0] == 'i' ? " + P.source_i0" : " + P.source_s0";
 }
 
+// Stages that run over a list of active tiles, and stages of the rim, which run whole but tell what they changed.
+bool marks(const Stage& s) {
+    bool marks = s.extent == "CELLS" || s.extent == "FACES" || s.extent == "RIM";
+    for (const auto& b : s.bindings) marks &= b.access == "IN" || b.type == "float" || (s.extent == "RIM" && b.type == "uint");
+    return marks;
+}
+
+// Where a kernel at (i, j) writes a buffer. RIM: its face and the ghost outside, the low words of its counts in and out.
+std::vector<std::string> written(const Stage& s, const Binding& b) {
+    if (s.extent != "RIM") return {"at"};
+    if (b.type == "uint") return {"i", "4 * (P.nx + P.ny) + i"};
+    return {"at", "ghost"};
+}
+
+// Runs the kernel and stamps its tile with the step if a bit of what it writes is another than before. Once a tile has its stamp
+// nobody looks any more. Threads of one tile store the same value, so that their order does not matter.
+std::string marking(const Stage& s, const std::string& member) {
+    std::ostringstream before, after;
+    int count = 0;
+    for (const auto& b : s.bindings) {
+        if (b.access == "IN") continue;
+        const std::string has = b.condition == "0u" ? "" : "if (HAS(" + b.condition + ")) ";
+        for (const std::string& at : written(s, b)) {
+            const bool is_float = b.type == "float";
+            const std::string old = "old" + std::to_string(count++), value = member + b.name + "[" + at + "]";
+            before << "    " << b.type << " " << old << " = " << (is_float ? "0.0f" : "0u") << ";\n    if (look) {\n        "
+                   << has << old << " = " << value << ";\n    }\n";
+            after << "        " << has << "changed = changed || "
+                  << (is_float ? "float_bits(" + value + ") != float_bits(" + old + ")" : value + " != " + old) << ";\n";
+        }
+    }
+    return before.str() + "    " + member + "kernel(i, j);\n    if (look) {\n        bool changed = false;\n" + after.str() +
+           "        if (changed) activity[tile] = uint(S.step);\n    }\n";
+}
+
+// The place of a rim kernel: its face, the cell outside it where that is written, the tile that holds the face.
+std::string rim_place(const Stage& s) {
+    bool ghosts = false;
+    for (const auto& b : s.bindings) ghosts |= b.access != "IN" && b.type == "float";
+    return std::string("    int west_east = 2 * P.ny;\n    bool along_y = i < west_east;\n"
+                       "    bool low = along_y ? i < P.ny : i < west_east + P.nx;\n"
+                       "    int along = along_y ? (low ? i : i - P.ny) : (low ? i - west_east : i - west_east - P.nx);\n"
+                       "    int x = along_y ? (low ? 0 : P.nx) : along;\n    int y = along_y ? along : (low ? 0 : P.ny);\n") +
+           (ghosts ? "    int at = IDX(x, y);\n    int ghost = low ? (along_y ? at - 1 : at - P.pitch) : at;\n" : "") +
+           "    int size = P.tile_size > 0 ? P.tile_size : 1;\n    int tile = (y / size) * P.tile_columns + x / size;\n";
+}
+
 std::string glsl(const Stage& s) {
-    return "#version 450\n#extension GL_GOOGLE_include_directive : require\n#include \"stage_glsl.h\"\n#include \"stages/" +
-           s.name + ".stage\"\nvoid main() {\n    int i = int(gl_GlobalInvocationID.x)" + origin(s.extent, "i") +
-           ";\n    int j = int(gl_GlobalInvocationID.y)" + origin(s.extent, "j") + ";\n    if (" + guard(s.extent) +
-           ") kernel(i, j);\n}\n";
+    std::ostringstream o;
+    o << "#version 450\n#extension GL_GOOGLE_include_directive : require\n#include \"stage_glsl.h\"\n#include \"stages/" << s.name
+      << ".stage\"\n";
+    const std::size_t slots = s.bindings.size();
+    if (marks(s)) {
+        o << "layout(std430, set = 0, binding = " << slots + 2 << ") readonly buffer active_list_block { uint active_list[]; };\n"
+          << "layout(std430, set = 0, binding = " << slots + 3 << ") buffer activity_block { uint activity[]; };\n";
+    }
+    o << "void main() {\n    int i = int(gl_GlobalInvocationID.x)" << origin(s.extent, "i")
+      << ";\n    int j = int(gl_GlobalInvocationID.y)" << origin(s.extent, "j") << ";\n";
+    if (!marks(s)) {
+        o << "    if (" << guard(s.extent) << ") kernel(i, j);\n}\n";
+        return o.str();
+    }
+    if (s.extent == "RIM") {
+        o << "    if (!(" << guard(s.extent) << ")) return;\n" << rim_place(s);
+    } else {
+        o << "    int tile = 0;\n    if (ACTIVE_TILES != 0u) {\n        tile = int(active_list[gl_WorkGroupID.x]);\n"
+          << "        int row = int(gl_WorkGroupID.y * gl_WorkGroupSize.y + gl_LocalInvocationID.y);\n"
+          << "        if (row >= P.tile_size) return;\n"
+          << "        i = (tile % P.tile_columns) * P.tile_size + int(gl_LocalInvocationID.x);\n"
+          << "        j = (tile / P.tile_columns) * P.tile_size + row;\n    }\n"
+          << "    if (!(" << guard(s.extent) << ")) return;\n    int at = IDX(i, j);\n";
+    }
+    o << "    bool look = false;\n    if (ACTIVE_TILES != 0u) look = activity[tile] != uint(S.step);\n"
+      << marking(s, "") << "}\n";
+    return o.str();
 }
 
 std::string cpp(const Stage& s, const std::string& isa, unsigned tested) {
@@ -243,6 +322,33 @@ struct CudaGroup {
 };
 const CudaGroup cuda_groups[] = {{64, 4}, {256, 1}, {0, 0}};
 
+// As C++ and GLSL have them, but members of `stage` stand behind a dot.
+std::string cuda_active(const Stage& s) {
+    std::ostringstream o;
+    o << "struct Active { const uint* list; const uint* count; uint* activity; };\n"
+      << "template <unsigned EFFECTS> __global__ void __launch_bounds__(256)\n"
+      << "run_active(const WorldParams P, const StepInput* __restrict__ input, const Slots b, const Active tiles) {\n"
+      << "    const StepInput& S = *input;\n    const " << s.struct_name << "<EFFECTS> stage{P, S";
+    for (const auto& b : s.bindings)
+        o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << b.type << "*>(b.at[" << b.slot << "])";
+    const std::string look = "    const bool look = activity[tile] != uint(S.step);\n";
+    o << "};\n    volatile uint* const activity = tiles.activity;\n";
+    if (s.extent == "RIM") {
+        o << "    const int i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);\n    const int j = 0;\n    if (!("
+          << guard(s.extent) << ")) return;\n"
+          << rim_place(s) << look << marking(s, "stage.") << "}\n";
+        return o.str();
+    }
+    o << "    const uint count = *tiles.count;\n"
+      << "    for (uint n = blockIdx.x; n < count; n += gridDim.x) {\n    const int tile = static_cast<int>(tiles.list[n]);\n"
+      << "    const int i = (tile % P.tile_columns) * P.tile_size + static_cast<int>(threadIdx.x);\n"
+      << "    for (int row = static_cast<int>(threadIdx.y); row < P.tile_size; row += static_cast<int>(blockDim.y)) {\n"
+      << "    const int j = (tile / P.tile_columns) * P.tile_size + row;\n    if (!(" << guard(s.extent)
+      << ")) continue;\n    const int at = IDX(i, j);\n"
+      << look << marking(s, "stage.") << "    }\n    }\n}\n";
+    return o.str();
+}
+
 // A namespace per stage: kernels of two files that had one name would be one function to the linker.
 std::string cuda(const Stage& s, unsigned tested) {
     const std::string space = "wadi_stage_cuda_" + s.name;
@@ -264,11 +370,22 @@ std::string cuda(const Stage& s, unsigned tested) {
         if (g.x > 0) o << "    if (x == " << g.x << " && y == " << g.y << ")\n    ";
         o << "    return reinterpret_cast<const void*>(&run<E, " << g.x << ", " << g.y << ">);\n";
     }
-    o << "}\n} // namespace " << space << "\nextern \"C\" const void* wadi_cuda_" << s.name
+    o << "}\n";
+    if (marks(s)) o << cuda_active(s);
+    o << "} // namespace " << space << "\nextern \"C\" const void* wadi_cuda_" << s.name
       << "(unsigned effects, int x, int y) {\n    switch (effects) {\n";
     for (const unsigned mask : masks(tested))
         o << "    case " << mask << "u: return " << space << "::select<" << mask << "u>(x, y);\n";
-    o << "    default: return nullptr;\n    }\n}\n";
+    o << "    default: return nullptr;\n    }\n}\nextern \"C\" const void* wadi_cuda_active_" << s.name
+      << "([[maybe_unused]] unsigned effects) {\n";
+    if (marks(s)) {
+        o << "    switch (effects) {\n";
+        for (const unsigned mask : masks(tested))
+            o << "    case " << mask << "u: return reinterpret_cast<const void*>(&" << space << "::run_active<" << mask
+              << "u>);\n";
+        o << "    default: break;\n    }\n";
+    }
+    o << "    return nullptr;\n}\n";
     return o.str();
 }
 
@@ -343,8 +460,9 @@ std::string table(const std::vector<Stage>& stages, const std::map<std::string, 
     for (const auto& s : stages) {
         std::string extent = s.extent;
         for (auto& c : extent) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-        o << "    {\"" << s.name << "\", Extent::" << extent << ", " << tested_bits(s, effects) << "u, bindings_" << s.name
-          << ", " << (spirv_dir != "-" ? "spirv_" + s.name : "std::span<const std::uint32_t>{}") << "},\n";
+        o << "    {\"" << s.name << "\", Extent::" << extent << ", " << s.reach << ", " << (marks(s) ? "true" : "false") << ", "
+          << tested_bits(s, effects) << "u, bindings_" << s.name << ", "
+          << (spirv_dir != "-" ? "spirv_" + s.name : "std::span<const std::uint32_t>{}") << "},\n";
     }
     o << "};\n} // namespace\nstd::span<const StageInfo> stage_table() {\n    return stages;\n}\n} // namespace wadi::compute\n";
     return o.str();
@@ -376,9 +494,14 @@ std::string cudarows(const std::vector<std::string>& stages) {
     std::ostringstream o;
     o << "// Written by stagec: which function selects a stage's kernel; in the order of the stage table.\n"
       << "#include \"backends/cuda/cuda_stages.hpp\"\nextern \"C\" {\n";
-    for (const auto& s : stages) o << "const void* wadi_cuda_" << s << "(unsigned effects, int group_x, int group_y);\n";
+    for (const auto& s : stages)
+        o << "const void* wadi_cuda_" << s << "(unsigned effects, int group_x, int group_y);\nconst void* wadi_cuda_active_" << s
+          << "(unsigned effects);\n";
     o << "}\nnamespace wadi::cuda {\nstd::span<const KernelSelect> kernels() {\n    static constexpr KernelSelect list[] = {\n";
     for (const auto& s : stages) o << "        wadi_cuda_" << s << ",\n";
+    o << "    };\n    return list;\n}\nstd::span<const ActiveKernelSelect> active_kernels() {\n    static constexpr "
+         "ActiveKernelSelect list[] = {\n";
+    for (const auto& s : stages) o << "        wadi_cuda_active_" << s << ",\n";
     o << "    };\n    return list;\n}\n} // namespace wadi::cuda\n";
     return o.str();
 }

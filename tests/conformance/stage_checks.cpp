@@ -1,4 +1,5 @@
 #include "tests/conformance/stage_checks.hpp"
+#include "tests/conformance/active_tiles_check.hpp"
 #include "tests/conformance/edits_check.hpp"
 #include "tests/conformance/stage_inputs.hpp"
 #include <algorithm>
@@ -138,6 +139,9 @@ constexpr Definition definitions[] = {
     {"mark_limits", check_marks},
     {"sample_points", check_samples},
     {"apply_edits", check_edits},
+    {"mark_active_tiles", check_active_tiles},
+    {"count_active_tiles", check_active_tiles},
+    {"list_active_tiles", check_active_tiles},
 };
 
 } // namespace

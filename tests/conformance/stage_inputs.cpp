@@ -1,4 +1,5 @@
 #include "tests/conformance/stage_inputs.hpp"
+#include "tests/conformance/active_tiles_check.hpp"
 #include "tests/conformance/compare.hpp"
 #include "tests/conformance/edits_check.hpp"
 #include "tests/conformance/fields.hpp"
@@ -166,7 +167,7 @@ std::vector<BenchBuffer> stage_buffers(const compute::StageInfo& stage, const Sc
                        true);
         } else if (binding.name == "side_ledger") {
             fill_words(buffers[b], ledger_words(4 * static_cast<std::size_t>(layout.rim())), true);
-        } else if (!fill_tiles(buffers[b], binding, layout)) {
+        } else if (!fill_active_tiles(buffers[b], binding, params) && !fill_tiles(buffers[b], binding, layout)) {
             fill_field(buffers[b], std::string(stage.name), binding, scene, pilot, params);
         }
     }

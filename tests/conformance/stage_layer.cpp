@@ -1,5 +1,6 @@
 #include "tests/conformance/stage_layer.hpp"
 #include "engine/world_params.hpp"
+#include "tests/conformance/active_tiles_check.hpp"
 #include "tests/conformance/compare.hpp"
 #include "tests/conformance/edits_check.hpp"
 #include "tests/conformance/fields.hpp"
@@ -129,8 +130,9 @@ Verdict run_stage_case(const CaseSpec& spec, compute::Device& device, const Tamp
     auto scene = make_scene(spec.get("grid", "33x17"), spec.get("scene", "random"), spec.get("method", "default"), *mask);
     if (!scene) return verdict_of(scene.status());
     const auto& info = compute::stage_table()[static_cast<std::size_t>(stage)];
-    const WorldParams params = derive_params(scene->settings);
     Pilot pilot = make_pilot(*scene, spec.name);
+    if (lists_active_tiles(spec.name)) add_active_tiles(*scene, pilot.input);
+    const WorldParams params = derive_params(scene->settings);
     if (spec.name == "apply_edits") add_edits(*scene, pilot.input);
     auto buffers = stage_buffers(info, *scene, pilot, params);
     if (auto status = run_bench(device, stage, *mask, params, pilot.input, {}, buffers); !status) return verdict_of(status);

@@ -85,6 +85,23 @@ std::string check_driver(const Case& c, Session& session, const Base& base, Rand
     return same(run, got, run.world->steps() == wanted ? base.hash_before : base.hash);
 }
 
+// Tiles that are left out while nothing changes in them, with the same edits.
+std::string check_tiles(const Case& c, Session& session, const Base& base, Random& random, Weaken weaken) {
+    Case tiled = c;
+    tiled.scene.settings.active_tiles = random.chance(0.7) ? 8 : random.chance(0.5) ? 16 : 32;
+    Run run = open(tiled, session);
+    if (run.world != nullptr && !run.world->device().capabilities().exact_float) return {};
+    if (run.good() && weaken == Weaken::rings) run.note("rings", run.world->stepper().set_tile_rings(0));
+    queue(run, tiled);
+    step(run, c.steps);
+    const std::string wrong = same(run, hash(run), base.hash);
+    const std::string tiles = "tiles of " + std::to_string(tiled.scene.settings.active_tiles) + " cells: ";
+    if (!wrong.empty()) return tiles + wrong;
+    // Once more with a host that writes regions and changes the material between steps.
+    const std::string called = random.chance(0.5) ? check_calls(c, tiled, session) : "";
+    return called.empty() ? called : tiles + called;
+}
+
 // Not where steps may turn F inside out (no gradient clamp): the angle of an inverted F that stays on its axes is +pi, and its
 // image's as well, though it should be -pi.
 std::string check_image(const Case& c, Session& session, Base& base, Image image) {
@@ -145,7 +162,7 @@ std::string check_reference(const Case& c, Session& session) {
 
 const std::vector<std::string>& check_names() {
     static const std::vector<std::string> names = {"books", "bits", "image", "reference", "driver",
-                                                   "save",  "log",  "calls", "shift"};
+                                                   "save",  "log",  "calls", "shift",     "tiles"};
     return names;
 }
 
@@ -213,6 +230,7 @@ Outcome run_case(const Case& c, Devices& devices, Weaken weaken, const std::stri
         if (!compared) ++outcome.count["rim reached"];
         return failure;
     });
+    made("tiles", 0.5, [&] { return check_tiles(weakened, *devices.others.back(), base, random, weaken); });
     return outcome;
 }
 

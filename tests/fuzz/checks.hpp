@@ -21,7 +21,7 @@ Result<Devices> open_devices(const std::vector<std::string>& backends);
 const std::vector<std::string>& check_names();
 
 /// What is made wrong on purpose, to see it found.
-enum class Weaken { nothing, limiter, bits };
+enum class Weaken { nothing, limiter, bits, rings };
 
 struct Outcome {
     std::string refused;              // why the world could not be made; not a failure

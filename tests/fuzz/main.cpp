@@ -167,9 +167,12 @@ int main(int argc, char** argv) {
     app.add_option("--failures", options.most_failures, "stops after so many")->check(CLI::Range(1, 1000));
     app.add_option("--shrink-seconds", options.shrink_seconds, "time for making a failure small")->check(CLI::Range(0.0, 1e4));
     app.add_option("--weaken", weaken, "breaks something on purpose, which must then be found")
-        ->check(CLI::IsMember({"nothing", "limiter", "bits"}));
+        ->check(CLI::IsMember({"nothing", "limiter", "bits", "rings"}));
     CLI11_PARSE(app, argc, argv);
-    options.weaken = weaken == "limiter" ? Weaken::limiter : weaken == "bits" ? Weaken::bits : Weaken::nothing;
+    options.weaken = weaken == "limiter" ? Weaken::limiter
+                     : weaken == "bits"  ? Weaken::bits
+                     : weaken == "rings" ? Weaken::rings
+                                         : Weaken::nothing;
     if (options.backends.empty()) options.backends = all_backends();
     if (options.jobs == 0) options.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
     if (!options.level.empty()) return replay(options);

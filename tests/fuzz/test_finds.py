@@ -31,6 +31,9 @@ def main():
         with tempfile.TemporaryDirectory() as folder:
             code, text = run(program, "--scenes", "30", "--weaken", "bits", "--check", check, "--out", folder, "--failures", "1", *common)
             assert code == 1 and f"{check}: " in text, f"other bits are not found by {check}:\n{text}"
+    with tempfile.TemporaryDirectory() as folder:
+        code, text = run(program, "--scenes", "30", "--weaken", "rings", "--check", "tiles", "--out", folder, "--failures", "1", *common)
+        assert code == 1 and "tiles of " in text, f"active tiles that wake no neighbour are not found:\n{text}"
     code, text = run(program, "--scenes", "3", *common)
     assert code == 0 and "0 failures" in text, text
     print("the fuzzer finds a missing limiter and other bits, and makes them small")

@@ -128,6 +128,11 @@ struct Settings {
     TimeSeries evaporation;                             // [m/s]
     std::vector<ScriptedEdit> edits;                    // at most 1000; the world queues them itself
     std::vector<std::pair<std::string, Force>> effects; // names of engine/effects.cpp
+    /// Side of the active tiles [cells]: 8, 16, 32 or 64, 0 = off. Tiles in which nothing changes any more are left out of a step.
+    /// How a world is run, not what it is: every bit stays, also in snapshots and between worlds that have it and that do not.
+    int active_tiles = 0;
+    /// Share of active tiles above which the log is told, once per crossing, 0 ... 1; 1 = never.
+    double active_tiles_most = 1;
 };
 
 /// Initial fields in row-major nx * ny order, row 0 in the south; empty = zero everywhere.

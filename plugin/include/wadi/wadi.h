@@ -100,6 +100,8 @@ typedef struct wadi_level_overrides {
     const char* accuracy;      /* "draft", "balanced" or "accurate": half, all or twice the level's cells along x and y (nx, ny win) and
                                   two sand steps per water step, "accurate" also second order for water; NULL = what the level says.
                                   samples/report has errors and costs */
+    int32_t active_tiles;      /* side of the active tiles in cells: 8, 16, 32 or 64; -1 = off. Tiles in which nothing changes any more
+                                  are left out of a step; every bit stays, also in snapshots */
 } wadi_level_overrides;
 WADI_API wadi_level_overrides wadi_default_level_overrides(void);
 
@@ -219,6 +221,7 @@ typedef struct wadi_world_stats {
     uint64_t clamped_faces;       /* faces at the velocity clamp */
     uint64_t capped_faces;        /* faces whose gravity the next step caps */
     uint64_t limited_cells;       /* cells whose outflow the next step limits */
+    uint64_t tiles, active_tiles; /* of the world, and of those the ones that the newest step ran over; 0 without active tiles */
     uint64_t hash;                /* 64-bit state hash, ghosts excluded */
 } wadi_world_stats;
 WADI_API wadi_world_stats wadi_default_world_stats(void);

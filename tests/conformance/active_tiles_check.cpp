@@ -1,0 +1,122 @@
+#include "tests/conformance/active_tiles_check.hpp"
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+namespace wadi::conformance {
+
+namespace {
+
+constexpr int step = 100;
+
+// Stamps of the step before the last but one, which is too old, among some that are just young enough.
+std::uint32_t stamp(std::size_t tile) { return tile % 13 == 5 ? step - 2 : tile % 7 == 3 ? step - 3 : 4; }
+std::uint32_t flag(std::size_t tile) { return tile * 5 % 3 == 0 ? 1 : 0; }
+
+struct Grid {
+    std::size_t columns, rows;
+    explicit Grid(const WorldParams& p)
+        : columns(static_cast<std::size_t>(p.tile_columns)), rows(static_cast<std::size_t>(p.tile_rows)) {}
+    std::uint32_t flags_of(std::size_t row) const {
+        std::uint32_t count = 0;
+        for (std::size_t column = 0; column < columns; ++column) count += flag(row * columns + column);
+        return count;
+    }
+};
+
+// Tile (i, j) within `rings` of a woken rectangle.
+bool woken(const StepInput& input, int i, int j, int rings) {
+    for (int n = 0; n < input.wake_count; ++n) {
+        const vec4& w = input.wake[n];
+        const auto near = [&](int at, float low, float high) {
+            return at + rings >= static_cast<int>(low) && at - rings <= static_cast<int>(high);
+        };
+        if (near(i, w.x, w.z) && near(j, w.y, w.w)) return true;
+    }
+    return false;
+}
+
+Verdict wrong(const char* what, std::size_t at) {
+    return failed(std::string(what) + "[" + std::to_string(at) + "] is not what it should be");
+}
+
+Verdict check_mark(const StageRun& run) {
+    const auto& p = run.params;
+    for (int j = 0; j < p.tile_rows; ++j) {
+        for (int i = 0; i < p.tile_columns; ++i) {
+            bool wanted = woken(run.pilot.input, i, j, p.tile_rings);
+            for (int b = 0; b < p.tile_rows; ++b)
+                for (int a = 0; a < p.tile_columns; ++a)
+                    wanted |= std::max(std::abs(a - i), std::abs(b - j)) <= p.tile_rings &&
+                              stamp(static_cast<std::size_t>(b * p.tile_columns + a)) + 2 >= step;
+            const auto at = static_cast<std::size_t>(j * p.tile_columns + i);
+            if (run.buffer("active_tiles").words()[at] != (wanted ? 1U : 0U)) return wrong("active_tiles", at);
+        }
+    }
+    return {};
+}
+
+Verdict check_count(const StageRun& run) {
+    const Grid grid(run.params);
+    for (std::size_t at = 0; at < grid.columns * grid.rows; ++at) {
+        const bool woke = woken(run.pilot.input, static_cast<int>(at % grid.columns), static_cast<int>(at / grid.columns), 0);
+        if (run.buffer("activity").words()[at] != (woke ? step : stamp(at))) return wrong("activity", at);
+    }
+    for (std::size_t row = 0; row < grid.rows; ++row)
+        if (run.buffer("active_counts").words()[row] != grid.flags_of(row)) return wrong("active_counts", row);
+    return {};
+}
+
+Verdict check_list(const StageRun& run) {
+    const Grid grid(run.params);
+    std::uint32_t count = 0;
+    const auto list = run.buffer("active_list").words(), dispatch = run.buffer("active_dispatch").words();
+    for (std::size_t tile = 0; tile < grid.columns * grid.rows; ++tile)
+        if (flag(tile) != 0 && list[count++] != tile) return wrong("active_list", count - 1);
+    const std::array<std::uint32_t, 3> groups = {count, 1, 1}; // 8 x 8 threads are one group
+    for (std::size_t n = 0; n < groups.size(); ++n)
+        if (dispatch[n] != groups[n]) return wrong("active_dispatch", n);
+    return {};
+}
+
+} // namespace
+
+bool lists_active_tiles(const std::string& stage) {
+    return stage == "mark_active_tiles" || stage == "count_active_tiles" || stage == "list_active_tiles";
+}
+
+void add_active_tiles(Scene& scene, StepInput& input) {
+    scene.settings.active_tiles = 8;
+    input.step = step;
+    const int columns = FieldLayout::active_tiles(scene.settings.grid.nx, 8),
+              rows = FieldLayout::active_tiles(scene.settings.grid.ny, 8);
+    const auto f = [](int n) { return static_cast<float>(n); };
+    input.wake[input.wake_count++] = {f(columns / 2), f(rows / 2), f(columns / 2), f(rows - 1)};
+    input.wake[input.wake_count++] = {f(0), f(0), f(columns / 3), f(0)};
+}
+
+bool fill_active_tiles(BenchBuffer& buffer, const compute::StageBinding& binding, const WorldParams& params) {
+    if (!binding.name.starts_with("activ")) return false;
+    const Grid grid(params);
+    const std::size_t words = binding.name == "active_counts"     ? grid.rows
+                              : binding.name == "active_dispatch" ? 4
+                                                                  : grid.columns * grid.rows;
+    buffer.before.assign(words, std::bit_cast<std::uint32_t>(std::numeric_limits<float>::quiet_NaN()));
+    buffer.may_change.assign(words, binding.access != compute::Access::in);
+    buffer.must_change.assign(words, binding.access == compute::Access::out);
+    for (std::size_t at = 0; at < words; ++at) {
+        if (binding.name == "activity") buffer.before[at] = stamp(at);
+        if (binding.access != compute::Access::in) continue;
+        if (binding.name == "active_tiles") buffer.before[at] = flag(at);
+        if (binding.name == "active_counts") buffer.before[at] = grid.flags_of(at);
+    }
+    return true;
+}
+
+Verdict check_active_tiles(const StageRun& run) {
+    return run.stage.name == "mark_active_tiles"    ? check_mark(run)
+           : run.stage.name == "count_active_tiles" ? check_count(run)
+                                                    : check_list(run);
+}
+
+} // namespace wadi::conformance

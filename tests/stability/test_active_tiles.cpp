@@ -1,0 +1,331 @@
+// Active tiles leave tiles out of a step in which nothing changes any more. Every bit must be that of the dense run: step by
+// step, with all that can wake a tile, and after a long rest.
+#include "engine/material_keys.hpp"
+#include "engine/method_presets.hpp"
+#include "tests/support/worlds.hpp"
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <doctest/doctest.h>
+
+using namespace wadi;
+using namespace wadi::test;
+
+namespace {
+
+/// Tiles that ran in the last step, as their share of all.
+double awake(World& world) {
+    const auto stats = world.stats();
+    REQUIRE(stats);
+    REQUIRE(stats->tiles > 0);
+    return static_cast<double>(stats->active_tiles) / static_cast<double>(stats->tiles);
+}
+
+/// The scene with and without active tiles, side by side.
+struct Twins {
+    Twins(Scene scene, int size, const Target& target = {}) {
+        scene.settings.active_tiles = 0;
+        dense = make_world(scene);
+        scene.settings.active_tiles = size;
+        sparse = make_world(scene, target);
+    }
+    bool equal() {
+        for (const auto& [name, values] : state_of(*dense)) {
+            const auto other = sparse->read_raw(name);
+            REQUIRE(other);
+            if (std::memcmp(values.data(), other->data(), values.size() * 4) != 0) {
+                MESSAGE(name << " differs after step " << dense->steps());
+                return false;
+            }
+        }
+        return hash_of(*dense) == hash_of(*sparse);
+    }
+    void step(int count) {
+        test::step(*dense, count);
+        test::step(*sparse, count);
+    }
+    /// Steps after which the two differ for the first time, or -1.
+    int differ(int steps, int every = 1) {
+        for (int done = 0; done < steps; done += every) {
+            step(every);
+            if (!equal()) return done + every;
+        }
+        return -1;
+    }
+    void edit(Edit edit) {
+        REQUIRE(dense->edit(std::span(&edit, 1)));
+        REQUIRE(sparse->edit(std::span(&edit, 1)));
+    }
+    std::unique_ptr<World> dense, sparse;
+};
+
+/// A pond and a dry pile far apart in a large dry basin: most of it never moves.
+Scene pond_and_pile(int nx = 160, int ny = 128) {
+    auto scene = flat_scene(nx, ny, 0.2, 0.015);
+    auto& material = scene.settings.material;
+    material.young_modulus = 5e5;
+    material.exchange_rate = 3e4;
+    scene.fill(scene.fields.water, [](double x, double y) { return std::hypot(x - 4, y - 5) < 1.5 ? 0.8 : 0.0; });
+    scene.fill(scene.fields.sand, [](double x, double y) { return std::max(0.0, 1 - std::hypot(x - 25, y - 18) / 2); });
+    scene.fill(scene.fields.terrain, [](double x, double y) { return std::max(0.0, 0.5 * std::hypot(x - 4, y - 5) - 1.2); });
+    for (auto& h : scene.fields.terrain) h = std::min(h, 1.5F);
+    return scene;
+}
+
+Edit pour(EditLayer layer, double x, double y, double amount) {
+    Edit edit;
+    edit.layer = layer;
+    edit.x0 = x;
+    edit.y0 = y;
+    edit.radius = 0.7;
+    edit.amount = amount;
+    return edit;
+}
+
+const char* const levels[] = {"beach", "canyon", "castle", "dam_break", "flush", "letters", "piles", "seepage", "spring", "wadi"};
+
+} // namespace
+
+TEST_CASE("active tiles: every level gives the bits of the dense run, step by step") {
+    for (const char* name : levels) {
+        CAPTURE(name);
+        Twins twins(shipped_level(name, 96, 80), 8);
+        CHECK(twins.differ(40) == -1);
+        CHECK(twins.differ(80, 20) == -1);
+    }
+}
+
+TEST_CASE("active tiles: every size, several T, and one thread as well as three") {
+    for (const int size : {8, 16, 32, 64}) {
+        for (const int substeps : {1, 2, 5}) {
+            CAPTURE(size);
+            CAPTURE(substeps);
+            auto scene = pond_and_pile();
+            scene.settings.method.substeps = substeps;
+            Target target;
+            target.options.threads = size == 16 ? 1 : 3;
+            Twins twins(scene, size, target);
+            CHECK(twins.differ(60, 3) == -1);
+            if (size == 8) CHECK(awake(*twins.sparse) < 0.9);
+        }
+    }
+}
+
+TEST_CASE("active tiles: every backend, with barriers everywhere and recorded anew as well") {
+    for (const auto& backend : available_backends()) {
+        for (const int variant : {0, 1, 2}) {
+            CAPTURE(backend);
+            CAPTURE(variant);
+            Target target{backend};
+            target.options.full_barriers = variant == 1;
+            target.options.no_replay = variant == 2;
+            Twins twins(pond_and_pile(), variant == 0 ? 8 : 32, target);
+            if (!twins.sparse->device().capabilities().exact_float) continue;
+            CHECK(twins.differ(30, 3) == -1);
+            twins.edit(pour(EditLayer::water, 20, 8, 0.4));
+            for (int part = 0; part < twins.sparse->stepper().parts(); ++part) REQUIRE(twins.sparse->stepper().step_part());
+            test::step(*twins.dense, 1);
+            CHECK(twins.differ(20, 4) == -1);
+            CHECK(twins.sparse->device().counters().validation_messages == 0);
+            if (variant == 0) CHECK(awake(*twins.sparse) < 0.9);
+        }
+    }
+}
+
+TEST_CASE("active tiles: too few rings around what changes are found out") {
+    auto scene = pond_and_pile();
+    Twins twins(scene, 8);
+    CHECK(twins.differ(60) == -1);
+    Twins weak(scene, 8);
+    REQUIRE(weak.sparse->stepper().set_tile_rings(0));
+    CHECK(weak.differ(60) > 0);
+}
+
+TEST_CASE("active tiles: a step carries a change no further than the plan's reach") {
+    int widest = 0;
+    for (const char* method : {"robust", "published", "second order"}) {
+        for (const int substeps : {1, 4}) {
+            auto scene = mixed_scene(192, 160);
+            if (std::string(method) == "published") choose_method(scene.settings.method, method);
+            if (std::string(method) == "second order") scene.settings.method.water_transport_order = 2;
+            scene.settings.method.substeps = substeps;
+            scene.settings.material.bed_shear = 0.01;
+            constexpr int at_x = 85, at_y = 78;
+            auto one = make_world(scene), other = make_world(scene);
+            for (World* world : {one.get(), other.get()}) step(*world, 20);
+            for (const auto layer : {EditLayer::sand, EditLayer::water, EditLayer::terrain})
+                REQUIRE(other->write_region(layer, {at_x, at_y, 1, 1}, std::vector<float>{0.55F}));
+            step(*one, 1);
+            step(*other, 1);
+            int furthest = 0;
+            for (const auto& [name, values] : state_of(*one)) {
+                const auto theirs = other->read_raw(name);
+                REQUIRE(theirs);
+                const FieldLayout layout{192, 160};
+                for (int j = 0; j <= 160; ++j)
+                    for (int i = 0; i <= 192; ++i)
+                        if (std::memcmp(&values[layout.index(i, j)], &(*theirs)[layout.index(i, j)], 4) != 0)
+                            furthest = std::max({furthest, std::abs(i - at_x), std::abs(j - at_y)});
+            }
+            CAPTURE(method);
+            CAPTURE(substeps);
+            MESSAGE("reach " << one->plan().reach << ", changed " << furthest << " cells away");
+            CHECK(furthest <= one->plan().reach);
+            widest = std::max(widest, furthest);
+        }
+    }
+    CHECK(widest > 6); // seen, not only bounded
+}
+
+TEST_CASE("active tiles: a world at rest sleeps for long, wakes where it is edited, and keeps every bit") {
+    Twins twins(pond_and_pile(), 8);
+    twins.step(3000);
+    CHECK(twins.equal());
+    const double resting = awake(*twins.sparse);
+    MESSAGE("awake after 3000 steps: " << resting);
+    CHECK(resting < 0.3);
+    twins.edit(pour(EditLayer::water, 20, 8, 0.4));
+    CHECK(twins.differ(40) == -1);
+    CHECK(awake(*twins.sparse) > resting);
+    twins.edit(pour(EditLayer::sand, 12, 20, 0.5));
+    CHECK(twins.differ(40) == -1);
+    twins.edit(pour(EditLayer::terrain, 26, 18, -0.3)); // takes the ground from under the pile
+    CHECK(twins.differ(120, 4) == -1);
+    twins.step(2000);
+    CHECK(twins.equal());
+}
+
+TEST_CASE("active tiles: dry ground sleeps from the third step on, and an edit promotes it awake") {
+    auto scene = flat_scene(300, 200, 0.2, 0.015);
+    scene.settings.effects = {{"water", Force::on}};
+    Twins twins(scene, 8);
+    twins.step(1);
+    CHECK(awake(*twins.sparse) == 1);
+    twins.step(3);
+    CHECK(awake(*twins.sparse) == 0);
+    twins.step(1000);
+    twins.edit(pour(EditLayer::sand, 4, 4, 0.8));
+    twins.edit(pour(EditLayer::water, 5, 4, 0.5));
+    CHECK(twins.differ(80, 2) == -1);
+    CHECK(awake(*twins.sparse) > 0);
+    CHECK(awake(*twins.sparse) < 1);
+}
+
+TEST_CASE("active tiles: snapshots, roll-back, regions and other material wake what they change") {
+    Twins twins(pond_and_pile(), 8);
+    for (World* world : {twins.dense.get(), twins.sparse.get()}) REQUIRE(world->set_rollback(4, 50));
+    twins.step(300);
+    const auto sleeping = save(*twins.dense);
+    CHECK(sleeping == save(*twins.sparse)); // the same bytes: a snapshot does not know of tiles
+    twins.edit(pour(EditLayer::water, 24, 16, 0.5));
+    twins.step(50);
+    CHECK(twins.equal());
+    for (World* world : {twins.dense.get(), twins.sparse.get()}) REQUIRE(world->load(sleeping));
+    CHECK(twins.differ(20) == -1);
+    twins.step(200);
+    for (World* world : {twins.dense.get(), twins.sparse.get()}) REQUIRE(world->roll_back_to(world->steps() - 60));
+    CHECK(twins.differ(20) == -1);
+    const std::vector<float> heights(40, 0.6F);
+    for (World* world : {twins.dense.get(), twins.sparse.get()})
+        REQUIRE(world->write_region(EditLayer::water, {100, 60, 8, 5}, heights));
+    CHECK(twins.differ(30) == -1);
+    for (World* world : {twins.dense.get(), twins.sparse.get()}) {
+        const auto keys = material_keys();
+        const auto key = std::find_if(keys.begin(), keys.end(), [](const auto& k) { return std::string(k.name) == "friction"; });
+        REQUIRE(world->set_material(static_cast<int>(key - keys.begin()), 0.1));
+    }
+    CHECK(twins.differ(60, 2) == -1);
+}
+
+TEST_CASE("active tiles: sources, rain and sides that change with time wake their tiles in time") {
+    auto scene = pond_and_pile();
+    scene.settings.sources = {
+        {SourceShape::disc, SourceMaterial::water, {20, 6}, 0.7, {}, {{{0, 0}, {1, 0}, {1.1, 0.2}, {2, 0}}}, true, {0.3, 0.1}},
+        {SourceShape::point, SourceMaterial::sand, {28, 4}, 0, {}, {{{0, 0}, {3, 0}, {3.1, 0.4}, {4, 0}}}, false, {}}};
+    scene.settings.rain = {{{4.5, 0}, {4.6, 1e-3}, {5, 0}}};
+    auto& west = scene.settings.sides[SIDE_WEST];
+    west.kind = SideKind::level;
+    west.value = {{{0, -1}, {6, -1}, {6.5, 1.4}, {7, -1}}};
+    auto& east = scene.settings.sides[SIDE_EAST];
+    east.kind = SideKind::discharge;
+    east.value = {{{0, 0}, {7.5, 0}, {8, 2}, {8.5, 0}}};
+    scene.settings.sides[SIDE_NORTH].kind = SideKind::outflow;
+    Twins twins(scene, 8);
+    double least = 1;
+    for (int n = 0; n < 70; ++n) {
+        REQUIRE(twins.differ(10, 2) == -1);
+        least = std::min(least, awake(*twins.sparse));
+    }
+    CHECK(least < 0.5);
+}
+
+TEST_CASE("active tiles: a world asleep submits nothing until something wakes it, on every backend") {
+    for (const auto& backend : available_backends()) {
+        CAPTURE(backend);
+        auto scene = flat_scene(60, 50, 0.2, 0.015);
+        scene.settings.sources = {
+            {SourceShape::disc, SourceMaterial::water, {6, 5}, 1, {}, {{{0, 0}, {1.2, 0}, {1.21, 0.5}, {1.3, 0}}}, false, {}}};
+        Twins twins(scene, 8, {backend});
+        if (!twins.sparse->device().capabilities().exact_float) continue;
+        const auto submits = [&](int steps, bool parts = false) {
+            const auto before = twins.sparse->device().counters().submits;
+            for (int n = 0; n < steps; ++n) {
+                if (parts) {
+                    for (int part = 0; part < twins.sparse->stepper().parts(); ++part)
+                        REQUIRE(twins.sparse->stepper().step_part());
+                } else {
+                    test::step(*twins.sparse, 1);
+                }
+                // As a host's frame does between two updates.
+                REQUIRE(twins.sparse->device().wait({twins.sparse->device().counters().submits}));
+                test::step(*twins.dense, 1);
+            }
+            return twins.sparse->device().counters().submits - before;
+        };
+        CHECK(submits(4) == 4);
+        CHECK(submits(60) == 0);
+        CHECK(submits(7, true) == 0);
+        CHECK(submits(20) > 5); // the source begins at step 80
+        CHECK(twins.equal());
+        twins.step(10);
+        CHECK(twins.equal());
+    }
+}
+
+TEST_CASE("active tiles: more of them than settings.active_tiles_most are told to the log, once") {
+    auto scene = pond_and_pile();
+    scene.settings.active_tiles_most = 0.9;
+    scene.settings.active_tiles = 8;
+    auto world = make_world(scene);
+    std::vector<std::string> told;
+    world->set_log([&](int level, const std::string& text) {
+        if (level == 1) told.push_back(text);
+    });
+    const auto run = [&](int steps) {
+        for (int n = 0; n < steps; ++n) {
+            step(*world, 1);
+            CHECK(hash_of(*world) != 0); // waits
+        }
+    };
+    run(6);
+    REQUIRE(told.size() == 1);
+    CHECK(told[0].find("357 of 357 tiles are active, more than active_tiles_most") != std::string::npos);
+    run(20); // few are active by then
+    CHECK(told.size() == 1);
+    const std::vector<float> heights(1, 0.1F);
+    REQUIRE(world->write_region(EditLayer::terrain, {3, 3, 1, 1}, heights)); // wakes all
+    run(4);
+    CHECK(told.size() == 2);
+}
+
+TEST_CASE("active tiles: steps in parts and profiled steps are the same steps") {
+    Twins twins(pond_and_pile(), 8);
+    REQUIRE(twins.sparse->set_profiling(true));
+    twins.step(30);
+    REQUIRE(twins.sparse->set_profiling(false));
+    for (int n = 0; n < 30; ++n) {
+        for (int part = 0; part < twins.sparse->stepper().parts(); ++part) REQUIRE(twins.sparse->stepper().step_part());
+        test::step(*twins.dense, 1);
+        REQUIRE(twins.equal());
+    }
+}
