@@ -83,7 +83,7 @@ TEST_CASE("reference: relative speed of a drag pair decays by the discrete facto
     }
 }
 
-TEST_CASE("reference: Dupuit's dam, the same flow for every number of substeps") {
+TEST_CASE("reference: Dupuit's dam, the same flow for every number of substeps" * doctest::test_suite("long")) {
     const int n = 41;
     const double dx = 0.25, h1 = 1, h2 = 0.5, L = (n - 1) * dx;
     for (const double diffusion : {0.0, 0.02}) {

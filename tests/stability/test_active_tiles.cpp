@@ -177,7 +177,8 @@ TEST_CASE("active tiles: a step carries a change no further than the plan's reac
     CHECK(widest > 6); // seen, not only bounded
 }
 
-TEST_CASE("active tiles: a world at rest sleeps for long, wakes where it is edited, and keeps every bit") {
+TEST_CASE("active tiles: a world at rest sleeps for long, wakes where it is edited, and keeps every bit" *
+          doctest::test_suite("long")) {
     Twins twins(pond_and_pile(), 8);
     twins.step(3000);
     CHECK(twins.equal());
