@@ -72,15 +72,7 @@ Scene pond_and_pile(int nx = 160, int ny = 128) {
     return scene;
 }
 
-Edit pour(EditLayer layer, double x, double y, double amount) {
-    Edit edit;
-    edit.layer = layer;
-    edit.x0 = x;
-    edit.y0 = y;
-    edit.radius = 0.7;
-    edit.amount = amount;
-    return edit;
-}
+Edit pour(EditLayer layer, double x, double y, double amount) { return brush(layer, x, y, 0.7, amount, 0); }
 
 const char* const levels[] = {"beach", "canyon", "castle", "dam_break", "flush", "letters", "piles", "seepage", "spring", "wadi"};
 

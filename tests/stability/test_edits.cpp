@@ -9,17 +9,6 @@ using namespace wadi::test;
 
 namespace {
 
-Edit brush(EditLayer layer, double x, double y, double radius, double amount, double softness = 0.5) {
-    Edit edit;
-    edit.layer = layer;
-    edit.x0 = x;
-    edit.y0 = y;
-    edit.radius = radius;
-    edit.amount = amount;
-    edit.softness = softness;
-    return edit;
-}
-
 Edit push(double x, double y, double radius, double u, double v, double strength = 1) {
     Edit edit = brush(EditLayer::terrain, x, y, radius, 0, 0.2);
     edit.kind = EditKind::push;
@@ -27,11 +16,6 @@ Edit push(double x, double y, double radius, double u, double v, double strength
     edit.velocity_x = u;
     edit.velocity_y = v;
     return edit;
-}
-
-void edit_world(World& world, const std::vector<Edit>& edits) {
-    const auto status = world.edit(edits);
-    REQUIRE_MESSAGE(status, status.message);
 }
 
 WorldStats stats_of(World& world) {

@@ -9,21 +9,7 @@ using namespace wadi::test;
 
 namespace {
 
-Edit disc(EditLayer layer, double x, double y, double radius, double amount) {
-    Edit edit;
-    edit.layer = layer;
-    edit.x0 = x;
-    edit.y0 = y;
-    edit.radius = radius;
-    edit.amount = amount;
-    edit.softness = 0.7;
-    return edit;
-}
-
-void add(World& world, const Edit& edit) {
-    const auto status = world.edit(std::span(&edit, 1));
-    REQUIRE_MESSAGE(status, status.message);
-}
+Edit disc(EditLayer layer, double x, double y, double radius, double amount) { return brush(layer, x, y, radius, amount, 0.7); }
 
 // A valley with a side that water and sand leave through.
 Scene dry_valley(bool open) {
@@ -62,15 +48,15 @@ TEST_CASE("terrain, then water, then sand: the bits of a world that had every ef
                 std::uint32_t one = 0;
                 for (int n = 0; n < 25; ++n) {
                     for (auto* world : {grown.get(), full.get()}) {
-                        if (n == 2) add(*world, disc(EditLayer::terrain, 2, 2, 1, 0.3));
-                        if (n == 5 || n == 8) add(*world, disc(first, 3, 2, 1.3, 0.6));
-                        if (n == 14) add(*world, disc(second, 3.5, 2.4, 1, 0.5));
+                        if (n == 2) edit_world(*world, {disc(EditLayer::terrain, 2, 2, 1, 0.3)});
+                        if (n == 5 || n == 8) edit_world(*world, {disc(first, 3, 2, 1.3, 0.6)});
+                        if (n == 14) edit_world(*world, {disc(second, 3.5, 2.4, 1, 0.5)});
                         if (n == 9) {
                             Edit body = disc(EditLayer::terrain, 3, 2, 1, 0);
                             body.kind = EditKind::push;
                             body.strength = 0.5;
                             body.velocity_x = 2;
-                            add(*world, body);
+                            edit_world(*world, {body});
                         }
                         step(*world, 1);
                     }
@@ -99,8 +85,8 @@ TEST_CASE("a promotion keeps what runs in parts and what is profiled going") {
     REQUIRE(parts->set_profiling(true));
     for (int n = 0; n < 6; ++n) {
         for (auto* world : {parts.get(), whole.get()}) {
-            if (n == 1) add(*world, disc(EditLayer::water, 2, 2, 1, 0.5));
-            if (n == 3) add(*world, disc(EditLayer::sand, 2, 2, 1, 0.5));
+            if (n == 1) edit_world(*world, {disc(EditLayer::water, 2, 2, 1, 0.5)});
+            if (n == 3) edit_world(*world, {disc(EditLayer::sand, 2, 2, 1, 0.5)});
         }
         do {
             REQUIRE(parts->stepper().step_part());
@@ -123,7 +109,7 @@ TEST_CASE("preparing for every material changes neither plan nor memory nor bits
         CHECK(prepared->device_bytes() == plain->device_bytes());
         CHECK(prepared->plan().effects == plain->plan().effects);
         for (auto* world : {prepared.get(), plain.get()}) {
-            add(*world, disc(*off == 'w' ? EditLayer::sand : EditLayer::water, 3, 2, 1, 0.5));
+            edit_world(*world, {disc(*off == 'w' ? EditLayer::sand : EditLayer::water, 3, 2, 1, 0.5)});
             step(*world, 3);
         }
         CHECK(hash_of(*prepared) == hash_of(*plain));
@@ -134,26 +120,26 @@ TEST_CASE("trim brings passes and memory back, and a trimmed world goes on as on
     auto scene = dry_valley(true);
     auto world = make_world(scene);
     step(*world, 1);
-    add(*world, disc(EditLayer::terrain, 2, 2, 1, 0.1)); // what edits themselves need is there from now on
+    edit_world(*world, {disc(EditLayer::terrain, 2, 2, 1, 0.1)}); // what edits themselves need is there from now on
     step(*world, 1);
     REQUIRE(world->stats()); // needs a buffer of its own
     const auto bytes = world->device_bytes();
     const auto count = passes(*world);
     const auto buffers = world->memory().size();
     for (int n = 0; n < 3; ++n) {
-        add(*world, disc(EditLayer::water, 5, 2, 1, 0.5));
-        add(*world, disc(EditLayer::sand, 3, 2, 1, 0.5));
+        edit_world(*world, {disc(EditLayer::water, 5, 2, 1, 0.5)});
+        edit_world(*world, {disc(EditLayer::sand, 3, 2, 1, 0.5)});
         step(*world, 20);
         CHECK(world->device_bytes() > bytes);
         CHECK(passes(*world) > count);
         REQUIRE(world->trim());
         CHECK(passes(*world) > count); // it still holds both
-        add(*world, disc(EditLayer::sand, 3, 2, 20, -16));
+        edit_world(*world, {disc(EditLayer::sand, 3, 2, 20, -16)});
         step(*world, 1);
         REQUIRE(world->trim());
         CHECK((world->plan().effects & EFFECT_WATER) != 0);
         CHECK((world->plan().effects & (EFFECT_SAND | EFFECT_MIXTURE)) == 0);
-        add(*world, disc(EditLayer::water, 3, 2, 20, -16));
+        edit_world(*world, {disc(EditLayer::water, 3, 2, 20, -16)});
         step(*world, 1);
         REQUIRE(world->trim());
         CHECK(passes(*world) == count);
@@ -177,7 +163,7 @@ TEST_CASE("passes and bytes follow what the world holds") {
     };
     std::vector<Holding> held = {{passes(*world), world->plan().bytes_per_cell()}};
     for (const auto layer : {EditLayer::water, EditLayer::sand}) {
-        add(*world, disc(layer, 3, 2, 1, 0.5));
+        edit_world(*world, {disc(layer, 3, 2, 1, 0.5)});
         step(*world, 1);
         held.push_back({passes(*world), world->plan().bytes_per_cell()});
     }
@@ -192,8 +178,8 @@ TEST_CASE("nothing is allocated or recorded by edits once a material is there") 
     for (const auto& backend : available_backends()) {
         auto world = make_world(dry_valley(false), {backend});
         const auto frame = [&] {
-            add(*world, disc(EditLayer::water, 3, 2, 1, 0.05));
-            add(*world, disc(EditLayer::sand, 3, 2, 1, 0.05));
+            edit_world(*world, {disc(EditLayer::water, 3, 2, 1, 0.05)});
+            edit_world(*world, {disc(EditLayer::sand, 3, 2, 1, 0.05)});
             step(*world, 1);
         };
         for (int n = 0; n < 3; ++n) frame();
@@ -210,8 +196,8 @@ TEST_CASE("nothing is allocated or recorded by edits once a material is there") 
 TEST_CASE("a snapshot of a promoted world promotes the world it is loaded into") {
     const auto scene = dry_valley(false);
     auto world = make_world(scene), fresh = make_world(scene);
-    add(*world, disc(EditLayer::water, 3, 2, 1, 0.5));
-    add(*world, disc(EditLayer::sand, 3, 2, 1, 0.5));
+    edit_world(*world, {disc(EditLayer::water, 3, 2, 1, 0.5)});
+    edit_world(*world, {disc(EditLayer::sand, 3, 2, 1, 0.5)});
     step(*world, 7);
     const auto bytes = save(*world);
     const auto hash = hash_of(*world);

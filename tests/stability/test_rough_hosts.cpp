@@ -7,22 +7,6 @@ using namespace wadi::test;
 
 namespace {
 
-Edit brush(EditLayer layer, double x, double y, double radius, double amount) {
-    Edit edit;
-    edit.layer = layer;
-    edit.x0 = x;
-    edit.y0 = y;
-    edit.radius = radius;
-    edit.amount = amount;
-    edit.softness = 0.5;
-    return edit;
-}
-
-void edit_world(World& world, const Edit& edit) {
-    const auto status = world.edit(std::span(&edit, 1));
-    REQUIRE_MESSAGE(status, status.message);
-}
-
 /// A pond on uneven ground, with a pile of sand in it.
 Scene pond() {
     auto scene = flat_scene(40, 32, 0.25, 0.02);
@@ -38,8 +22,8 @@ Scene pond() {
 TEST_CASE("sand into water and water onto sand in every step: no checkerboard; afterwards both calm down") {
     on_every_backend(pond(), [](World& world) {
         for (int n = 0; n < 60; ++n) {
-            edit_world(world, brush(EditLayer::sand, 3 + 0.02 * n, 4, 0.8, n % 2 == 0 ? 0.3 : -0.28));
-            edit_world(world, brush(EditLayer::water, 7, 4, 0.6, n % 3 == 0 ? 0.3 : -0.1));
+            edit_world(world, {brush(EditLayer::sand, 3 + 0.02 * n, 4, 0.8, n % 2 == 0 ? 0.3 : -0.28)});
+            edit_world(world, {brush(EditLayer::water, 7, 4, 0.6, n % 3 == 0 ? 0.3 : -0.1)});
             step(world, 1);
         }
         CHECK(checkerboard(cells_of(world, "sand_height")) < 1e-3);
@@ -55,7 +39,7 @@ TEST_CASE("sand into water and water onto sand in every step: no checkerboard; a
 TEST_CASE("ground raised through a lake sheds its water, and the lake calms down; no checkerboard at any time") {
     on_every_backend(pond(), [](World& world) {
         for (int n = 0; n < 60; ++n) {
-            edit_world(world, brush(EditLayer::terrain, 3, 4, 1.5, 0.03));
+            edit_world(world, {brush(EditLayer::terrain, 3, 4, 1.5, 0.03)});
             step(world, 1);
         }
         CHECK(largest(cells_of(world, "terrain")) > 1.5);
@@ -70,7 +54,7 @@ TEST_CASE("ground raised through a lake sheds its water, and the lake calms down
     bare.settings.dt = 0.3;
     bare.settings.method.gravity_cap = 0;
     auto world = make_world(bare);
-    edit_world(*world, brush(EditLayer::terrain, 3, 4, 1.5, 0.5));
+    edit_world(*world, {brush(EditLayer::terrain, 3, 4, 1.5, 0.5)});
     CHECK(worst(*world, 100, 20, water_checkerboard) > 0.02);
 }
 

@@ -106,4 +106,20 @@ void step(World& world, int count) {
     REQUIRE_MESSAGE(status, status.message);
 }
 
+Edit brush(EditLayer layer, double x, double y, double radius, double amount, double softness) {
+    Edit edit;
+    edit.layer = layer;
+    edit.x0 = x;
+    edit.y0 = y;
+    edit.radius = radius;
+    edit.amount = amount;
+    edit.softness = softness;
+    return edit;
+}
+
+void edit_world(World& world, const std::vector<Edit>& edits) {
+    const auto status = world.edit(edits);
+    REQUIRE_MESSAGE(status, status.message);
+}
+
 } // namespace wadi::test

@@ -43,4 +43,9 @@ std::uint64_t hash_of(World& world);
 void step(World& world, int count);
 std::vector<std::byte> save(World& world);
 
+/// A round brush.
+Edit brush(EditLayer layer, double x, double y, double radius, double amount, double softness = 0.5);
+/// Queues edits for their steps. Fails the running test when they are refused.
+void edit_world(World& world, const std::vector<Edit>& edits);
+
 } // namespace wadi::test
