@@ -96,6 +96,24 @@ void plan_water_transport(Builder& b) {
     b.run("integrate_water_height", {"water_height"});
 }
 
+// Height and velocities of the water.
+void plan_water_motion(Builder& b) {
+    std::vector<std::string> moved = {"water_velocity_x", "water_velocity_y"};
+    if (b.has(EFFECT_MIXTURE)) moved.insert(moved.end(), {"mixed_velocity_x", "mixed_velocity_y"});
+    std::vector<std::string> all = moved;
+    all.push_back("water_height");
+    if (b.fuse("step_water", all) || b.fuse("step_mixed_water", all)) {
+        if (b.has(EFFECT_OPEN_SIDES)) account_water(b);
+        return;
+    }
+    plan_water_transport(b);
+    if (b.has(EFFECT_SEMI_LAGRANGIAN)) {
+        plan_backtrace(b, "water", "backtrace_water_velocity");
+        if (b.has(EFFECT_MIXTURE)) plan_backtrace(b, "mixed", "backtrace_water_velocity");
+    }
+    b.run("integrate_water_velocity", moved);
+}
+
 void plan_water(Builder b) {
     if (b.has(EFFECT_SOURCES)) b.run("apply_sources");
     if (b.has(EFFECT_RAIN)) b.run("apply_rain");
@@ -105,13 +123,7 @@ void plan_water(Builder b) {
     if (traced) b.run("update_water_boundary_types");
     // In flux form the diffusive flux carries its momentum; traced velocities need a pass for it.
     if (traced && b.has(EFFECT_LAPLACE_DIFFUSION)) b.run("diffuse_mixed_velocity", {"mixed_velocity_x", "mixed_velocity_y"});
-    if (b.fuse("step_water", {"water_height", "water_velocity_x", "water_velocity_y"})) return;
-    plan_water_transport(b);
-    if (traced) plan_backtrace(b, "water", "backtrace_water_velocity");
-    if (traced && b.has(EFFECT_MIXTURE)) plan_backtrace(b, "mixed", "backtrace_water_velocity");
-    std::vector<std::string> moved = {"water_velocity_x", "water_velocity_y"};
-    if (b.has(EFFECT_MIXTURE)) moved.insert(moved.end(), {"mixed_velocity_x", "mixed_velocity_y"});
-    b.run("integrate_water_velocity", moved);
+    plan_water_motion(b);
     if (b.has(EFFECT_BED_SHEAR)) b.run("compute_bed_load");
     if (b.has(EFFECT_COHESION)) b.run("compute_saturation");
 }

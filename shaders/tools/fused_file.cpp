@@ -7,8 +7,6 @@
 namespace stagec {
 namespace {
 
-constexpr int index_margin = 4; // of the packed indices: at least the widest phase and its reach together
-
 bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
 Margins margins_of(const std::vector<std::string>& a, const std::string& path) {
@@ -88,8 +86,8 @@ void add_binding(FusedStage& fused, const std::string& field, const char* access
 }
 
 // Finds out what is read from memory, what is kept there, and where the rest lives.
-void resolve(FusedStage& fused, const Effects& effects) {
-    std::set<std::string> tested;
+// `tested`: effects that the file itself asks.
+void resolve(FusedStage& fused, const Effects& effects, std::set<std::string> tested) {
     for (std::size_t n = 0; n < fused.parts.size(); ++n) {
         const auto& part = fused.parts[n];
         for (const auto& b : part.stage.bindings) {
@@ -120,13 +118,13 @@ void resolve(FusedStage& fused, const Effects& effects) {
     for (const auto& [field, keeping] : fused.fields) {
         if (!fused.kept.count(field) && keeping == Keeping::nowhere) fail(fused.stage.path + ": nobody reads " + field);
     }
-    for (const auto& field : fused.kept) {
+    for (const auto& [field, kept] : fused.kept) {
         if (!fused.fields.count(field)) fail(fused.stage.path + ": KEEP names " + field + ", which no part writes");
         const FusedPart& part = fused.parts[last_writer(fused, field)];
         for (const auto& [name, written] : part.writes) {
             bool never = false;
             const unsigned condition = condition_of(fused, part, binding_of(part.stage, name), effects, never);
-            if (written == field && !never) add_binding(fused, field, "OUT", condition);
+            if (written == field && !never) add_binding(fused, field, "OUT", condition | (kept.condition & ~fused.needs));
         }
     }
     for (const auto& name : tested) {
@@ -151,8 +149,8 @@ struct Rewriter {
     std::string load(const std::string& binding, const std::string& at) const {
         if (absent(binding)) return "0.0f";
         const std::string& field = part.reads.at(binding);
-        if (!writes_before(fused, index, field)) return field + "[MEMORY_AT(" + at + ")]";
-        return fused.fields.at(field) == Keeping::tile ? "tile_" + field + "[TILE_AT(" + at + ")]" : "own_" + field;
+        if (!writes_before(fused, index, field)) return field + "[IN_MEMORY(" + at + ")]";
+        return fused.fields.at(field) == Keeping::tile ? "tile_" + field + "[IN_TILE(" + at + ")]" : "own_" + field;
     }
 
     std::string store(const std::string& binding, const std::string& at, const std::string& value) const {
@@ -160,10 +158,15 @@ struct Rewriter {
         const std::string& field = part.writes.at(binding);
         std::string out = "{ float stored = " + value + ";";
         const Keeping keeping = fused.fields.at(field);
-        if (keeping == Keeping::tile) out += " tile_" + field + "[TILE_AT(" + at + ")] = stored;";
+        if (keeping == Keeping::tile) out += " tile_" + field + "[IN_TILE(" + at + ")] = stored;";
         if (keeping == Keeping::own_index) out += " own_" + field + " = stored;";
-        if (fused.kept.count(field) && last_writer(fused, field) == index)
-            out += " if (owned) " + field + "[MEMORY_AT(" + at + ")] = stored;";
+        const auto kept = fused.kept.find(field);
+        if (kept != fused.kept.end() && last_writer(fused, field) == index) {
+            const Kept& k = kept->second;
+            const std::string rim = k.rim ? " && (i == 0 || j == 0 || i == P.nx || j == P.ny)" : "";
+            const std::string on = k.condition != 0 ? " && HAS(" + std::to_string(k.condition) + "u)" : "";
+            out += " if (owned" + rim + on + ") " + field + "[IN_MEMORY(" + at + ")] = stored;";
+        }
         return out + " }";
     }
 
@@ -189,6 +192,8 @@ struct Rewriter {
             } else if (word == "END_STAGE") {
             } else if (word == "KERNEL") {
                 out += "PART_FUNCTION void " + part.stage.name + "_kernel(int i, int j)";
+            } else if (word == "int" && is_place(text, at)) {
+                out += "Place";
             } else if (functions.count(word)) {
                 out += part.stage.name + "_" + word;
             } else if (!number && at < text.size() && text[at] == '[' && is_binding(word)) {
@@ -198,6 +203,15 @@ struct Rewriter {
             }
         }
         return out;
+    }
+
+    // A declaration from IDX(i, j), or a parameter of a helper: the stages' only other integers are the kernel's own i and j.
+    static bool is_place(const std::string& text, std::size_t at) {
+        std::size_t end = text.find_first_not_of(' ', at);
+        end += word_at(text, end).size();
+        if (text.compare(end, 7, " = IDX(") == 0) return true;
+        const std::size_t line = text.rfind('\n', at) + 1, brace = text.find('{', line);
+        return text.compare(line, 7, "HELPER ") == 0 && at < brace;
     }
 
     bool is_binding(const std::string& word) const { return part.reads.count(word) || part.writes.count(word); }
@@ -280,6 +294,7 @@ FusedStage parse_fused(const std::string& path, const Effects& effects) {
     const auto slash = path.find_last_of('/');
     const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash);
     const std::string text = strip_comments(read_text(path));
+    std::set<std::string> keep_conditions;
     for (std::size_t at = 0; at < text.size();) {
         if (!is_word(text[at])) {
             ++at;
@@ -313,13 +328,16 @@ FusedStage parse_fused(const std::string& path, const Effects& effects) {
             part.phase = fused.phases.size() - 1;
             fused.parts.push_back(part);
         } else if (word == "KEEP") {
-            fused.kept.insert(a.begin(), a.end());
+            for (const auto& field : a) fused.kept[field] = {};
+        } else if (word == "KEEP_RIM_IF") {
+            for (const auto& name : effects_in(a.at(0))) keep_conditions.insert(name);
+            for (std::size_t n = 1; n < a.size(); ++n) fused.kept[a[n]] = {true, effect_bits(a[0], effects, path) & ~fused.needs};
         } else {
             fail(path + ": unknown word " + word);
         }
     }
     if (fused.stage.struct_name.empty()) fail(path + ": no FUSED(Name)");
-    resolve(fused, effects);
+    resolve(fused, effects, keep_conditions);
     const std::size_t bytes = 4 * fields_kept(fused, Keeping::tile).size() * static_cast<std::size_t>(tile_floats(fused));
     if (bytes > wadi::compute::fused_shared_bytes) {
         fail(path + ": tiles of " + std::to_string(bytes) + " bytes, at most " +
@@ -356,13 +374,10 @@ std::string physics_includes(const FusedStage& fused) {
 std::string index_macros(const FusedStage& fused) {
     const Margins m = tile_margins(fused);
     std::ostringstream o;
-    // Row and column of a tile in one number: the stages' own arithmetic on rows and columns stays whole.
-    o << "#undef IDX\n#define IDX(I, J) ((((J) - tile_j0) << 16) + ((I) - tile_i0))\n"
-      << "#define MEMORY_AT(C) (((C) >> 16) * P.pitch + ((C) & 0xffff) + tile_base)\n"
-      << "#define TILE_AT(C) ((((C) >> 16) - " << index_margin - m.south << ") * " << tile_pitch(fused) << " + ((C) & 0xffff) - "
-      << index_margin - m.west << ")\n"
-      << "#define PLACE_TILE(I0, J0) tile_i0 = (I0) - " << index_margin << "; tile_j0 = (J0) - " << index_margin
-      << "; tile_base = (tile_j0 + GHOST) * P.pitch + tile_i0 + GHOST\n";
+    // Two numbers a place: compilers then see that neighbours lie at fixed distances, in memory as in the tile.
+    o << "#undef IDX\n#define IDX(I, J) PLACE(((J) + GHOST) * P.pitch + (I) + GHOST, ((J) - tile_j0) * " << tile_pitch(fused)
+      << " + (I) - tile_i0)\n#define IN_MEMORY(C) (C).x\n#define IN_TILE(C) (C).y\n"
+      << "#define PLACE_TILE tile_i0 = own_i0 - " << m.west << "; tile_j0 = own_j0 - " << m.south << "\n";
     return o.str();
 }
 
@@ -385,7 +400,7 @@ std::string phase_loops(const FusedStage& fused) {
             for (const auto& [name, field] : part.writes) {
                 const auto found = fused.fields.find(field);
                 if (found == fused.fields.end()) continue;
-                if (found->second == Keeping::tile) o << "            tile_" << field << "[TILE_AT(IDX(i, j))] = 0.0f;\n";
+                if (found->second == Keeping::tile) o << "            tile_" << field << "[IN_TILE(IDX(i, j))] = 0.0f;\n";
                 if (found->second == Keeping::own_index) o << "            own_" << field << " = 0.0f;\n";
             }
             o << "        }\n";

@@ -21,6 +21,12 @@ struct FusedPart {
 /// Where a field that the parts write lives until the pass ends.
 enum class Keeping { nowhere, own_index, tile };
 
+/// What later passes read of a field: all of it, or its outer faces alone, and under which effects.
+struct Kept {
+    bool rim = false;
+    unsigned condition = 0;
+};
+
 struct FusedStage {
     Stage stage; // name, struct name, extent, bindings and tested effects, as of a stage that is written by hand
     unsigned needs = 0, without = 0;
@@ -28,7 +34,7 @@ struct FusedStage {
     std::vector<Margins> phases;
     std::vector<FusedPart> parts;
     std::map<std::string, Keeping> fields; // fields that parts write
-    std::set<std::string> kept;            // those that later passes read
+    std::map<std::string, Kept> kept;      // those that later passes read
 };
 
 /// Threads of a group of a fused stage along i and j; a group covers columns_of() x rows cells.
@@ -49,7 +55,7 @@ std::string part_functions(const FusedStage& fused, const Effects& effects);
 std::string phase_loops(const FusedStage& fused);
 /// Include lines of the parts' physics.
 std::string physics_includes(const FusedStage& fused);
-/// Macros for indices within a tile. They need tile_i0, tile_j0 and tile_base.
+/// Macros for places in memory and in a tile. They need own_i0, own_j0, tile_i0, tile_j0 and the language's type Place and PLACE.
 std::string index_macros(const FusedStage& fused);
 
 } // namespace stagec

@@ -40,9 +40,7 @@ int main(int argc, char** argv) {
     } else if (mode == "table" && a.size() >= 5) {
         write_text(a[2], stage_table({a.begin() + 4, a.end()}, parse_effects(a[1]), a[3]));
     } else if (mode == "cpurows" && a.size() >= 4) {
-        std::vector<std::string> names;
-        for (std::size_t i = 3; i < a.size(); ++i) names.push_back(stem(a[i]));
-        write_text(a[1], cpu_rows(a[2], names));
+        write_text(a[1], cpu_rows(a[2], {a.begin() + 3, a.end()}));
     } else if (mode == "cudarows" && a.size() >= 3) {
         std::vector<std::string> names;
         for (std::size_t i = 2; i < a.size(); ++i) names.push_back(stem(a[i]));

@@ -51,19 +51,23 @@ std::string stage_table(const std::vector<std::string>& paths, const Effects& ef
     return o.str();
 }
 
-std::string cpu_rows(const std::string& isas, const std::vector<std::string>& stages) {
+std::string cpu_rows(const std::string& isas, const std::vector<std::string>& paths) {
     std::ostringstream o;
+    // Fused stages are slower here than their parts and compiled for the base set alone: they are there to be compared with.
+    const auto function = [](const std::string& isa, const std::string& path) {
+        return "wadi_cpu_" + (is_fused(path) ? std::string("base") : isa) + "_" + stem(path);
+    };
     std::vector<std::string> sets;
     std::istringstream list(isas);
     for (std::string isa; std::getline(list, isa, ',');) sets.push_back(isa);
     o << "// Written by stagec: which function runs a stage, by instruction set; in the order of the stage table.\n"
       << "#include \"backends/cpu/cpu_stages.hpp\"\nextern \"C\" {\n";
     for (const auto& isa : sets)
-        for (const auto& s : stages) o << "wadi::cpu::StageBlock wadi_cpu_" << isa << "_" << s << "(unsigned effects);\n";
+        for (const auto& path : paths) o << "wadi::cpu::StageBlock " << function(isa, path) << "(unsigned effects);\n";
     o << "}\nnamespace wadi::cpu {\nnamespace {\n";
     for (const auto& isa : sets) {
         o << "constexpr StageSelect select_" << isa << "[] = {\n";
-        for (const auto& s : stages) o << "    wadi_cpu_" << isa << "_" << s << ",\n";
+        for (const auto& path : paths) o << "    " << function(isa, path) << ",\n";
         o << "};\n";
     }
     o << "constexpr InstructionSet sets[] = {\n";

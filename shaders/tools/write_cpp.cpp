@@ -67,8 +67,8 @@ std::string write_cpp(const Stage& s, const std::string& isa, unsigned tested) {
 std::string write_cpp(const FusedStage& f, const std::string& isa, const Effects& effects) {
     const Stage& s = f.stage;
     std::ostringstream o;
-    o << file_head(s, isa) << physics_includes(f) << index_macros(f)
-      << "#define FIRST_X 0\n#define STEP_X 1\n#define FIRST_Y 0\n#define STEP_Y 1\n#define BARRIER (void)0\n"
+    o << file_head(s, isa) << physics_includes(f) << "struct Place { int x, y; };\n#define PLACE(X, Y) Place{X, Y}\n"
+      << index_macros(f) << "#define FIRST_X 0\n#define STEP_X 1\n#define FIRST_Y 0\n#define STEP_Y 1\n#define BARRIER (void)0\n"
       << "#define PART_FUNCTION inline __attribute__((always_inline))\n#define NOT_KEPT(X) (void)(X)\n"
       << "template <unsigned FREE> struct " << s.struct_name << " {\n    static constexpr unsigned EFFECTS = FREE | " << f.needs
       << "u;\n    const WorldParams& P;\n    const StepInput& S;\n";
@@ -76,9 +76,9 @@ std::string write_cpp(const FusedStage& f, const std::string& isa, const Effects
         o << "    WADI_BUFFER(" << (b.access == "IN" ? "const float" : "float") << ") " << b.name << ";\n";
     for (const auto& name : fields_kept(f, Keeping::tile)) o << "    float tile_" << name << "[" << tile_floats(f) << "] = {};\n";
     for (const auto& name : fields_kept(f, Keeping::own_index)) o << "    float own_" << name << " = 0.0f;\n";
-    o << "    int own_i0 = 0, own_j0 = 0, own_i1 = 0, own_j1 = 0, tile_i0 = 0, tile_j0 = 0, tile_base = 0;\n    bool owned = "
+    o << "    int own_i0 = 0, own_j0 = 0, own_i1 = 0, own_j1 = 0, tile_i0 = 0, tile_j0 = 0;\n    bool owned = "
          "false;\n"
-      << part_functions(f, effects) << "void tile() {\n    PLACE_TILE(own_i0, own_j0);\n"
+      << part_functions(f, effects) << "void tile() {\n    PLACE_TILE;\n"
       << phase_loops(f) << "}\n};\n"
       << block_head() << "    " << s.struct_name << "<E> stage{P, S\n"
       << buffer_members(s) << "    };\n    for (int j = j0; j < j1; j += " << f.rows

@@ -88,8 +88,9 @@ std::string write_cuda(const FusedStage& f, const Effects& effects) {
     const auto tile = fields_kept(f, Keeping::tile);
     std::ostringstream o;
     o << "// Written by stagec from " << s.name << ".fused.\nnamespace " << space << " {\n#include \"stage_cuda.h\"\n"
-      << physics_includes(f) << index_macros(f) << "#define FIRST_X static_cast<int>(threadIdx.x)\n#define STEP_X "
-      << fused_group_x << "\n#define FIRST_Y static_cast<int>(threadIdx.y)\n#define STEP_Y " << fused_group_y
+      << physics_includes(f) << "struct Place { int x, y; };\n#define PLACE(X, Y) Place{X, Y}\n"
+      << index_macros(f) << "#define FIRST_X static_cast<int>(threadIdx.x)\n#define STEP_X " << fused_group_x
+      << "\n#define FIRST_Y static_cast<int>(threadIdx.y)\n#define STEP_Y " << fused_group_y
       << "\n#define BARRIER __syncthreads()\n#define PART_FUNCTION __device__ __forceinline__\n#define NOT_KEPT(X) (void)(X)\n"
       << "struct Slots { void* at[" << s.bindings.size() << "]; };\n"
       << "template <unsigned FREE> struct " << s.struct_name << " {\n    static constexpr unsigned EFFECTS = FREE | " << f.needs
@@ -98,9 +99,9 @@ std::string write_cuda(const FusedStage& f, const Effects& effects) {
         o << "    " << (b.access == "IN" ? "const " : "") << "float* __restrict__ " << b.name << ";\n";
     for (const auto& name : tile) o << "    float* __restrict__ tile_" << name << ";\n";
     for (const auto& name : fields_kept(f, Keeping::own_index)) o << "    float own_" << name << " = 0.0f;\n";
-    o << "    int own_i0 = 0, own_j0 = 0, own_i1 = 0, own_j1 = 0, tile_i0 = 0, tile_j0 = 0, tile_base = 0;\n    bool owned = "
+    o << "    int own_i0 = 0, own_j0 = 0, own_i1 = 0, own_j1 = 0, tile_i0 = 0, tile_j0 = 0;\n    bool owned = "
          "false;\n"
-      << part_functions(f, effects) << "__device__ __forceinline__ void tile() {\n    PLACE_TILE(own_i0, own_j0);\n"
+      << part_functions(f, effects) << "__device__ __forceinline__ void tile() {\n    PLACE_TILE;\n"
       << phase_loops(f) << "}\n};\n"
       << "template <unsigned E> __global__ void __launch_bounds__(" << fused_group_x * fused_group_y << ")\n"
       << "run(const WorldParams P, const StepInput* __restrict__ input, const Slots b) {\n    __shared__ float tiles["

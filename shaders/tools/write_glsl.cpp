@@ -38,16 +38,17 @@ std::string write_glsl(const FusedStage& f, const Effects& effects) {
     std::ostringstream o;
     o << "#version 450\n#extension GL_GOOGLE_include_directive : require\n#include \"stage_glsl.h\"\n"
       << physics_includes(f) << "#undef HAS\n#define HAS(BITS) (((EFFECTS | " << f.needs << "u) & (BITS)) == (BITS))\n"
+      << "#define Place ivec2\n#define PLACE(X, Y) ivec2(X, Y)\n"
       << index_macros(f) << "#define FIRST_X int(gl_LocalInvocationID.x)\n#define STEP_X " << fused_group_x
       << "\n#define FIRST_Y int(gl_LocalInvocationID.y)\n#define STEP_Y " << fused_group_y
       << "\n#define BARRIER barrier()\n#define PART_FUNCTION\n#define NOT_KEPT(X)\n";
     for (const auto& b : s.bindings) o << b.access << "(" << b.slot << ", float, " << b.name << ")\n";
     for (const auto& name : fields_kept(f, Keeping::tile)) o << "shared float tile_" << name << "[" << tile_floats(f) << "];\n";
     for (const auto& name : fields_kept(f, Keeping::own_index)) o << "float own_" << name << ";\n";
-    o << "int tile_i0, tile_j0, tile_base;\nbool owned;\n"
+    o << "int tile_i0, tile_j0;\nbool owned;\n"
       << part_functions(f, effects) << "void main() {\n    int own_i0 = int(gl_WorkGroupID.x) * " << columns_of(f)
       << ";\n    int own_j0 = int(gl_WorkGroupID.y) * " << f.rows << ";\n    int own_i1 = own_i0 + " << columns_of(f)
-      << ";\n    int own_j1 = own_j0 + " << f.rows << ";\n    PLACE_TILE(own_i0, own_j0);\n"
+      << ";\n    int own_j1 = own_j0 + " << f.rows << ";\n    PLACE_TILE;\n"
       << phase_loops(f) << "}\n";
     return o.str();
 }

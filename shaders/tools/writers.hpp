@@ -32,7 +32,7 @@ std::string word_list(const std::string& module);
 bool is_fused(const std::string& path);
 /// The stage table that the engine reads; stages and fused stages by their paths.
 std::string stage_table(const std::vector<std::string>& paths, const Effects& effects, const std::string& spirv_dir);
-std::string cpu_rows(const std::string& isas, const std::vector<std::string>& stages);
+std::string cpu_rows(const std::string& isas, const std::vector<std::string>& paths);
 std::string cuda_rows(const std::vector<std::string>& stages);
 
 } // namespace stagec

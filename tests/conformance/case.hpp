@@ -45,10 +45,11 @@ struct Layer {
     Verdict (*run)(const CaseSpec& spec, Session& session);
 };
 
-/// Defined by contract_layer.cpp, stage_layer.cpp, step_layer.cpp and invariant_layer.cpp.
+/// Defined in files of their names.
 const Layer& contract_layer();
 const Layer& stage_layer();
 const Layer& step_layer();
 const Layer& invariant_layer();
+const Layer& fused_layer();
 
 } // namespace wadi::conformance

@@ -26,7 +26,8 @@ std::size_t met(const std::vector<CaseSpec>& cases, const char* key, std::span<c
 
 int print_coverage() {
     int missing = 0;
-    const auto all = stage_layer().list();
+    auto all = stage_layer().list();
+    for (const CaseSpec& spec : fused_layer().list()) all.push_back(spec);
     std::printf("%-30s %9s %6s %7s %8s %9s  %s\n", "stage", "masks", "cases", "grids", "scenes", "methods", "compared with");
     const auto stages = compute::stage_table();
     for (std::size_t n = 0; n < stages.size(); ++n) {
@@ -49,16 +50,18 @@ int print_coverage() {
             std::printf("MISSING: %s under %s\n", name.c_str(), effects_text(mask).c_str());
         }
         const bool reference = has_counterpart(name), definition = has_definition(name);
-        if (!reference && !definition) ++missing;
-        const char* with = reference && definition ? "reference, definition"
-                           : reference             ? "reference"
-                           : definition            ? "definition"
-                                                   : "NOTHING";
+        const bool fused = stages[n].fused();
+        if (!reference && !definition && !fused) ++missing;
+        const char* with = fused                     ? "its parts"
+                           : reference && definition ? "reference, definition"
+                           : reference               ? "reference"
+                           : definition              ? "definition"
+                                                     : "NOTHING";
         std::printf("%-30s %4zu/%-4zu %6zu %3zu/%-3zu %4zu/%-3zu %5zu/%-3zu  %s\n", name.c_str(), covered, masks.size(),
                     cases.size(), met(cases, "grid", grid_names()), grid_names().size(), met(cases, "scene", scene_names()),
                     scene_names().size(), met(cases, "method", method_names_of_cases()), method_names_of_cases().size(), with);
     }
-    for (const Layer* layer : {&contract_layer(), &stage_layer(), &step_layer(), &invariant_layer()})
+    for (const Layer* layer : {&contract_layer(), &stage_layer(), &step_layer(), &invariant_layer(), &fused_layer()})
         std::printf("%-9s %4zu cases: %s\n", layer->name, layer->list().size(), layer->meaning);
     std::printf("%d missing\n", missing);
     return missing > 0 ? 1 : 0;

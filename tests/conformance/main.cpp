@@ -22,7 +22,7 @@ struct Options {
     PerfOptions perf;
 };
 
-const Layer* const layers[] = {&contract_layer(), &stage_layer(), &step_layer(), &invariant_layer()};
+const Layer* const layers[] = {&contract_layer(), &stage_layer(), &step_layer(), &invariant_layer(), &fused_layer()};
 
 struct Job {
     const Layer* layer;
@@ -191,7 +191,7 @@ int run(int argc, char** argv) {
     app.add_option("--require", options.required, "backends whose absence is a failure")->delimiter(',');
     app.add_option("--layer", options.layers, "contract, stage, step or invariant")
         ->delimiter(',')
-        ->check(CLI::IsMember({"contract", "stage", "step", "invariant"}));
+        ->check(CLI::IsMember({"contract", "stage", "step", "invariant", "fused"}));
     app.add_option("--stage", options.stage, "only the cases of this stage");
     app.add_option("--case", options.chosen_case, "NAME, or NAME(key=value,...) as a failure prints it");
     app.add_option("--max-cells", options.max_cells, "only cases whose grid has at most so many cells")
@@ -200,7 +200,8 @@ int run(int argc, char** argv) {
     app.add_flag("--validate", options.validate, "validation layers on; any message fails its case");
     app.add_subcommand("test", "run the cases (the default)");
     CLI::App* perf = app.add_subcommand("perf", "time every stage and whole steps");
-    perf->add_option("--max-size", options.perf.max_size, "largest grid side, from 128 by doubling")
+    perf->add_option("--min-size", options.perf.min_size, "smallest grid side")->check(CLI::Range(128, 16384));
+    perf->add_option("--max-size", options.perf.max_size, "largest grid side, by doubling from the smallest")
         ->check(CLI::Range(128, 16384));
     perf->add_option("--repeats", options.perf.repeats, "runs per row")->check(CLI::Range(1, 10000));
     const CLI::App* list = app.add_subcommand("list", "print the cases and devices");

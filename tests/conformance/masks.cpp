@@ -49,7 +49,10 @@ std::vector<ByTested> find_masks() {
     }
     for (std::size_t stage = 0; stage < table.size(); ++stage) {
         if (planned[stage]) continue;
-        for (const std::uint32_t mask : legal) note(stage, mask);
+        for (const std::uint32_t mask : legal) {
+            const bool fits = (mask & table[stage].needs) == table[stage].needs && (mask & table[stage].without) == 0;
+            if (fits) note(stage, mask);
+        }
     }
     return seen;
 }

@@ -43,8 +43,8 @@ std::vector<float> initial_field(const Scene& scene, const std::string& base) {
 
 } // namespace
 
-PassRunner::PassRunner(compute::Device& device, const Scene& scene)
-    : device_(device), scene_(scene), plan_(make_step_plan(scene.effects, scene.settings.method.substeps)),
+PassRunner::PassRunner(compute::Device& device, const Scene& scene, PlanChoice choice)
+    : device_(device), scene_(scene), plan_(make_step_plan(scene.effects, scene.settings.method.substeps, choice)),
       params_(derive_params(scene.settings)) {}
 
 PassRunner::~PassRunner() {

@@ -14,7 +14,7 @@ namespace wadi::conformance {
 
 class PassRunner {
   public:
-    PassRunner(compute::Device& device, const Scene& scene);
+    PassRunner(compute::Device& device, const Scene& scene, PlanChoice choice = {});
     ~PassRunner();
     PassRunner(const PassRunner&) = delete;
     PassRunner& operator=(const PassRunner&) = delete;

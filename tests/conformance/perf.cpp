@@ -17,8 +17,7 @@ namespace {
 using compute::Device;
 using compute::ProgramBuilder;
 
-constexpr std::uint32_t ALL = 2047; // without bed load, which the paper lacks
-constexpr int least_size = 128;
+constexpr std::uint32_t ALL = 2047;                   // without bed load, which the paper lacks
 constexpr double wake_up_ms = 700, warm_up_ms = 150;  // busy ahead of the first row, and of each
 constexpr int burst = 4;                              // submissions in flight while the host is timed: below every backend's ring
 constexpr std::uint64_t least_copy_bytes = 64u << 20; // past the caches of most devices
@@ -170,21 +169,22 @@ std::vector<StepInput> inputs_of(const Scene& scene, int count) {
     return all;
 }
 
-// Each stage of a step under all effects, once per pass.
-Status measure_stages(Device& device, int size, const PerfOptions& options, std::vector<Row>& rows) {
+// Each stage of a step under all effects, once per pass; of a fused step only what the other has not.
+Status measure_stages(Device& device, int size, bool fused, const PerfOptions& options, std::vector<Row>& rows) {
     auto scene = make_large_scene(size, ALL);
     if (!scene) return scene.status();
-    PassRunner runner(device, *scene);
+    PassRunner runner(device, *scene, {.fused = fused});
     if (auto status = runner.open(); !status) return status;
     const auto inputs = inputs_of(*scene, 1);
     for (const auto* passes : {&runner.plan().water_passes, &runner.plan().substep_passes}) {
         for (const PlanPass& pass : *passes) {
-            const std::string name(compute::stage_table()[static_cast<std::size_t>(pass.stage)].name);
+            const auto& stage = compute::stage_table()[static_cast<std::size_t>(pass.stage)];
+            const std::string name(stage.name);
             ProgramBuilder builder(name);
             builder.timestamp("start");
             if (auto status = runner.append(builder, pass); !status) return status;
             builder.timestamp(name);
-            const bool wanted = options.stage.empty() || options.stage == name;
+            const bool wanted = (options.stage.empty() || options.stage == name) && stage.fused() == fused;
             auto times =
                 time_program(device, builder, runner.params(), inputs[0], wanted ? options.repeats : 1, wanted ? warm_up_ms : 0);
             if (!times) return times.status();
@@ -195,11 +195,11 @@ Status measure_stages(Device& device, int size, const PerfOptions& options, std:
 }
 
 // Whole steps; the least bytes a step can move are its state in and out once.
-Status measure_step(Device& device, int size, const char* name, std::uint32_t effects, const PerfOptions& options,
-                    std::vector<Row>& rows) {
+Status measure_step(Device& device, int size, const std::string& name, std::uint32_t effects, bool fused,
+                    const PerfOptions& options, std::vector<Row>& rows) {
     auto scene = make_large_scene(size, effects);
     if (!scene) return scene.status();
-    PassRunner runner(device, *scene);
+    PassRunner runner(device, *scene, {.fused = fused});
     if (auto status = runner.open(); !status) return status;
     Row row{.name = name, .size = size, .bytes_per_cell = runner.plan().bytes_per_cell()};
     row.world_bytes = 4.0 * static_cast<double>(runner.layout().size()) * runner.plan().field_buffers();
@@ -350,8 +350,11 @@ Status run_perf(Session& session, const PerfOptions& options, bool first) {
     auto ceiling = measure_ceiling(**device, options.max_size, options.repeats);
     if (!ceiling) return ceiling.status();
     std::vector<Row> rows;
-    for (int size = least_size; size <= options.max_size; size *= 2) {
-        if (auto status = measure_stages(**device, size, options, rows); !status) return status;
+    std::vector<bool> kinds = {false};
+    if ((*device)->capabilities().fused_stages) kinds.push_back(true);
+    for (int size = options.min_size; size <= options.max_size; size *= 2) {
+        for (const bool fused : kinds)
+            if (auto status = measure_stages(**device, size, fused, options, rows); !status) return status;
         if (!options.stage.empty()) continue;
         constexpr std::uint32_t published =
             EFFECT_SEMI_LAGRANGIAN | EFFECT_WHOLE_STRAIN | EFFECT_EXPLICIT_DRAG | EFFECT_LAPLACE_DIFFUSION;
@@ -359,8 +362,12 @@ Status run_perf(Session& session, const PerfOptions& options, bool first) {
                                                                    {"step, published", ALL | published},
                                                                    {"step, water only", EFFECT_WATER},
                                                                    {"step, dry sand", EFFECT_SAND | EFFECT_ELASTOPLASTIC}};
-        for (const auto& [name, effects] : steps)
-            if (auto status = measure_step(**device, size, name, effects, options, rows); !status) return status;
+        for (const auto& [name, effects] : steps) {
+            for (const bool fused : kinds) {
+                const std::string row = name + std::string(fused ? ", fused" : "");
+                if (auto status = measure_step(**device, size, row, effects, fused, options, rows); !status) return status;
+            }
+        }
         if (auto status = measure_host_work(**device, size, options, rows); !status) return status;
     }
     print(session, **device, options, *ceiling, rows, first);

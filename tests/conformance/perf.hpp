@@ -7,7 +7,7 @@
 namespace wadi::conformance {
 
 struct PerfOptions {
-    int max_size = 1024;
+    int min_size = 128, max_size = 1024; // doubled from one to the other
     int repeats = 20;
     std::string stage; // "" = all stages and whole steps
     bool csv = false;

@@ -73,6 +73,7 @@ std::vector<CaseSpec> list() {
     const auto grids = grid_names(), scenes = scene_names(), methods = method_names_of_cases();
     const auto stages = compute::stage_table();
     for (std::size_t stage = 0; stage < stages.size(); ++stage) {
+        if (stages[stage].fused()) continue; // fused_layer
         auto masks = stage_masks(static_cast<int>(stage));
         if (stages[stage].tested_effects == 0 && masks.front() == 0)
             masks.front() = EFFECT_WATER; // a stage that publishes any layer

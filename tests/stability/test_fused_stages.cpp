@@ -1,0 +1,94 @@
+// Fused stages run several stages in one pass over tiles. Every bit must be that of the stages one by one, on every backend, for
+// every level, in parts, after edits that change the effects, and across snapshots.
+#include "tests/support/worlds.hpp"
+#include <doctest/doctest.h>
+
+using namespace wadi;
+using namespace wadi::test;
+
+namespace {
+
+const char* const levels[] = {"beach", "canyon", "castle", "dam_break", "flush", "letters", "piles", "seepage", "spring", "wadi"};
+
+/// The scene on the plain CPU, its stages one by one.
+std::unique_ptr<World> apart(Scene scene) {
+    scene.settings.fused_stages = FusedStages::never;
+    return make_world(scene);
+}
+
+/// The scene with fused stages. Null where the device cannot run them or its floats are not exact.
+std::unique_ptr<World> fused(Scene scene, const std::string& backend) {
+    scene.settings.fused_stages = FusedStages::automatic;
+    auto world = make_world(scene, {backend});
+    const auto& device = world->device().capabilities();
+    if (!device.fused_stages || !device.exact_float) return nullptr;
+    scene.settings.fused_stages = FusedStages::always;
+    return make_world(scene, {backend});
+}
+
+} // namespace
+
+TEST_CASE("fused stages: every level gives the bits of its stages one by one") {
+    for (const char* name : levels) {
+        CAPTURE(name);
+        const auto scene = shipped_level(name, 96, 80); // several tiles along both axes, the last ones cut
+        auto expected = apart(scene);
+        step(*expected, 24);
+        for (const auto& backend : available_backends()) {
+            CAPTURE(backend);
+            auto world = fused(scene, backend);
+            if (!world) continue;
+            CHECK(world->describe_plan().find("stages fused") != std::string::npos);
+            step(*world, 24);
+            CHECK(hash_of(*world) == hash_of(*expected));
+        }
+    }
+}
+
+TEST_CASE("fused stages: the method published has none that fit and runs as it is") {
+    auto scene = mixed_scene(40, 30);
+    choose_method(scene.settings.method, "published");
+    auto expected = apart(scene), world = fused(scene, "cpu");
+    REQUIRE(world);
+    step(*expected, 10);
+    step(*world, 10);
+    CHECK(hash_of(*world) == hash_of(*expected));
+}
+
+TEST_CASE("fused stages: edits that bring sand or water, steps in parts, snapshots between the two") {
+    for (const auto& backend : available_backends()) {
+        CAPTURE(backend);
+        auto scene = flat_scene(70, 50, 0.2, 0.015);
+        scene.fill(scene.fields.water, [](double x, double) { return x < 5 ? 0.6 : 0.0; });
+        auto expected = apart(scene), world = fused(scene, backend);
+        if (!world) continue;
+        step(*expected, 7); // water alone
+        step(*world, 7);
+        CHECK(hash_of(*world) == hash_of(*expected));
+        for (auto* w : {expected.get(), world.get()}) edit_world(*w, {brush(EditLayer::sand, 6, 5, 2, 0.8)});
+        step(*expected, 9); // sand as well, and both together
+        for (int n = 0; n < 9; ++n)
+            for (int part = 0; part < world->stepper().parts() || part == 0; ++part) REQUIRE(world->stepper().step_part());
+        CHECK(world->steps() == expected->steps());
+        CHECK(hash_of(*world) == hash_of(*expected));
+        auto back = apart(scene), again = fused(scene, backend);
+        REQUIRE(back->load(save(*world)));
+        REQUIRE(again->load(save(*expected)));
+        for (auto* w : {expected.get(), world.get(), back.get(), again.get()}) step(*w, 8);
+        CHECK(hash_of(*world) == hash_of(*expected));
+        CHECK(hash_of(*back) == hash_of(*expected));
+        CHECK(hash_of(*again) == hash_of(*expected));
+        CHECK(world->device().counters().validation_messages == 0);
+    }
+}
+
+TEST_CASE("fused stages: they move less than the stages one by one, and are left out with active tiles") {
+    const auto scene = mixed_scene(40, 30);
+    auto expected = apart(scene), world = fused(scene, "cpu");
+    REQUIRE(world);
+    CHECK(world->plan().traffic_per_cell() < 0.6 * expected->plan().traffic_per_cell());
+    CHECK(world->plan().least_traffic_per_cell() == expected->plan().least_traffic_per_cell());
+    auto tiled = scene;
+    tiled.settings.active_tiles = 8;
+    CHECK(!fused(tiled, "cpu")->plan().fused);
+}
