@@ -176,6 +176,7 @@ Status measure_stages(Device& device, int size, bool fused, const PerfOptions& o
     PassRunner runner(device, *scene, {.fused = fused});
     if (auto status = runner.open(); !status) return status;
     const auto inputs = inputs_of(*scene, 1);
+    bool slept = true; // while the host made the scene
     for (const auto* passes : {&runner.plan().water_passes, &runner.plan().substep_passes}) {
         for (const PlanPass& pass : *passes) {
             const auto& stage = compute::stage_table()[static_cast<std::size_t>(pass.stage)];
@@ -185,8 +186,9 @@ Status measure_stages(Device& device, int size, bool fused, const PerfOptions& o
             if (auto status = runner.append(builder, pass); !status) return status;
             builder.timestamp(name);
             const bool wanted = (options.stage.empty() || options.stage == name) && stage.fused() == fused;
-            auto times =
-                time_program(device, builder, runner.params(), inputs[0], wanted ? options.repeats : 1, wanted ? warm_up_ms : 0);
+            const double busy = !wanted ? 0 : slept ? wake_up_ms : warm_up_ms;
+            if (wanted) slept = false;
+            auto times = time_program(device, builder, runner.params(), inputs[0], wanted ? options.repeats : 1, busy);
             if (!times) return times.status();
             if (wanted) rows.push_back({.name = name, .size = size, .bytes = runner.bytes_of(pass), .milliseconds = *times});
         }

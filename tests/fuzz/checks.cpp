@@ -102,6 +102,19 @@ std::string check_tiles(const Case& c, Session& session, const Base& base, Rando
     return called.empty() ? called : tiles + called;
 }
 
+// Fused stages, with the same edits.
+std::string check_fused(const Case& c, Session& session, const Base& base) {
+    if (!session.device()) return {};
+    Case together = c;
+    together.scene.settings.fused_stages = FusedStages::always;
+    const auto& device = (*session.device())->capabilities();
+    if (!device.fused_stages || !device.exact_float) return {};
+    Run run = open(together, session);
+    queue(run, together);
+    step(run, c.steps);
+    return same(run, hash(run), base.hash);
+}
+
 // Not where steps may turn F inside out (no gradient clamp): the angle of an inverted F that stays on its axes is +pi, and its
 // image's as well, though it should be -pi.
 std::string check_image(const Case& c, Session& session, Base& base, Image image) {
@@ -161,8 +174,8 @@ std::string check_reference(const Case& c, Session& session) {
 } // namespace
 
 const std::vector<std::string>& check_names() {
-    static const std::vector<std::string> names = {"books", "bits", "image", "reference", "driver",
-                                                   "save",  "log",  "calls", "shift",     "tiles"};
+    static const std::vector<std::string> names = {"books", "bits",  "image", "reference", "driver", "save",
+                                                   "log",   "calls", "shift", "fused",     "tiles"};
     return names;
 }
 
@@ -230,6 +243,7 @@ Outcome run_case(const Case& c, Devices& devices, Weaken weaken, const std::stri
         if (!compared) ++outcome.count["rim reached"];
         return failure;
     });
+    made("fused", 0.3, [&] { return check_fused(weakened, *devices.others.back(), base); });
     made("tiles", 0.5, [&] { return check_tiles(weakened, *devices.others.back(), base, random, weaken); });
     return outcome;
 }
