@@ -74,9 +74,10 @@ def main():
         assert error("wall@n64,dt1,T3,robust,elastoplastic=off") > 1.5 * error("wall@n64,dt1,T3,robust")
         assert float(rows["wall@n64,dt4,T3,no_quantum"]["drift"]) > 1e-9 > float(rows["wall@n64,dt1,T3,robust"]["drift"]) == 0
 
-        saved = {row["point"].removeprefix("price: "): float(row["saved"] or 0) for row in csv.DictReader((out / "prices.csv").open())}
-        assert saved["effect elastoplastic off"] > 30 and saved["published"] < -20 < 20 > abs(saved["no_elastic_cap"]), saved
-        assert 0 < saved["ledger"] < 20, saved
+        priced = {row["point"].removeprefix("price: "): row for row in csv.DictReader((out / "prices.csv").open())}
+        passes = {what: int(row["passes"] or 0) for what, row in priced.items()}  # a busy machine cannot change these
+        assert passes["effect elastoplastic off"] < passes["everything"] == passes["no_limiter"] < passes["published"], passes
+        assert float(priced["effect elastoplastic off"]["saved"]) > 15 and 0 < float(priced["ledger"]["saved"]) < 20, priced
 
         for point in ("stoker@n100,dt1,T3,robust", "stoker@n100,dt1,T3,second_order"):
             again = run(report, programs, "--point", point).stdout
@@ -91,7 +92,7 @@ def main():
         for chart in re.findall(r"\]\(([^)]+\.svg)\)", text):
             assert (out / chart).is_file(), chart
         assert json.loads(stored[0])["point"] in rows
-        assert all(f"\n| {what} |" in text for what in saved), text
+        assert all(f"\n| {what} |" in text for what in priced), text
 
     for arguments, says in ((("--point", "stoker@100"), "SCENE@nCELLS"), (("--point", "moon@n8,dt1,T1,robust"), "no scene"),
                             (("--point", "wall@n8,dt1,T1,magic"), "no choice"), (("--only", "moon"), "no scene")):
