@@ -31,14 +31,14 @@ TEST_CASE("runs, thread counts and instruction sets agree in every bit") {
         CHECK(run(scene, 60, cpu(threads)) == expected);
     }
     int sets = 0;
-    for (const char* set : {"base", "avx2", "avx512"}) {
+    for (const std::string set : {"base", "avx2", "avx512"}) {
         auto device = compute::open_device("cpu", 0, cpu(2, set).options);
         if (device) {
             CAPTURE(set);
             CHECK(run(scene, 60, cpu(2, set)) == expected);
             ++sets;
         } else {
-            CHECK(device.status().message.find(std::string("no instruction set '") + set) != std::string::npos);
+            CHECK(device.status().message.find("no instruction set '" + set) != std::string::npos);
             MESSAGE(device.status().message);
         }
     }
