@@ -40,6 +40,7 @@ std::string World::describe_plan() const {
                       effects().reasons[n].c_str());
         out << line;
     }
+    out << "stages " << (plan.fused ? "fused where the effects allow" : "one by one") << "\n";
     out << "passes: " << plan.water_passes.size() << " per water step, " << plan.substep_passes.size() << " per sand substep, "
         << plan.water_passes.size() + plan.substep_passes.size() * static_cast<std::size_t>(plan.substeps)
         << " in all\n  water step\n";
@@ -66,6 +67,12 @@ std::string World::describe_plan() const {
     out << "bytes per cell: " << plan.bytes_per_cell() << " (state " << 4 * state << ", ping-pong " << 4 * partners
         << ", scratch " << 4 * plan.scratch_blocks << "); on the device " << device_bytes() / 1024
         << " KiB with padding, ledgers and outputs\n";
+    char line[160];
+    std::snprintf(line, sizeof line,
+                  "traffic: %.0f bytes per cell and step if every pass moves each of its fields once; least is %.0f, state once "
+                  "in and out\n",
+                  plan.traffic_per_cell(), plan.least_traffic_per_cell());
+    out << line;
     return out.str();
 }
 

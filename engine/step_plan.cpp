@@ -30,10 +30,21 @@ using Names = std::map<std::string, std::string>; // a stage's binding name -> t
 
 class Builder {
   public:
-    Builder(std::uint32_t effects, std::vector<PlanPass>& passes, bool in_substep)
-        : effects_(effects), passes_(passes), in_substep_(in_substep) {}
+    Builder(std::uint32_t effects, std::vector<PlanPass>& passes, bool in_substep, bool fused)
+        : effects_(effects), passes_(passes), in_substep_(in_substep), fused_(fused) {}
 
     bool has(std::uint32_t bits) const { return (effects_ & bits) == bits; }
+
+    /// Whether the plan has fused stages and the mask allows this one.
+    bool can_fuse(const char* stage) const {
+        const auto& info = compute::stage_table()[static_cast<std::size_t>(compute::find_stage(stage))];
+        return fused_ && has(info.needs) && (effects_ & info.without) == 0;
+    }
+    bool fuse(const char* stage, std::vector<std::string> flips) {
+        if (!can_fuse(stage)) return false;
+        run(stage, std::move(flips));
+        return true;
+    }
 
     void run(const char* stage, std::vector<std::string> flips = {}, const Names& names = {}) {
         PlanPass pass;
@@ -54,7 +65,7 @@ class Builder {
   private:
     std::uint32_t effects_;
     std::vector<PlanPass>& passes_;
-    bool in_substep_;
+    bool in_substep_, fused_;
 };
 
 // Semi-Lagrangian transport of one layer's velocities, by the boundary types from before its height moved (NUMERICS 2.12).
@@ -66,6 +77,25 @@ void plan_backtrace(Builder& b, const std::string& layer, const char* backtrace)
     b.run(backtrace, {velocity + "x", velocity + "y"}, names);
 }
 
+void account_water(Builder& b) {
+    b.run("account_sides", {}, {{"flux_x", "water_flux_x"}, {"flux_y", "water_flux_y"}, {"side_ledger", "water_side_ledger"}});
+    if (!b.has(EFFECT_MIXTURE)) return;
+    b.run("account_sides", {}, {{"flux_x", "mixed_flux_x"}, {"flux_y", "mixed_flux_y"}, {"side_ledger", "water_side_ledger"}});
+}
+
+// Both layers' fluxes and the new height.
+void plan_water_transport(Builder& b) {
+    if (b.fuse("transport_mixed_water", {"water_height"})) {
+        if (b.has(EFFECT_OPEN_SIDES)) account_water(b);
+        return;
+    }
+    if (b.has(EFFECT_DIFFUSION)) b.run("diffuse_mixed_water");
+    b.run("limit_water_outflow");
+    b.run("compute_water_flux");
+    if (b.has(EFFECT_OPEN_SIDES)) account_water(b);
+    b.run("integrate_water_height", {"water_height"});
+}
+
 void plan_water(Builder b) {
     if (b.has(EFFECT_SOURCES)) b.run("apply_sources");
     if (b.has(EFFECT_RAIN)) b.run("apply_rain");
@@ -75,18 +105,8 @@ void plan_water(Builder b) {
     if (traced) b.run("update_water_boundary_types");
     // In flux form the diffusive flux carries its momentum; traced velocities need a pass for it.
     if (traced && b.has(EFFECT_LAPLACE_DIFFUSION)) b.run("diffuse_mixed_velocity", {"mixed_velocity_x", "mixed_velocity_y"});
-    if (b.has(EFFECT_DIFFUSION)) b.run("diffuse_mixed_water");
-    b.run("limit_water_outflow");
-    b.run("compute_water_flux");
-    if (b.has(EFFECT_OPEN_SIDES)) {
-        b.run("account_sides", {},
-              {{"flux_x", "water_flux_x"}, {"flux_y", "water_flux_y"}, {"side_ledger", "water_side_ledger"}});
-        if (b.has(EFFECT_MIXTURE)) {
-            b.run("account_sides", {},
-                  {{"flux_x", "mixed_flux_x"}, {"flux_y", "mixed_flux_y"}, {"side_ledger", "water_side_ledger"}});
-        }
-    }
-    b.run("integrate_water_height", {"water_height"});
+    if (b.fuse("step_water", {"water_height", "water_velocity_x", "water_velocity_y"})) return;
+    plan_water_transport(b);
     if (traced) plan_backtrace(b, "water", "backtrace_water_velocity");
     if (traced && b.has(EFFECT_MIXTURE)) plan_backtrace(b, "mixed", "backtrace_water_velocity");
     std::vector<std::string> moved = {"water_velocity_x", "water_velocity_y"};
@@ -96,32 +116,45 @@ void plan_water(Builder b) {
     if (b.has(EFFECT_COHESION)) b.run("compute_saturation");
 }
 
-void plan_sand(Builder b) {
-    if (!b.has(EFFECT_SAND)) return;
-    if (b.has(EFFECT_OPEN_SIDES)) b.run("open_sand_sides");
-    if (b.has(EFFECT_SEMI_LAGRANGIAN)) b.run("update_sand_boundary_types");
+// Stretch and sand height move.
+void plan_sand_transport(Builder& b) {
+    const std::vector<std::string> stretch = {"stretch_xx", "stretch_xy", "stretch_yy"};
+    const Names side = {{"flux_x", "sand_flux_x"}, {"flux_y", "sand_flux_y"}, {"side_ledger", "sand_side_ledger"}};
+    if (b.fuse("transport_sand", stretch)) {
+        if (b.has(EFFECT_OPEN_SIDES)) b.run("account_sides", {}, side);
+        return;
+    }
     b.run("limit_sand_outflow");
     b.run("compute_sand_flux");
-    if (b.has(EFFECT_OPEN_SIDES)) {
-        b.run("account_sides", {}, {{"flux_x", "sand_flux_x"}, {"flux_y", "sand_flux_y"}, {"side_ledger", "sand_side_ledger"}});
-    }
+    if (b.has(EFFECT_OPEN_SIDES)) b.run("account_sides", {}, side);
     b.run("integrate_sand_height");
     if (b.has(EFFECT_WHOLE_STRAIN))
         b.run("advect_deformation_gradient", {"stretch_xx", "stretch_xy", "stretch_yy", "rotation"});
     else if (b.has(EFFECT_ELASTOPLASTIC))
-        b.run("evolve_deformation_gradient", {"stretch_xx", "stretch_xy", "stretch_yy"});
+        b.run("evolve_deformation_gradient", stretch);
+}
+
+void plan_sand(Builder b) {
+    if (!b.has(EFFECT_SAND)) return;
+    if (b.has(EFFECT_OPEN_SIDES)) b.run("open_sand_sides");
+    if (b.has(EFFECT_SEMI_LAGRANGIAN)) b.run("update_sand_boundary_types");
+    plan_sand_transport(b);
     // Touches only the water's velocities, which the sand's velocity stage does not read: here both sand heights are at hand.
-    if (b.has(EFFECT_MIXTURE)) b.run("compute_momentum_exchange");
+    if (b.has(EFFECT_MIXTURE) && !b.can_fuse("accelerate_mixture")) b.run("compute_momentum_exchange");
 }
 
 // After the sand height has become current.
 void plan_sand_forces(Builder b) {
     if (!b.has(EFFECT_SAND)) return;
-    if (b.has(EFFECT_ELASTOPLASTIC)) b.run("project_deformation_gradient");
+    if (b.has(EFFECT_ELASTOPLASTIC) && !b.can_fuse("transport_sand")) b.run("project_deformation_gradient");
+    const std::vector<std::string> sand = {"sand_velocity_x", "sand_velocity_y"};
+    std::vector<std::string> all = sand;
+    all.insert(all.end(), {"water_velocity_x", "water_velocity_y", "mixed_velocity_x", "mixed_velocity_y"});
+    if (b.fuse("accelerate_mixture", all) || b.fuse("accelerate_sand", sand)) return;
     if (b.has(EFFECT_SEMI_LAGRANGIAN)) plan_backtrace(b, "sand", "backtrace_sand_velocity");
-    b.run("integrate_sand_velocity", {"sand_velocity_x", "sand_velocity_y"});
+    b.run("integrate_sand_velocity", sand);
     if (b.has(EFFECT_WHOLE_STRAIN)) b.run("stretch_deformation_gradient");
-    std::vector<std::string> moved = {"sand_velocity_x", "sand_velocity_y"};
+    std::vector<std::string> moved = sand;
     Names drag;
     if (b.has(EFFECT_DRAG)) {
         const std::string layer = b.has(EFFECT_MIXTURE) ? "mixed_velocity_" : "water_velocity_";
@@ -181,21 +214,48 @@ int StepPlan::field_buffers() const {
     return count;
 }
 
+double StepPlan::traffic_per_cell() const {
+    double moved = 0;
+    const auto add = [&](const PlanPass& pass, int times) {
+        const auto& stage = compute::stage_table()[static_cast<std::size_t>(pass.stage)];
+        using enum compute::Extent;
+        if (stage.extent != cells && stage.extent != faces && stage.extent != strips) return;
+        for (std::size_t n = 0; n < pass.fields.size(); ++n) {
+            const auto* field = pass.fields[n].empty() ? nullptr : find(base_name(pass.fields[n]));
+            if (field == nullptr || (field->role != FieldRole::state && field->role != FieldRole::scratch)) continue;
+            moved += times * (stage.bindings[n].access == compute::Access::inout ? 2 : 1);
+        }
+    };
+    for (const auto& pass : water_passes) add(pass, 1);
+    for (const auto& pass : substep_passes) add(pass, substeps);
+    return 4 * moved;
+}
+
+double StepPlan::least_traffic_per_cell() const {
+    double count = 0;
+    for (const auto& field : fields)
+        if (field.role == FieldRole::state) count += field.name == "terrain" ? 1 : 2;
+    return 4 * count;
+}
+
 const PlanField* StepPlan::find(const std::string& name) const {
     const auto found = std::find_if(fields.begin(), fields.end(), [&](const PlanField& f) { return f.name == name; });
     return found == fields.end() ? nullptr : &*found;
 }
 
-StepPlan make_step_plan(std::uint32_t effects, int substeps, bool active_tiles) {
+StepPlan make_step_plan(std::uint32_t effects, int substeps, PlanChoice choice) {
     StepPlan plan;
-    plan.active_tiles = active_tiles;
+    plan.active_tiles = choice.active_tiles;
+    plan.fused = choice.fused;
     plan.effects = effects;
     plan.substeps = substeps;
-    if (active_tiles) plan_active_tiles(Builder(effects, plan.water_passes, false));
-    plan_water(Builder(effects, plan.water_passes, false));
-    plan_sand(Builder(effects, plan.substep_passes, true));
+    const Builder water(effects, plan.water_passes, false, choice.fused),
+        substep(effects, plan.substep_passes, true, choice.fused);
+    if (choice.active_tiles) plan_active_tiles(water);
+    plan_water(water);
+    plan_sand(substep);
     if (!plan.substep_passes.empty()) plan.substep_passes.back().flips.push_back("sand_height");
-    plan_sand_forces(Builder(effects, plan.substep_passes, true));
+    plan_sand_forces(substep);
 
     plan.fields.push_back({"terrain", FieldRole::state, false, -1});
     plan.fields.push_back({"source_ledger", FieldRole::ledger, false, -1}); // edits count there in any world

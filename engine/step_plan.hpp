@@ -34,7 +34,7 @@ struct StepPlan {
     std::vector<PlanPass> substep_passes; // run T times
     std::vector<PlanField> fields;
     int scratch_blocks = 0;
-    bool active_tiles = false;
+    bool active_tiles = false, fused = false; // as asked for
     /// Cells that one step carries a change along at most: the sum of what its passes read around them.
     int reach = 0;
 
@@ -42,10 +42,22 @@ struct StepPlan {
     int field_buffers() const;
     /// Bytes per cell of those.
     double bytes_per_cell() const { return 4.0 * field_buffers(); }
+    /// Bytes per cell that the passes of a step read and write, each field of a pass once; those of the rim and of sources are
+    /// left out.
+    double traffic_per_cell() const;
+    /// Bytes per cell that any step must move: the fields of the state once in, those that change once out.
+    double least_traffic_per_cell() const;
     const PlanField* find(const std::string& name) const;
 };
 
-/// With active tiles every scratch field has memory of its own: what a tile that is left out computed last must stay readable.
-StepPlan make_step_plan(std::uint32_t effects, int substeps, bool active_tiles = false);
+/// What else a plan depends on, besides what it computes: none of it changes a bit of the result.
+struct PlanChoice {
+    /// Every scratch field has memory of its own then: what a tile that is left out computed last must stay readable.
+    bool active_tiles = false;
+    /// Fused stages where the mask allows them; not together with active tiles.
+    bool fused = false;
+};
+
+StepPlan make_step_plan(std::uint32_t effects, int substeps, PlanChoice choice = {});
 
 } // namespace wadi

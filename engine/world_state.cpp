@@ -59,9 +59,23 @@ WorldState::WorldState(const Settings& settings, std::unique_ptr<compute::Device
     : settings_(settings), layout_{settings.grid.nx, settings.grid.ny}, params_(derive_params(settings)),
       level_(level_digest(settings)), device_(std::move(device)), group_(group) {}
 
+PlanChoice WorldState::plan_choice() const {
+    const auto& device = device_->capabilities();
+    const bool gains = device.kind != compute::DeviceKind::cpu && device.kind != compute::DeviceKind::software_gpu;
+    const bool asked =
+        settings_.fused_stages == FusedStages::always || (settings_.fused_stages == FusedStages::automatic && gains);
+    const bool active_tiles = settings_.active_tiles > 0;
+    return {active_tiles, asked && device.fused_stages && !active_tiles};
+}
+
 Status WorldState::open(const EffectChoice& effects) {
     effects_ = effects;
-    plan_ = make_step_plan(effects.mask, settings_.method.substeps, settings_.active_tiles > 0);
+    if (settings_.fused_stages == FusedStages::always && !device_->capabilities().fused_stages) {
+        return error(Code::not_supported, "fused_stages: '" + device_->capabilities().name + "' has no groups of " +
+                                              std::to_string(compute::fused_group_x * compute::fused_group_y) +
+                                              " threads that share " + std::to_string(compute::fused_shared_bytes) + " bytes");
+    }
+    plan_ = make_step_plan(effects.mask, settings_.method.substeps, plan_choice());
     derive();
     const std::uint64_t bytes = layout_.size() * 4, limit = device_->capabilities().largest_buffer_bytes;
     if (limit != 0 && bytes > limit) {
@@ -174,7 +188,7 @@ void WorldState::free_others(const FieldBuffers& buffers, const std::vector<comp
 }
 
 Status WorldState::adopt(const EffectChoice& effects) {
-    StepPlan plan = make_step_plan(effects.mask, settings_.method.substeps, settings_.active_tiles > 0);
+    StepPlan plan = make_step_plan(effects.mask, settings_.method.substeps, plan_choice());
     const auto listed = [](const FieldBuffers& buffers, std::vector<compute::Buffer> all) {
         for (const auto& [name, pair] : buffers) all.insert(all.end(), pair.begin(), pair.end());
         return all;
@@ -207,7 +221,7 @@ Status WorldState::adopt(const EffectChoice& effects) {
 }
 
 Status WorldState::prepare(std::uint32_t effects) const {
-    const StepPlan plan = make_step_plan(effects, settings_.method.substeps, settings_.active_tiles > 0);
+    const StepPlan plan = make_step_plan(effects, settings_.method.substeps, plan_choice());
     std::set<int> stages = {compute::find_stage("apply_edits")};
     for (const auto* passes : {&plan.water_passes, &plan.substep_passes})
         for (const auto& pass : *passes) stages.insert(pass.stage);

@@ -117,6 +117,7 @@ class WorldState {
   private:
     using FieldBuffers = std::map<std::string, std::array<compute::Buffer, 2>>;
     /// Makes what `plan` needs beyond `buffers` and `scratch`, and adds it to them.
+    PlanChoice plan_choice() const;
     Status allocate(const StepPlan& plan, FieldBuffers& buffers, std::vector<compute::Buffer>& scratch);
     /// Frees the buffers of the first two that are not among the kept.
     void free_others(const FieldBuffers& buffers, const std::vector<compute::Buffer>& scratch,

@@ -48,6 +48,7 @@ LevelOverrides to_overrides(const wadi_level_overrides* o) {
     if (o->method != nullptr) overrides.method = o->method;
     if (o->variant != nullptr) overrides.variant = o->variant;
     if (o->accuracy != nullptr) overrides.accuracy = o->accuracy;
+    if (o->fused_stages != 0) overrides.fused_stages = o->fused_stages > 0 ? FusedStages::always : FusedStages::never;
     if (o->active_tiles != 0) overrides.active_tiles = o->active_tiles == -1 ? 0 : o->active_tiles;
     return overrides;
 }

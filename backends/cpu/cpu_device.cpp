@@ -31,6 +31,7 @@ CpuDevice::CpuDevice(const InstructionSet& set, int threads, const compute::Devi
     capabilities_.largest_buffer_bytes = capabilities_.memory_bytes;
     capabilities_.exact_float = true;
     capabilities_.timestamps = true;
+    capabilities_.fused_stages = true;
     capabilities_.queue_depth = most_in_flight;
     runner_ = std::thread([this] { device_thread(); });
 }

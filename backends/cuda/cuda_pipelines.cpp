@@ -14,6 +14,8 @@ Result<compute::GroupSize> choose_group(const compute::StageInfo& info, compute:
         if (info.extent != compute::Extent::rim) group = {asked.tile, std::min(asked.tile, 256 / asked.tile)};
         asked = {};
     }
+    if (info.fused())
+        asked = {int{compute::fused_group_x}, int{compute::fused_group_y}, 0}; // the only groups that it is written for
     if (asked.x > 0) group.x = asked.x;
     if (asked.y > 0) group.y = asked.y;
     const bool negative = asked.x < 0 || asked.y < 0;

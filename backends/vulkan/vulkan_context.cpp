@@ -1,4 +1,5 @@
 #include "backends/vulkan/vulkan_context.hpp"
+#include "engine/compute/stage_table.hpp"
 #include <algorithm>
 #include <cstring>
 
@@ -52,6 +53,12 @@ void read_properties(Context& c, const PhysicalDevice& chosen) {
     const std::uint32_t bits = chosen.timestamp_bits;
     c.limits.timestamp_mask = bits >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << bits) - 1;
 
+    std::size_t bindings = 0;
+    for (const auto& stage : compute::stage_table()) bindings = std::max(bindings, stage.fused() ? stage.bindings.size() : 0);
+    c.capabilities.fused_stages =
+        c.limits.group_size[0] >= compute::fused_group_x && c.limits.group_size[1] >= compute::fused_group_y &&
+        c.limits.group_threads >= compute::fused_group_x * compute::fused_group_y &&
+        limits.maxComputeSharedMemorySize >= compute::fused_shared_bytes && c.limits.storage_buffers >= bindings;
     c.capabilities.backend = "vulkan";
     c.capabilities.name = chosen.info.name;
     c.capabilities.driver = names_driver ? std::string(driver.driverName) + " " + driver.driverInfo

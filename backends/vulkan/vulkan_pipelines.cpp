@@ -20,6 +20,8 @@ Result<Constants> choose_group(const compute::StageInfo& info, compute::GroupSiz
     if (asked.tile > 0 && !info.marks)
         return error(Code::bad_argument, "stage " + std::string(info.name) + " cannot run over active tiles");
     group.active_tiles = asked.tile > 0 ? 1 : 0;
+    if (info.fused())
+        asked = {int{compute::fused_group_x}, int{compute::fused_group_y}, 0}; // the only groups that it is written for
     // As list_active_tiles counts the groups of a tile.
     if (asked.tile > 0 && info.extent != compute::Extent::rim)
         asked = {asked.tile, std::min(asked.tile, 256 / asked.tile), asked.tile};

@@ -177,8 +177,10 @@ class Planner {
         const auto groups = [](int first, int last, std::uint32_t size) {
             return (static_cast<std::uint32_t>(last - first) + size - 1) / size;
         };
-        const std::uint32_t x = groups(d.range.i0, d.range.i1, pipeline.group_x);
-        const std::uint32_t y = groups(d.range.j0, d.range.j1, pipeline.group_y);
+        const compute::StageInfo& info = compute::stage_table()[static_cast<std::size_t>(d.stage)];
+        const auto columns = info.fused() ? static_cast<std::uint32_t>(info.group_columns) : pipeline.group_x;
+        const auto rows = info.fused() ? static_cast<std::uint32_t>(info.group_rows) : pipeline.group_y;
+        const std::uint32_t x = groups(d.range.i0, d.range.i1, columns), y = groups(d.range.j0, d.range.j1, rows);
         if (x > c_.limits.group_count[0] || y > c_.limits.group_count[1]) {
             return fail(Code::not_supported, "dispatch '" + d.label + "'",
                         std::to_string(x) + " x " + std::to_string(y) + " groups; " + c_.capabilities.name + " allows " +

@@ -37,7 +37,15 @@ struct StageInfo {
     std::uint32_t tested_effects; // bits that HAS() asks in its body or bindings
     std::span<const StageBinding> bindings;
     std::span<const std::uint32_t> spirv; // empty when the build has no Vulkan
+    int parts;                            // stages that a fused stage runs in one pass; 0 for a stage that is none
+    std::uint32_t needs, without;         // a fused stage is for masks that have all of `needs` and nothing of `without`
+    int group_columns, group_rows;        // cells that one group of a fused stage covers, whatever its threads
+
+    bool fused() const { return parts > 0; }
 };
+
+/// Threads of a group of every fused stage, and bytes that groups of any of them share at most.
+inline constexpr std::uint32_t fused_group_x = 64, fused_group_y = 4, fused_shared_bytes = 32768;
 
 std::span<const StageInfo> stage_table();
 

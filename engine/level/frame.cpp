@@ -69,6 +69,7 @@ Result<Frame> apply_overrides(const LevelOverrides& overrides, Settings& setting
         stretch(settings, frame.stretch_y);
     }
     if (overrides.dt) settings.dt = *overrides.dt;
+    if (overrides.fused_stages) settings.fused_stages = *overrides.fused_stages;
     if (overrides.active_tiles) settings.active_tiles = *overrides.active_tiles;
     if (overrides.method && *overrides.method != settings.method.name) choose_method(settings.method, *overrides.method);
     if (overrides.accuracy) {

@@ -30,7 +30,8 @@ struct LevelOverrides {
     std::optional<std::string> variant; // one of the level's own, merged in before anything else
     /// Name of an accuracy preset: scales the level's cells, unless `size` is given, and sets the sand steps per water step.
     std::optional<std::string> accuracy;
-    std::optional<int> active_tiles; // Settings::active_tiles
+    std::optional<int> active_tiles;         // Settings::active_tiles
+    std::optional<FusedStages> fused_stages; // Settings::fused_stages
 };
 
 /// Reads a level file. Errors: not_found, bad_file (position or field, nearest known key, allowed range).

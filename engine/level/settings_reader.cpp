@@ -141,6 +141,7 @@ void read_settings(ObjectReader& root, const FileReader& files, Settings& settin
         settings.evaporation = read_series(*evaporation, "evaporation", files, status);
     if (const Json* edits = root.find("edits")) settings.edits = read_edits(*edits, status);
     root.whole_number("active_tiles", settings.active_tiles, 0, 64);
+    read_choice(root, "fused_stages", {"auto", "always", "never"}, settings.fused_stages);
     root.number("active_tiles_most", settings.active_tiles_most, 0, 1);
     if (const Json* effects = root.find("effects")) read_effects(*effects, settings, status);
 }

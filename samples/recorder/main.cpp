@@ -132,6 +132,9 @@ int main_checked(int argc, char** argv) {
     app.add_option("--active-tiles", options.active_tiles,
                    "8, 16, 32 or 64: tiles of so many cells in which nothing changes are left out; -1 = none are")
         ->check(CLI::IsMember({-1, 8, 16, 32, 64}));
+    app.add_option("--fused-stages", options.fused_stages,
+                   "1: several stages in one pass wherever the effects allow; -1: one by one")
+        ->check(CLI::IsMember({-1, 1}));
     app.add_option("--seconds", options.seconds, "simulated time [s]; default: the level's duration")
         ->check(CLI::Range(0.0, 1e9));
     app.add_option("--every", options.every, "time between frames [s]; default: a tenth of the recording")

@@ -40,6 +40,7 @@ struct Options {
     std::string accuracy;        // empty = what the level says
 
     std::int32_t active_tiles = 0; // 0 = the level's, -1 = off
+    std::int32_t fused_stages = 0; // 0 = the level's, 1 = always, -1 = never
 
     double seconds = -1;    // simulated time, -1 = the level's duration
     double every = 0;       // between frames [s], 0 = a tenth of the recording

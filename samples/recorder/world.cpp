@@ -34,6 +34,7 @@ Failure World::create(const Options& options) {
     overrides.ny = options.ny;
     overrides.dt = options.dt;
     overrides.active_tiles = options.active_tiles;
+    overrides.fused_stages = options.fused_stages;
     overrides.method = options.method.empty() ? nullptr : options.method.c_str();
     overrides.variant = options.variant.empty() ? nullptr : options.variant.c_str();
     overrides.accuracy = options.accuracy.empty() ? nullptr : options.accuracy.c_str();

@@ -116,6 +116,8 @@ struct Source {
 enum class Force : std::uint8_t { automatic, on, off };
 
 /// Everything but the fields themselves.
+enum class FusedStages : std::uint8_t { automatic, always, never };
+
 struct Settings {
     Grid grid;
     double dt = 0;         // water time step [s], 1e-7 ... 100
@@ -128,9 +130,13 @@ struct Settings {
     TimeSeries evaporation;                             // [m/s]
     std::vector<ScriptedEdit> edits;                    // at most 1000; the world queues them itself
     std::vector<std::pair<std::string, Force>> effects; // names of engine/effects.cpp
-    /// Side of the active tiles [cells]: 8, 16, 32 or 64, 0 = off. Tiles in which nothing changes any more are left out of a step.
-    /// How a world is run, not what it is: every bit stays, also in snapshots and between worlds that have it and that do not.
+    /// Side of the active tiles [cells]: 8, 16, 32 or 64, 0 = off. Tiles in which nothing changes any more are left out of a
+    /// step. How a world is run, not what it is: every bit stays, also in snapshots and between worlds that have it and that do
+    /// not.
     int active_tiles = 0;
+    /// Whether a step's stages run fused, several in a pass over tiles, or one by one: every bit stays. Left to the engine: where
+    /// the device gains from it (engine/README.md).
+    FusedStages fused_stages = FusedStages::automatic;
     /// Share of active tiles above which the log is told, once per crossing, 0 ... 1; 1 = never.
     double active_tiles_most = 1;
 };

@@ -102,6 +102,7 @@ typedef struct wadi_level_overrides {
                                   samples/report has errors and costs */
     int32_t active_tiles;      /* side of the active tiles in cells: 8, 16, 32 or 64; -1 = off. Tiles in which nothing changes any more
                                   are left out of a step; every bit stays, also in snapshots */
+    int32_t fused_stages;      /* 1 = several stages in one pass wherever the effects allow, -1 = one by one. Every bit stays */
 } wadi_level_overrides;
 WADI_API wadi_level_overrides wadi_default_level_overrides(void);
 

@@ -1,0 +1,66 @@
+#include "writers.hpp"
+#include <sstream>
+
+namespace stagec {
+
+std::string guard(const std::string& extent) {
+    if (extent == "CELLS") return "i < P.nx && j < P.ny";
+    if (extent == "FACES") return "i <= P.nx && j <= P.ny";
+    if (extent == "RIM") return "i < 2 * (P.nx + P.ny) && j < 1";
+    if (extent == "STRIPS") return "i <= P.nx && j < P.strips";
+    if (extent == "TILES") return "i < P.tile_columns && j < P.tile_rows";
+    if (extent == "TILE_ROWS") return "i < 1 && j < P.tile_rows";
+    if (extent == "POINTS") return "i < POINT_ROW && j * POINT_ROW + i < S.point_count";
+    return "i < P.source_i1 && j < P.source_s1";
+}
+
+std::string origin(const std::string& extent, const char* axis) {
+    if (extent != "SOURCE_BOX") return "";
+    return axis[0] == 'i' ? " + P.source_i0" : " + P.source_s0";
+}
+
+bool marks(const Stage& s) {
+    bool marks = !s.fused;
+    marks &= s.extent == "CELLS" || s.extent == "FACES" || s.extent == "RIM";
+    for (const auto& b : s.bindings) marks &= b.access == "IN" || b.type == "float" || (s.extent == "RIM" && b.type == "uint");
+    return marks;
+}
+
+// Where a kernel at (i, j) writes a buffer. RIM: its face and the ghost outside, the low words of its counts in and out.
+static std::vector<std::string> written(const Stage& s, const Binding& b) {
+    if (s.extent != "RIM") return {"at"};
+    if (b.type == "uint") return {"i", "4 * (P.nx + P.ny) + i"};
+    return {"at", "ghost"};
+}
+
+std::string marking(const Stage& s, const std::string& member) {
+    std::ostringstream before, after;
+    int count = 0;
+    for (const auto& b : s.bindings) {
+        if (b.access == "IN") continue;
+        const std::string has = b.condition == "0u" ? "" : "if (HAS(" + b.condition + ")) ";
+        for (const std::string& at : written(s, b)) {
+            const bool is_float = b.type == "float";
+            const std::string old = "old" + std::to_string(count++), value = member + b.name + "[" + at + "]";
+            before << "    " << b.type << " " << old << " = " << (is_float ? "0.0f" : "0u") << ";\n    if (look) {\n        "
+                   << has << old << " = " << value << ";\n    }\n";
+            after << "        " << has << "changed = changed || "
+                  << (is_float ? "float_bits(" + value + ") != float_bits(" + old + ")" : value + " != " + old) << ";\n";
+        }
+    }
+    return before.str() + "    " + member + "kernel(i, j);\n    if (look) {\n        bool changed = false;\n" + after.str() +
+           "        if (changed) activity[tile] = uint(S.step);\n    }\n";
+}
+
+std::string rim_place(const Stage& s) {
+    bool ghosts = false;
+    for (const auto& b : s.bindings) ghosts |= b.access != "IN" && b.type == "float";
+    return std::string("    int west_east = 2 * P.ny;\n    bool along_y = i < west_east;\n"
+                       "    bool low = along_y ? i < P.ny : i < west_east + P.nx;\n"
+                       "    int along = along_y ? (low ? i : i - P.ny) : (low ? i - west_east : i - west_east - P.nx);\n"
+                       "    int x = along_y ? (low ? 0 : P.nx) : along;\n    int y = along_y ? along : (low ? 0 : P.ny);\n") +
+           (ghosts ? "    int at = IDX(x, y);\n    int ghost = low ? (along_y ? at - 1 : at - P.pitch) : at;\n" : "") +
+           "    int size = P.tile_size > 0 ? P.tile_size : 1;\n    int tile = (y / size) * P.tile_columns + x / size;\n";
+}
+
+} // namespace stagec

@@ -1,0 +1,174 @@
+#include "stage_file.hpp"
+#include <cctype>
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+
+namespace stagec {
+namespace {
+const std::set<std::string> extents = {"CELLS", "FACES", "RIM", "STRIPS", "SOURCE_BOX", "POINTS", "TILES", "TILE_ROWS"};
+} // namespace
+
+void fail(const std::string& message) {
+    std::cerr << "stagec: " << message << "\n";
+    std::exit(1);
+}
+
+std::string read_text(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    if (!in) fail("cannot read " + path);
+    std::ostringstream text;
+    text << in.rdbuf();
+    return text.str();
+}
+
+void write_text(const std::string& path, const std::string& text) {
+    std::ofstream out(path, std::ios::binary);
+    out << text;
+    if (!out) fail("cannot write " + path);
+}
+
+std::string stem(const std::string& path) {
+    const auto slash = path.find_last_of('/');
+    const std::string file = slash == std::string::npos ? path : path.substr(slash + 1);
+    return file.substr(0, file.find('.'));
+}
+
+std::string strip_comments(const std::string& text) {
+    std::string out;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] == '/' && i + 1 < text.size() && text[i + 1] == '/') {
+            while (i < text.size() && text[i] != '\n') ++i;
+        }
+        if (i < text.size()) out += text[i];
+    }
+    return out;
+}
+
+std::string word_at(const std::string& text, std::size_t at) {
+    std::size_t end = at;
+    while (end < text.size() && (std::isalnum(static_cast<unsigned char>(text[end])) || text[end] == '_')) ++end;
+    return text.substr(at, end - at);
+}
+
+std::set<std::string> effects_in(const std::string& expression) {
+    std::set<std::string> found;
+    for (std::size_t at = 0; (at = expression.find("EFFECT_", at)) != std::string::npos;) {
+        const std::string name = word_at(expression, at);
+        found.insert(name);
+        at += name.size();
+    }
+    return found;
+}
+
+std::vector<std::string> arguments(const std::string& text, std::size_t at) {
+    while (at < text.size() && std::isspace(static_cast<unsigned char>(text[at]))) ++at;
+    if (at >= text.size() || text[at] != '(') return {};
+    std::vector<std::string> result(1);
+    int depth = 1;
+    for (++at; at < text.size(); ++at) {
+        const char c = text[at];
+        if (c == '(') ++depth;
+        if (c == ')' && --depth == 0) return result;
+        if (c == ',' && depth == 1) {
+            result.emplace_back();
+        } else if (!std::isspace(static_cast<unsigned char>(c))) {
+            result.back() += c;
+        }
+    }
+    fail("unbalanced parenthesis");
+}
+
+Stage parse_stage(const std::string& path) {
+    Stage stage;
+    stage.path = path;
+    stage.name = stem(path);
+    const std::string text = strip_comments(read_text(path));
+    std::set<std::string> tested;
+    const auto note_effects = [&](const std::string& expression) { tested.merge(effects_in(expression)); };
+    std::size_t at = 0;
+    while (at < text.size()) {
+        if (!std::isalpha(static_cast<unsigned char>(text[at]))) {
+            ++at;
+            continue;
+        }
+        const std::string word = word_at(text, at);
+        at += word.size();
+        const std::size_t end = at;
+        const bool conditional = word == "IN_IF" || word == "OUT_IF" || word == "INOUT_IF";
+        if (word == "STAGE") {
+            stage.struct_name = arguments(text, end).at(0);
+        } else if (word == "EXTENT") {
+            stage.extent = arguments(text, end).at(0);
+        } else if (word == "REACH") {
+            stage.reach = std::atoi(arguments(text, end).at(0).c_str());
+        } else if (word == "HAS") {
+            note_effects(arguments(text, end).at(0));
+        } else if (conditional || word == "IN" || word == "OUT" || word == "INOUT") {
+            const auto a = arguments(text, end);
+            if (a.size() != (conditional ? 4u : 3u))
+                fail(path + ": " + word + " takes " + (conditional ? "(EFFECTS, slot, type, name)" : "(slot, type, name)"));
+            Binding b;
+            const std::size_t shift = conditional ? 1 : 0;
+            b.condition = conditional ? a[0] : "0u";
+            note_effects(b.condition);
+            b.slot = std::atoi(a[shift].c_str());
+            b.type = a[shift + 1];
+            b.name = a[shift + 2];
+            b.access = word.substr(0, word.find('_'));
+            if (b.slot != static_cast<int>(stage.bindings.size()))
+                fail(path + ": slot of " + b.name + " is " + a[shift] + ", expected " + std::to_string(stage.bindings.size()));
+            stage.bindings.push_back(b);
+        }
+    }
+    if (stage.struct_name.empty()) fail(path + ": no STAGE(Name)");
+    if (!extents.count(stage.extent))
+        fail(path + ": EXTENT must be CELLS, FACES, RIM, STRIPS, SOURCE_BOX, POINTS, TILES or TILE_ROWS");
+    const bool grid = stage.extent == "CELLS" || stage.extent == "FACES" || stage.extent == "RIM";
+    if (stage.reach < 0) stage.reach = grid ? 1 : 0;
+    if (stage.reach > 2) fail(path + ": REACH is at most 2, the width of the ghosts");
+    stage.tested.assign(tested.begin(), tested.end());
+    return stage;
+}
+
+Effects parse_effects(const std::string& path) {
+    Effects effects;
+    std::istringstream in(read_text(path));
+    std::string define, name, value;
+    for (std::string line; std::getline(in, line);) {
+        std::istringstream words(line);
+        if (words >> define >> name >> value && define == "#define" && name.rfind("EFFECT_", 0) == 0) {
+            effects[name] = static_cast<unsigned>(std::strtoul(value.c_str(), nullptr, 10));
+        }
+    }
+    return effects;
+}
+
+unsigned effect_bits(const std::string& expression, const Effects& effects, const std::string& path) {
+    unsigned bits = 0;
+    for (const auto& name : effects_in(expression)) {
+        const auto found = effects.find(name);
+        if (found == effects.end()) fail(path + ": unknown effect " + name);
+        bits |= found->second;
+    }
+    return bits;
+}
+
+unsigned tested_bits(const Stage& stage, const Effects& effects) {
+    unsigned bits = 0;
+    for (const auto& name : stage.tested) bits |= effect_bits(name, effects, stage.path);
+    return bits;
+}
+
+std::vector<unsigned> masks(unsigned tested) {
+    std::vector<unsigned> result;
+    unsigned mask = 0;
+    do {
+        result.push_back(mask);
+        mask = (mask - tested) & tested;
+    } while (mask != 0);
+    return result;
+}
+
+} // namespace stagec

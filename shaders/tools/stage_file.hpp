@@ -1,0 +1,46 @@
+// Stage files as stagec reads them: bindings, extent, tested effects.
+#pragma once
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace stagec {
+
+[[noreturn]] void fail(const std::string& message);
+std::string read_text(const std::string& path);
+void write_text(const std::string& path, const std::string& text);
+/// File name without folder and extension.
+std::string stem(const std::string& path);
+std::string strip_comments(const std::string& text);
+/// The word (letters, digits, underscores) that begins at `at`.
+std::string word_at(const std::string& text, std::size_t at);
+/// The arguments of a macro call whose name ends at `at`, without blanks; empty when no parenthesis follows.
+std::vector<std::string> arguments(const std::string& text, std::size_t at);
+/// Names that begin with EFFECT_ in an expression.
+std::set<std::string> effects_in(const std::string& expression);
+
+struct Binding {
+    std::string name, type, access, condition;
+    int slot = 0;
+};
+
+struct Stage {
+    std::string path, name, struct_name, extent;
+    int reach = -1; // cells from the kernel's own index to the farthest that it reads
+    std::vector<Binding> bindings;
+    bool fused = false;
+    std::vector<std::string> tested; // effect names that HAS() or a condition asks
+};
+
+Stage parse_stage(const std::string& path);
+
+using Effects = std::map<std::string, unsigned>; // name -> bit
+Effects parse_effects(const std::string& path);
+/// The bits of the effects that an expression names.
+unsigned effect_bits(const std::string& expression, const Effects& effects, const std::string& path);
+unsigned tested_bits(const Stage& stage, const Effects& effects);
+/// Every mask that a stage can tell apart: all subsets of the bits it tests.
+std::vector<unsigned> masks(unsigned tested);
+
+} // namespace stagec

@@ -1,0 +1,122 @@
+#include "writers.hpp"
+#include <algorithm>
+#include <sstream>
+
+namespace stagec {
+
+// Group sizes with kernels of their own: the compiler then knows the limits of the indices and may use more registers.
+// {0, 0} takes any group. The defaults of backends/cuda are among them.
+namespace {
+struct CudaGroup {
+    int x, y;
+};
+const CudaGroup cuda_groups[] = {{64, 4}, {256, 1}, {0, 0}};
+
+// As C++ and GLSL have them, but members of `stage` stand behind a dot.
+std::string cuda_active(const Stage& s) {
+    std::ostringstream o;
+    o << "struct Active { const uint* list; const uint* count; uint* activity; };\n"
+      << "template <unsigned EFFECTS> __global__ void __launch_bounds__(256)\n"
+      << "run_active(const WorldParams P, const StepInput* __restrict__ input, const Slots b, const Active tiles) {\n"
+      << "    const StepInput& S = *input;\n    const " << s.struct_name << "<EFFECTS> stage{P, S";
+    for (const auto& b : s.bindings)
+        o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << b.type << "*>(b.at[" << b.slot << "])";
+    const std::string look = "    const bool look = activity[tile] != uint(S.step);\n";
+    o << "};\n    volatile uint* const activity = tiles.activity;\n";
+    if (s.extent == "RIM") {
+        o << "    const int i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);\n    const int j = 0;\n    if (!("
+          << guard(s.extent) << ")) return;\n"
+          << rim_place(s) << look << marking(s, "stage.") << "}\n";
+        return o.str();
+    }
+    o << "    const uint count = *tiles.count;\n"
+      << "    for (uint n = blockIdx.x; n < count; n += gridDim.x) {\n    const int tile = static_cast<int>(tiles.list[n]);\n"
+      << "    const int i = (tile % P.tile_columns) * P.tile_size + static_cast<int>(threadIdx.x);\n"
+      << "    for (int row = static_cast<int>(threadIdx.y); row < P.tile_size; row += static_cast<int>(blockDim.y)) {\n"
+      << "    const int j = (tile / P.tile_columns) * P.tile_size + row;\n    if (!(" << guard(s.extent)
+      << ")) continue;\n    const int at = IDX(i, j);\n"
+      << look << marking(s, "stage.") << "    }\n    }\n}\n";
+    return o.str();
+}
+
+} // namespace
+
+// A namespace per stage: kernels of two files that had one name would be one function to the linker.
+std::string write_cuda(const Stage& s, unsigned tested) {
+    const std::string space = "wadi_stage_cuda_" + s.name;
+    std::ostringstream o;
+    o << "// Written by stagec from " << s.name << ".stage.\nnamespace " << space
+      << " {\n#include \"stage_cuda.h\"\n#include \"stages/" << s.name << ".stage\"\n"
+      << "struct Slots { void* at[" << (s.bindings.empty() ? 1 : s.bindings.size()) << "]; };\n"
+      << "template <unsigned E, int X, int Y> __global__ void __launch_bounds__(X > 0 ? X * Y : 1024)\n"
+      << "run(const WorldParams P, const StepInput* __restrict__ input, const Slots b) {\n    const StepInput& S = *input;\n    "
+         "const "
+      << s.struct_name << "<E> stage{P, S";
+    for (const auto& b : s.bindings)
+        o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << b.type << "*>(b.at[" << b.slot << "])";
+    o << "};\n    const int i = static_cast<int>(blockIdx.x * (X > 0 ? X : blockDim.x) + threadIdx.x)" << origin(s.extent, "i")
+      << ";\n    const int j = static_cast<int>(blockIdx.y * (Y > 0 ? Y : blockDim.y) + threadIdx.y)" << origin(s.extent, "j")
+      << ";\n    if (" << guard(s.extent) << ") stage.kernel(i, j);\n}\n"
+      << "template <unsigned E> static const void* select(int x, int y) {\n";
+    for (const auto& g : cuda_groups) {
+        if (g.x > 0) o << "    if (x == " << g.x << " && y == " << g.y << ")\n    ";
+        o << "    return reinterpret_cast<const void*>(&run<E, " << g.x << ", " << g.y << ">);\n";
+    }
+    o << "}\n";
+    if (marks(s)) o << cuda_active(s);
+    o << "} // namespace " << space << "\nextern \"C\" const void* wadi_cuda_" << s.name
+      << "(unsigned effects, int x, int y) {\n    switch (effects) {\n";
+    for (const unsigned mask : masks(tested))
+        o << "    case " << mask << "u: return " << space << "::select<" << mask << "u>(x, y);\n";
+    o << "    default: return nullptr;\n    }\n}\nextern \"C\" const void* wadi_cuda_active_" << s.name
+      << "([[maybe_unused]] unsigned effects) {\n";
+    if (marks(s)) {
+        o << "    switch (effects) {\n";
+        for (const unsigned mask : masks(tested))
+            o << "    case " << mask << "u: return reinterpret_cast<const void*>(&" << space << "::run_active<" << mask
+              << "u>);\n";
+        o << "    default: break;\n    }\n";
+    }
+    o << "    return nullptr;\n}\n";
+    return o.str();
+}
+
+std::string write_cuda(const FusedStage& f, const Effects& effects) {
+    const Stage& s = f.stage;
+    const unsigned tested = tested_bits(s, effects);
+    const std::string space = "wadi_stage_cuda_" + s.name;
+    const auto tile = fields_kept(f, Keeping::tile);
+    std::ostringstream o;
+    o << "// Written by stagec from " << s.name << ".fused.\nnamespace " << space << " {\n#include \"stage_cuda.h\"\n"
+      << physics_includes(f) << index_macros(f) << "#define FIRST_X static_cast<int>(threadIdx.x)\n#define STEP_X "
+      << fused_group_x << "\n#define FIRST_Y static_cast<int>(threadIdx.y)\n#define STEP_Y " << fused_group_y
+      << "\n#define BARRIER __syncthreads()\n#define PART_FUNCTION __device__ __forceinline__\n#define NOT_KEPT(X) (void)(X)\n"
+      << "struct Slots { void* at[" << s.bindings.size() << "]; };\n"
+      << "template <unsigned FREE> struct " << s.struct_name << " {\n    static constexpr unsigned EFFECTS = FREE | " << f.needs
+      << "u;\n    const WorldParams& P;\n    const StepInput& S;\n";
+    for (const auto& b : s.bindings)
+        o << "    " << (b.access == "IN" ? "const " : "") << "float* __restrict__ " << b.name << ";\n";
+    for (const auto& name : tile) o << "    float* __restrict__ tile_" << name << ";\n";
+    for (const auto& name : fields_kept(f, Keeping::own_index)) o << "    float own_" << name << " = 0.0f;\n";
+    o << "    int own_i0 = 0, own_j0 = 0, own_i1 = 0, own_j1 = 0, tile_i0 = 0, tile_j0 = 0, tile_base = 0;\n    bool owned = "
+         "false;\n"
+      << part_functions(f, effects) << "__device__ __forceinline__ void tile() {\n    PLACE_TILE(own_i0, own_j0);\n"
+      << phase_loops(f) << "}\n};\n"
+      << "template <unsigned E> __global__ void __launch_bounds__(" << fused_group_x * fused_group_y << ")\n"
+      << "run(const WorldParams P, const StepInput* __restrict__ input, const Slots b) {\n    __shared__ float tiles["
+      << std::max<std::size_t>(1, tile.size()) << "][" << tile_floats(f) << "];\n    " << s.struct_name << "<E> stage{P, *input";
+    for (const auto& b : s.bindings)
+        o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << "float*>(b.at[" << b.slot << "])";
+    for (std::size_t n = 0; n < tile.size(); ++n) o << ",\n        tiles[" << n << "]";
+    o << "};\n    stage.own_i0 = static_cast<int>(blockIdx.x) * " << columns_of(f)
+      << ";\n    stage.own_j0 = static_cast<int>(blockIdx.y) * " << f.rows << ";\n    stage.own_i1 = stage.own_i0 + "
+      << columns_of(f) << ";\n    stage.own_j1 = stage.own_j0 + " << f.rows << ";\n    stage.tile();\n}\n} // namespace " << space
+      << "\nextern \"C\" const void* wadi_cuda_" << s.name << "(unsigned effects, int, int) {\n    switch (effects) {\n";
+    for (const unsigned mask : masks(tested))
+        o << "    case " << mask << "u: return reinterpret_cast<const void*>(&" << space << "::run<" << mask << "u>);\n";
+    o << "    default: return nullptr;\n    }\n}\nextern \"C\" const void* wadi_cuda_active_" << s.name
+      << "(unsigned) {\n    return nullptr;\n}\n";
+    return o.str();
+}
+
+} // namespace stagec

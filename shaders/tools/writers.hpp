@@ -1,0 +1,38 @@
+// What stagec writes.
+#pragma once
+#include "fused_file.hpp"
+#include "stage_file.hpp"
+
+namespace stagec {
+
+// Pieces of kernels that GLSL and CUDA share (kernel_text.cpp).
+/// The index range of an extent as guards; must agree with extent_range() in engine/compute.
+std::string guard(const std::string& extent);
+std::string origin(const std::string& extent, const char* axis);
+/// Stages that run over a list of active tiles, and stages of the rim, which run whole but tell what they changed.
+bool marks(const Stage& stage);
+/// Runs the kernel and stamps its tile with the step if a bit of what it writes is another than before. Once a tile has its stamp
+/// nobody looks any more. Threads of one tile store the same value, so that their order does not matter.
+std::string marking(const Stage& stage, const std::string& member);
+/// The place of a rim kernel: its face, the cell outside it where that is written, the tile that holds the face.
+std::string rim_place(const Stage& stage);
+
+std::string write_glsl(const Stage& stage);
+std::string write_glsl(const FusedStage& fused, const Effects& effects);
+std::string write_cpp(const Stage& stage, const std::string& isa, unsigned tested);
+std::string write_cpp(const FusedStage& fused, const std::string& isa, const Effects& effects);
+std::string write_cuda(const Stage& stage, unsigned tested);
+std::string write_cuda(const FusedStage& fused, const Effects& effects);
+
+/// Decorates every float operation of a module NoContraction.
+void write_nocontract(const std::string& in, const std::string& out);
+/// The words of a module as the inside of a C++ array.
+std::string word_list(const std::string& module);
+
+bool is_fused(const std::string& path);
+/// The stage table that the engine reads; stages and fused stages by their paths.
+std::string stage_table(const std::vector<std::string>& paths, const Effects& effects, const std::string& spirv_dir);
+std::string cpu_rows(const std::string& isas, const std::vector<std::string>& stages);
+std::string cuda_rows(const std::vector<std::string>& stages);
+
+} // namespace stagec
