@@ -238,11 +238,11 @@ def price_list(page, rows, prices):
     both = lambda table, key: [f"{number(table[key].get('error'))} %, drift {number(table[key].get('drift', 0))}" if key in table else ""]
     body = [["everything on", f"{everything['ms_per_step']:.4g}", "", *both(base, 1), *both(base, 4)]]
     for what, row in named[1:]:
-        if what in sweep.GUARDS or not (what in sweep.METHODS or what.startswith("effect")):
+        if what in sweep.GUARDS or not (what in sweep.METHODS or what.startswith(("effect", "fused"))):
             body.append([what, f"{row['ms_per_step']:.4g}" if "ms_per_step" in row else "", saved(row), *both(at, (what, 1)), *both(at, (what, 4))])
     page.table(["off", "ms per step", "saved [%]", "base step", "four times it"], body)
-    page.heading("What choices of method cost")
-    page.table(["choice", "ms per step", "saved [%]", "passes"], [[what, f"{row['ms_per_step']:.4g}", saved(row), str(row["passes"])] for what, row in named if what in sweep.METHODS])
+    page.heading("What choices of method and of fused stages cost")
+    page.table(["choice", "ms per step", "saved [%]", "passes"], [[what, f"{row['ms_per_step']:.4g}", saved(row), str(row["passes"])] for what, row in named if what in sweep.METHODS or what.startswith("fused")])
 
 
 def write(out, all_scenes, rows, prices, planned, quick):

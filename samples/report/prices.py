@@ -7,6 +7,7 @@ import sweep
 
 LEDGER_LEVEL, LEDGER_PASSES = "spring", ("account_sides",)  # open sides and a source; the passes that nothing but the ledger needs
 LEDGER_STEPS = 100
+FUSED = ("always", "never")  # of a level's `fused_stages`; "everything" has auto
 
 
 class Price:
@@ -63,6 +64,8 @@ def price_list(recorder, relaxed, scene, n, rounds, run_seconds):
     variants = {f"effect {off} off": lambda off=off: run({**level, "effects": sweep.forced_off(off)}) for off in sweep.EFFECTS}
     for choice in (*sweep.METHODS[1:], *sweep.GUARDS):
         variants[choice] = lambda choice=choice: run(recordings.choose(level, **sweep.CHOICES[choice]))
+    for fused in FUSED:
+        variants[f"fused stages: {fused}"] = lambda fused=fused: run({**level, "fused_stages": fused})
     variants["timestamps of every stage"] = lambda: run(level, profile=True)
     if relaxed:
         variants["strict floats off"] = lambda: run(level, relaxed)

@@ -68,7 +68,7 @@ def table_two(recorders, shrink, steps):
                 count = steps if backend != "cpu" else max(5, steps // 20)
                 seconds = steps_seconds(level, size, count)
                 _, timed = recorder.record(level, size=size, method=method, seconds=seconds, benchmark=True)
-                _, profiled = recorder.record(level, size=size, method=method, seconds=seconds, profile=True, benchmark=True)
+                _, profiled = recorder.record(level, size=size, method=method, seconds=seconds, profile=True, benchmark=True, fused=-1)  # the rows are of stages
                 rows.append((backend, method, level, shares(profiled), timed["ms_per_step"], timed["device"]["name"]))
                 print(f"table 2: {backend} {level} {method}: {timed['ms_per_step']:.3f} ms per step", flush=True)
     return rows
@@ -185,7 +185,7 @@ def two_text(rows, out):
     names = [*ROWS, REST]
     write_csv(out / "table_2.csv", ["backend", "method", "level", *names, "ms_per_step", "device"],
               [[b, m, level, *(f"{part[name]:.2f}" for name in names), f"{ms:.4f}", device] for b, m, level, part, ms, device in rows])
-    lines = ["## Table 2: share of each part of a step, time per step", ""]
+    lines = ["## Table 2: share of each part of a step, time per step", "", "Shares: of stages run one by one; time per step: as the device runs them (`fused_stages` auto).", ""]
     lines += ["### paper", "", *table(["part [%]", *SCENES], [[name, *(f"{PAPER[level][n]:g}" for level in SCENES)] for n, name in enumerate(ROWS)]
                                       + [["ms per step", *(f"{PAPER[level][-1]:g}" for level in SCENES)]]), ""]
     for backend in dict.fromkeys(row[0] for row in rows):
