@@ -3,7 +3,7 @@
 own under OUT, what they print in OUT/log.txt as it comes. A backend that the machine lacks is left out, and said; a part that outlasts its
 share of the time is ended, and what it has written stays. Exit code 1 where a part failed or was ended.
 
-usage: samples/report/run_all.py BIN_FOLDER [--quick] [--minutes 30] [--backends cuda,vulkan,cpu] [--relaxed BIN_FOLDER] [--out out/all]
+usage: samples/report/run_all.py BIN_FOLDER [--quick] [--parts PART ...] [--minutes 30] [--backends cuda,vulkan,cpu] [--relaxed BIN_FOLDER] [--out out/all]
 """
 import argparse
 import os
@@ -15,7 +15,7 @@ import sys
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
-SHARES = {"timings": 0.4, "effects": 0.15, "report": 0.45}  # of the time, in this order; what one leaves over goes to the next
+SHARES = {"timings": 0.3, "effects": 0.1, "report": 0.6}  # of the time, in this order; what one leaves over goes to the next
 WRITES_PAGE = 0.9  # of its time: the report stops measuring here
 
 
@@ -48,6 +48,8 @@ def main():
     parser.add_argument("programs", type=pathlib.Path)
     parser.add_argument("--quick", action="store_true", help="small grids: shows that all runs, measures little")
     parser.add_argument("--minutes", type=float, default=30)
+    parser.add_argument("--parts", nargs="+", choices=SHARES, default=list(SHARES), metavar="PART", help=f"of {', '.join(SHARES)} (default all)")
+    parser.add_argument("--repeats", type=int, default=2, metavar="N", help="runs per point of the report (default %(default)s)")
     parser.add_argument("--backends", default="cuda,vulkan,cpu", help="wanted, the one to report on first (default %(default)s)")
     parser.add_argument("--relaxed", type=pathlib.Path, metavar="BIN", help="programs of a build with -DWADI_STRICT_FLOAT=OFF, to price strict floats by")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/all"))
@@ -72,10 +74,11 @@ def main():
         parts = {
             "timings": ["timings.py", options.programs, *quick, "--backends", ",".join(there)],
             "effects": ["effects.py", options.programs, "--backend", there[0], *(["--only", "water", "drag"] if options.quick else [])],
-            "report": ["wadi-report", options.programs, *(quick or ["--full"]), "--backend", there[0], *(["--relaxed", options.relaxed] if options.relaxed else [])]}
+            "report": ["wadi-report", options.programs, *(quick or ["--full"]), "--backend", there[0], "--repeats", options.repeats, *(["--relaxed", options.relaxed] if options.relaxed else [])]}
         failed, due = [], begun
-        for name, (script, *arguments) in parts.items():
-            due += 60 * options.minutes * SHARES[name]
+        for name in [part for part in SHARES if part in options.parts]:
+            script, *arguments = parts[name]
+            due += 60 * options.minutes * SHARES[name] / sum(SHARES[part] for part in options.parts)
             left = due - time.monotonic()
             if name == "report":
                 arguments += ["--minutes", f"{WRITES_PAGE * left / 60:.2f}"]

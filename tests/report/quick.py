@@ -31,7 +31,7 @@ def main():
         # measured again.
         (out / "results.jsonl").write_text("\n".join(kept[:-10]) + "\n" + kept[-10][:40])
         prices = (out / "prices.csv").read_text()
-        run(report, programs, "--quick", "--out", out, "--minutes", "0")
+        run(report, programs, "--quick", "--out", out, "--minutes", "0", code=1)
         assert f"Broken off: 10 of {len(stored)} points are not measured." in (out / "README.md").read_text()
         second = run(report, programs, "--quick", "--out", out).stdout
         assert f"{len(stored) - 10} of {len(stored)} points are there already" in second, second
