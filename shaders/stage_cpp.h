@@ -48,7 +48,7 @@ template <class T> struct StageBuffer {
 #define INOUT_IF(BITS, SLOT, T, NAME) INOUT(SLOT, T, NAME)
 #define HAS(BITS) ((EFFECTS & (BITS)) == (BITS))
 #define IDX(I, J) (((J) + GHOST) * P.pitch + (I) + GHOST)
-
+#define UNIFORM(C) true // a branch would keep the loop over i from vectorising
 FN float wdiv(float a, float b) { return a / b; }
 FN float wsqrt(float x) { return __builtin_sqrtf(x); }
 FN float wabs(float x) { return __builtin_fabsf(x); }

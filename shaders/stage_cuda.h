@@ -29,6 +29,7 @@ typedef unsigned int uint;
 #define OUT_IF(BITS, SLOT, T, NAME) OUT(SLOT, T, NAME)
 #define INOUT_IF(BITS, SLOT, T, NAME) INOUT(SLOT, T, NAME)
 #define HAS(BITS) ((EFFECTS & (BITS)) == (BITS))
+#define UNIFORM(C) (C)
 #define IDX(I, J) (((J) + GHOST) * P.pitch + (I) + GHOST)
 
 #ifdef WADI_RELAXED_FLOAT

@@ -14,6 +14,7 @@
     }
 WADI_INDEX_ERROR(base)
 WADI_INDEX_ERROR(avx2)
+WADI_INDEX_ERROR(avx512)
 
 namespace wadi::cpu {
 
@@ -21,10 +22,11 @@ namespace {
 bool runs(std::string_view name) {
 #if defined(__x86_64__)
     if (name == "avx2") return __builtin_cpu_supports("avx2") != 0;
-#else
-    if (name == "avx2") return false;
+    if (name == "avx512")
+        return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512vl") != 0 &&
+               __builtin_cpu_supports("avx512bw") != 0 && __builtin_cpu_supports("avx512dq") != 0;
 #endif
-    return true;
+    return name == "base";
 }
 } // namespace
 

@@ -64,7 +64,7 @@ using Log = std::function<void(int level, const std::string& message)>;
 
 struct DeviceOptions {
     int threads = 0;                // CPU backend: worker threads, 0 = all cores
-    std::string instruction_set;    // CPU backend: "" = best, "avx2", "base"
+    std::string instruction_set;    // CPU backend: "" = best, "base", "avx2", "avx512"
     bool validate = false;          // Vulkan: validation and synchronization validation layers
     bool full_barriers = false;     // a barrier before every operation
     std::optional<HostDevice> host; // Vulkan: run on the host's device; CUDA: beside it

@@ -42,7 +42,7 @@ def merged(level, changes):
 
 def known(recorder):
     """The effects that the engine has, by a level's plan."""
-    plan = subprocess.run([recorder.program, "piles", "--backend", recorder.backend, "--print-plan"], capture_output=True, text=True, check=True).stdout
+    plan = subprocess.run([recorder.program, str(recordings.LEVELS / "piles"), "--backend", recorder.backend, "--print-plan"], capture_output=True, text=True, check=True).stdout
     return re.findall(r"^  (?:on|- ) +(\w+)", plan, re.M)
 
 

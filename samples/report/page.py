@@ -4,6 +4,7 @@ import math
 
 import charts
 import scenes
+from prices import LEDGER_LEVEL as LEVEL, LEDGER_PASSES as PASSES
 import sweep
 from scene import NORMS
 
@@ -211,30 +212,40 @@ def choices(page, all_scenes, rows):
     page.table(["choice", *(f"{scene.kind}: {scene.key}" for scene in swept)], body)
 
 
-def price_list(page, rows, cost, n):
-    everything = cost[0]
+def saved(row):
+    """Median and quartiles [%]."""
+    return f"{row['saved']:.1f} ({row['saved_low']:.1f} to {row['saved_high']:.1f})" if "saved" in row else ""
+
+
+def price_list(page, rows, prices):
+    everything = prices[0]
     at = {(r["choice"], r["dt_factor"]): r for r in rows if r["scene"] == "wall" and r["choice"] in sweep.GUARDS}
     base = {r["dt_factor"]: r for r in rows if r["scene"] == "wall" and r["choice"] == "robust" and r["T"] == 3 and not r["off"] and r["n"] == max((q["n"] for q in at.values()), default=0)}
+    named = [(row["point"].removeprefix("price: "), row) for row in prices]
     page.heading("What effects cost, and what leaving one out changes")
     change = {r["off"]: r for r in rows if r["off"]}
-    page.text(f"Scene wall on {n} cells along x: ms per step, passes per step and bytes per cell; error: against the reference with everything on, at the sweep's size. "
+    page.text(f"Scene wall on {everything['n']} cells along x: ms per step, passes per step and bytes per cell; error: against the reference with everything on, at the sweep's size. "
+              f"Saved: median and quartiles of {everything['rounds']} pairs of runs, one with it and one without, in turn, {everything['steps']} steps each. "
               "On so coarse a grid one error can offset another: what leaving an effect out changes by itself is in effects/README.md of samples/report.")
     page.table(["", "ms per step", "saved [%]", "passes", "bytes per cell", "error [%]"],
-               [[what, f"{ms:.4g}", f"{100 * (1 - ms / everything[1]):.0f}", str(passes), f"{size:.0f}",
-                 "".join(number(row.get("error")) for row in (change.get(what.removeprefix("effect ").removesuffix(" off")), base.get(1) if what == "everything" else None) if row)]
-                for what, ms, passes, size in cost if what == "everything" or what.startswith("effect")])
+               [[what, f"{row['ms_per_step']:.4g}", saved(row), str(row["passes"]), f"{row['bytes_per_cell']:.0f}",
+                 "".join(number(point.get("error")) for point in (change.get(what.removeprefix("effect ").removesuffix(" off")), base.get(1) if what == "everything" else None) if point)]
+                for what, row in named if what == "everything" or what.startswith("effect")])
     page.heading("What safety costs")
-    page.text("One guard off at a time (negative: it costs more without). Error and mass drift at the base step and at four times it, where the guards work. "
-              "Strict floats: 6 to 16 % of a step (tests/conformance/results). The ledger of open sides and sources is part of their passes.")
-    both = lambda table, key: [f"{number(table[key].get('error'))} %, drift {number(table[key].get('drift', 0))}" if key in table else "" ]
-    body = [["everything on", f"{everything[1]:.4g}", "", *both(base, 1), *both(base, 4)]]
-    for what, ms, _, _ in cost:
-        if what in sweep.GUARDS or what.startswith("timestamps"):
-            body.append([what, f"{ms:.4g}", f"{100 * (1 - ms / everything[1]):.0f}", *both(at, (what, 1)), *both(at, (what, 4))])
+    page.text("One guard off at a time (negative: it costs more without), measured as above. Error and mass drift at the base step and at four times it, where the guards work. "
+              f"The ledger has no off: its row is the share of the passes that only it needs ({', '.join(PASSES)}) in the time of all, of level {LEVEL}, which has open sides and a source, on "
+              f"as many cells along a side; what no_quantum saves is its rounding. Strict floats: a second build without them; where there is none, tests/conformance/results has 6 to 16 % of a step on an H100.")
+    both = lambda table, key: [f"{number(table[key].get('error'))} %, drift {number(table[key].get('drift', 0))}" if key in table else ""]
+    body = [["everything on", f"{everything['ms_per_step']:.4g}", "", *both(base, 1), *both(base, 4)]]
+    for what, row in named[1:]:
+        if what in sweep.GUARDS or not (what in sweep.METHODS or what.startswith(("effect", "fused"))):
+            body.append([what, f"{row['ms_per_step']:.4g}" if "ms_per_step" in row else "", saved(row), *both(at, (what, 1)), *both(at, (what, 4))])
     page.table(["off", "ms per step", "saved [%]", "base step", "four times it"], body)
+    page.heading("What choices of method and of fused stages cost")
+    page.table(["choice", "ms per step", "saved [%]", "passes"], [[what, f"{row['ms_per_step']:.4g}", saved(row), str(row["passes"])] for what, row in named if what in sweep.METHODS or what.startswith("fused")])
 
 
-def write(out, all_scenes, rows, cost, cost_size, quick):
+def write(out, all_scenes, rows, prices, planned, quick):
     page = Page(out)
     device = next((r["device"] for r in rows if "device" in r), "")
     backend = next((r["backend"] for r in rows if "backend" in r), "")
@@ -244,6 +255,8 @@ def write(out, all_scenes, rows, cost, cost_size, quick):
               f"Truth of island, heap and wall: double precision on {scenes.SOLVED_N} x {scenes.SOLVED_N // 2} cells "
               f"with second order for water. A point such as wall@n64,dt1,T3,robust is 64 cells along x, the base time step, "
               "three sand steps per water step, method robust; samples/report/wadi-report BIN --point POINT measures it again.")
+    if len(rows) < planned:
+        page.text(f"Broken off: {planned - len(rows)} of {planned} points are not measured.")
     page.heading("Error against time")
     for scene in all_scenes:
         if scene.sweep and any(r["scene"] == scene.key for r in rows):
@@ -253,5 +266,5 @@ def write(out, all_scenes, rows, cost, cost_size, quick):
     choices(page, all_scenes, rows)
     second_order(page, all_scenes, rows)
     convergence(page, all_scenes, rows)
-    price_list(page, rows, cost, cost_size)
+    price_list(page, rows, prices)
     page.write()

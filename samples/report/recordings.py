@@ -34,7 +34,7 @@ class Recorder:
     def __exit__(self, *_):
         self.close()
 
-    def record(self, level, *, method=None, variant=None, size=None, dt=None, seconds=None, times=(), fields=("H", "hs", "W", "surface"),
+    def record(self, level, *, method=None, variant=None, accuracy=None, size=None, dt=None, fused=None, seconds=None, times=(), fields=("H", "hs", "W", "surface"),
                pictures=0, profile=False, benchmark=False, files=None):
         """level: a shipped level's name, or a level as a dict. times [s]: when `fields` are kept. pictures: how many on the contact
         sheet. benchmark: figures of the state are taken at the end only.
@@ -50,7 +50,7 @@ class Recorder:
         else:
             where = LEVELS / level
         command = [self.program, str(where), "--backend", self.backend, "--out", str(folder), "--summary", str(folder / "summary.json")]
-        for key, value in (("method", method), ("variant", variant), ("dt", dt), ("seconds", seconds)):
+        for key, value in (("method", method), ("variant", variant), ("accuracy", accuracy), ("dt", dt), ("fused-stages", fused), ("seconds", seconds)):
             if value is not None:
                 command += [f"--{key}", str(value)]
         if size is not None:

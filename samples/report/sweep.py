@@ -25,6 +25,7 @@ CHOICES = {
 GUARDS = [choice for choice in CHOICES if choice.startswith("no_")]
 METHODS = [choice for choice in CHOICES if not choice.startswith("no_")]
 EFFECTS = ("elastoplastic", "cohesion", "drag", "diffusion", "mixture")
+NEEDED_BY = {"elastoplastic": "cohesion", "mixture": "diffusion"}  # what needs an effect goes with it
 CHOICES_OF = {"water": ("robust", "published", "second_order", "semi_lagrangian"), "dry sand": ("robust", "published", "semi_lagrangian", "polar", "direct"),
               "wet sand": tuple(METHODS)}  # what a kind of scene has something of to show
 STEPS = (0.25, 0.5, 1, 2, 4)
@@ -87,16 +88,18 @@ def points_of(scene, quick):
             yield Point(scene.key, scene.n, dt)
 
 
+def forced_off(effect):
+    """A level's `effects` without this one."""
+    return {name: "off" for name in (effect, NEEDED_BY.get(effect)) if name}
+
+
 def measure(recorder, scene, point, repeats):
     """A point's row: error, other measures, time. A refused level gives its message as `failed`."""
     level = scene.make(point.n)
     level["dt"] = point.dt * scene.step(level["grid"]["dx"])
     level = recordings.choose(level, substeps=point.ratio, **CHOICES[point.choice])
     if point.off:
-        level["effects"] = {**level.get("effects", {}), point.off: "off"}
-        for needs, what in (("elastoplastic", "cohesion"), ("mixture", "diffusion")):  # what an effect needs goes with it
-            if point.off == needs:
-                level["effects"][what] = "off"
+        level["effects"] = {**level.get("effects", {}), **forced_off(point.off)}
     row = {"point": point.name(), "scene": scene.key, "kind": scene.kind, "truth": scene.truth, "n": point.n, "dt_factor": point.dt, "dt": level["dt"], "T": point.ratio,
            "choice": point.choice, "off": point.off}
     try:

@@ -22,13 +22,21 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder)
         first = run(report, programs, "--quick", "--out", out).stdout
-        stored = (out / "results.jsonl").read_text().splitlines()
+        kept = (out / "results.jsonl").read_text().splitlines()
+        stored = [line for line in kept if '"point": "price: ' not in line]
         assert "100 %" in first and len(stored) > 60, first
+        assert "Broken off" not in (out / "README.md").read_text()
 
-        # Broken off: the last ten rows are lost, one of them in mid-line. Only those are measured again.
-        (out / "results.jsonl").write_text("\n".join(stored[:-10]) + "\n" + stored[-10][:40])
+        # Broken off: the last ten rows are lost, one of them in mid-line. A page made in no time lacks them and says so; then only they are
+        # measured again.
+        (out / "results.jsonl").write_text("\n".join(kept[:-10]) + "\n" + kept[-10][:40])
+        prices = (out / "prices.csv").read_text()
+        run(report, programs, "--quick", "--out", out, "--minutes", "0", code=1)
+        assert f"Broken off: 10 of {len(stored)} points are not measured." in (out / "README.md").read_text()
         second = run(report, programs, "--quick", "--out", out).stdout
         assert f"{len(stored) - 10} of {len(stored)} points are there already" in second, second
+
+        assert (out / "prices.csv").read_text() == prices  # measured once
 
         rows = {row["point"]: row for row in csv.DictReader((out / "results.csv").open())}
         assert len(rows) == len(stored)
@@ -66,6 +74,11 @@ def main():
         assert error("wall@n64,dt1,T3,robust,elastoplastic=off") > 1.5 * error("wall@n64,dt1,T3,robust")
         assert float(rows["wall@n64,dt4,T3,no_quantum"]["drift"]) > 1e-9 > float(rows["wall@n64,dt1,T3,robust"]["drift"]) == 0
 
+        priced = {row["point"].removeprefix("price: "): row for row in csv.DictReader((out / "prices.csv").open())}
+        passes = {what: int(row["passes"] or 0) for what, row in priced.items()}  # a busy machine cannot change these
+        assert passes["effect elastoplastic off"] < passes["everything"] == passes["no_limiter"] < passes["published"], passes
+        assert float(priced["effect elastoplastic off"]["saved"]) > 15 and 0 < float(priced["ledger"]["saved"]) < 20, priced
+
         for point in ("stoker@n100,dt1,T3,robust", "stoker@n100,dt1,T3,second_order"):
             again = run(report, programs, "--point", point).stdout
             assert re.search(r"^error: ([\d.]+)", again, re.M)[1] == rows[point]["error"], again
@@ -79,6 +92,7 @@ def main():
         for chart in re.findall(r"\]\(([^)]+\.svg)\)", text):
             assert (out / chart).is_file(), chart
         assert json.loads(stored[0])["point"] in rows
+        assert all(f"\n| {what} |" in text for what in priced), text
 
     for arguments, says in ((("--point", "stoker@100"), "SCENE@nCELLS"), (("--point", "moon@n8,dt1,T1,robust"), "no scene"),
                             (("--point", "wall@n8,dt1,T1,magic"), "no choice"), (("--only", "moon"), "no scene")):

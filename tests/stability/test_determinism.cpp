@@ -30,7 +30,20 @@ TEST_CASE("runs, thread counts and instruction sets agree in every bit") {
         CAPTURE(threads);
         CHECK(run(scene, 60, cpu(threads)) == expected);
     }
-    CHECK(run(scene, 60, cpu(2, "base")) == expected);
+    int sets = 0;
+    for (const std::string set : {"base", "avx2", "avx512"}) {
+        auto device = compute::open_device("cpu", 0, cpu(2, set).options);
+        if (device) {
+            CAPTURE(set);
+            CHECK(run(scene, 60, cpu(2, set)) == expected);
+            ++sets;
+        } else {
+            CHECK(device.status().message.find("no instruction set '" + set) != std::string::npos);
+            MESSAGE(device.status().message);
+        }
+    }
+    CHECK(sets >= 1);
+    CHECK(!compute::open_device("cpu", 0, cpu(2, "mmx").options));
     auto changed = scene;
     changed.fields.water[0] += 1e-4F;
     CHECK(run(changed, 60) != expected);
