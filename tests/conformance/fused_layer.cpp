@@ -36,16 +36,20 @@ std::vector<CaseSpec> list() {
     const auto stages = compute::stage_table();
     for (std::size_t stage = 0; stage < stages.size(); ++stage) {
         if (!stages[stage].fused()) continue;
+        const auto masks = stage_masks(static_cast<int>(stage));
+        // Every stage meets every grid and scene, every mask some.
+        const std::size_t rounds = masks.size() < 4 ? scenes.size() : 4;
         std::size_t turn = 0;
-        for (const std::uint32_t mask : stage_masks(static_cast<int>(stage))) {
+        for (const std::uint32_t mask : masks) {
             const auto add = [&](const std::string& grid, const std::string& scene, const std::string& method,
                                  std::uint32_t more = 0) {
                 cases.push_back({std::string(stages[stage].name),
                                  {{"grid", grid}, {"effects", effects_text(mask | more)}, {"scene", scene}, {"method", method}}});
             };
-            for (const auto& grid : grids) add(grid, "random", "default");
-            for (const auto& scene : scenes) add(grids[turn % grids.size()], scene, methods[turn % methods.size()]), ++turn;
-            if ((stages[stage].without & EFFECT_OPEN_SIDES) == 0) add("33x17", "random", "default", EFFECT_OPEN_SIDES);
+            add("257x130", "random", "default");
+            if (((mask | stages[stage].without) & EFFECT_OPEN_SIDES) == 0) add("33x17", "random", "default", EFFECT_OPEN_SIDES);
+            for (std::size_t n = 0; n < rounds; ++n, ++turn)
+                add(grids[turn % grids.size()], scenes[turn % scenes.size()], methods[turn % methods.size()]);
         }
     }
     return cases;

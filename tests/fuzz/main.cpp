@@ -34,8 +34,15 @@ std::vector<std::string> all_backends() {
 class Campaign {
   public:
     explicit Campaign(const Options& options) : options_(options), start_(now()), next_(options.seed) {
-        if (!options_.csv.empty()) csv_ = std::fopen(options_.csv.c_str(), "w");
-        if (csv_ != nullptr) std::fputs("seed,nx,ny,dx,dt,steps,commands,effects,milliseconds,refused,check,failure\n", csv_);
+        if (options_.csv.empty()) return;
+        csv_ = std::fopen(options_.csv.c_str(), "w");
+        broken_ = csv_ == nullptr;
+        if (broken_) {
+            std::perror(options_.csv.c_str());
+            return;
+        }
+        std::setvbuf(csv_, nullptr, _IOLBF, BUFSIZ); // a run that is broken off leaves what it has done
+        std::fputs("seed,nx,ny,dx,dt,steps,commands,effects,milliseconds,refused,check,failure\n", csv_);
     }
     ~Campaign() {
         if (csv_ != nullptr) std::fclose(csv_);

@@ -1,7 +1,7 @@
 // What each guard of a method is for: the same scene passes with it and fails without. Not here: the outflow limiter's bounds in
 // other scenes (test_invariants.cpp), the elastic cap (test_time_steps.cpp), shear at corners
-// (tests/reference/test_reference_guards.cpp), the reset of broken stretches (test_strain_extremes.cpp). For gradient clamp and
-// cohesion cap no such scene was found: the last case.
+// (tests/reference/test_reference_guards.cpp), the reset of broken stretches and what the gradient clamp's value rests on
+// (test_strain_extremes.cpp).
 #include "tests/stability/quality.hpp"
 
 using namespace wadi;
@@ -116,18 +116,47 @@ TEST_CASE("low-pass of saturation: a soaked column runs out smooth; without it, 
     CHECK(rough(0) > 0.06);
 }
 
-TEST_CASE("gradient clamp and cohesion cap: these scenes are as smooth without them") {
-    const auto rough = [](Scene scene, bool on) {
-        if (!on) scene.settings.method.gradient_clamp = scene.settings.method.cohesion_cap = 0;
+TEST_CASE("gradient clamp: sand that runs into sand is pressed; without it the strain turns inside out and is lost") {
+    for (const double clamp : {0.4, 0.0}) {
+        auto scene = flat_scene(32, 8, 0.1, 0.01); // 6 of strain in the first substep
+        auto& method = scene.settings.method;
+        method.substeps = 1;
+        method.velocity_clamp = 1e6;
+        method.gradient_clamp = clamp;
+        scene.settings.material.friction = 0;
+        scene.settings.material.young_modulus = 1e6;
+        scene.fill(scene.fields.sand, [](double, double) { return 1.0; });
+        scene.fill(scene.fields.sand_velocity_x, [](double x, double) { return x < 1.6 ? 30.0 : -30.0; });
         auto world = make_world(scene);
-        step(*world, 100);
+        for (int n = 0; n < 6; ++n) {
+            step(*world, 1);
+            const double stretch = cells_of(*world, "stretch_xx").at(15, 4);
+            CHECK((clamp > 0 ? stretch < -0.3 : stretch == 0));
+        }
         check_books(*world);
-        return roughness(cells_of(*world, "sand_height"));
-    };
-    auto fast = mixed_scene(40, 36);
-    fast.settings.dt = 0.05;
-    auto tough = soaked_column(2);
-    tough.fill(tough.fields.water, [](double, double) { return 0.01; });
-    tough.settings.material.cohesion_wet = tough.settings.material.cohesion_capillary = 1e12;
-    for (const Scene& scene : {mixed_scene(40, 36), fast, tough}) CHECK(rough(scene, false) < 1.1 * rough(scene, true));
+    }
+}
+
+TEST_CASE("cohesion cap: tough sand that spreads thins out smoothly; without it there is a checkerboard") {
+    for (const double cohesion : {1e5, 1e8, 1e12}) {
+        for (const double cap : {0.9, 0.0}) {
+            auto scene = flat_scene(64, 64, 0.1, 0.009);
+            scene.settings.method.cohesion_cap = cap;
+            auto& m = scene.settings.material;
+            m.friction = 0.1;
+            m.young_modulus = 1e7;
+            m.cohesion_dry = cohesion;
+            const auto inside = [](double x, double y) { return std::hypot(x - 3.2, y - 3.2) < 2; };
+            scene.fill(scene.fields.sand, [&](double x, double y) {
+                return inside(x, y) ? 0.2 + 0.004 * std::sin(57 * x + 23 * y) : 0.0; // weak spots
+            });
+            scene.fill(scene.fields.sand_velocity_x, [&](double x, double y) { return inside(x, y) ? 2 * (x - 3.25) : 0.0; });
+            scene.fill(scene.fields.sand_velocity_y, [&](double x, double y) { return inside(x, y) ? 2 * (y - 3.25) : 0.0; });
+            auto world = make_world(scene);
+            step(*world, 240);
+            check_books(*world);
+            const double board = sand_checkerboard(*world);
+            CHECK((cap > 0 ? board < 1e-3 : board > 0.1));
+        }
+    }
 }

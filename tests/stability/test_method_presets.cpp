@@ -12,7 +12,7 @@ Scene level_with(const std::string& name, int nx, int ny, const char* method) {
     LevelOverrides overrides;
     overrides.size = {nx, ny};
     overrides.method = method;
-    auto level = load_level(std::string(WADI_SOURCE_DIR) + "/samples/levels/" + name + "/level.json", overrides);
+    auto level = load_level(WADI_SOURCE_DIR "/samples/levels/" + name + "/level.json", overrides);
     REQUIRE_MESSAGE(level, level.status().message);
     return {level->settings, level->fields};
 }

@@ -90,6 +90,35 @@ TEST_CASE("thousands of turns, by angles up to pi, leave a stretch its size and 
     CHECK(stretch > 1.5);
 }
 
+TEST_CASE("gradient clamp below 1/2: no velocities around a cell turn its strain inside out, by either form; above it some do") {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> uniform(-1, 1);
+    const auto inside_out = [&](float limit) {
+        struct Count {
+            int cayley = 0, explicit_form = 0;
+        } count;
+        for (int n = 0; n < 200000; ++n) {
+            const float scale = std::pow(10.0F, 4 * uniform(random));
+            const auto u = [&] { return scale * uniform(random); };
+            const unsigned wet = n % 16;
+            const Gradient g = velocity_gradient(u(), u(), u(), u(), u(), u(), u(), u(), (wet & 1) != 0, (wet & 2) != 0,
+                                                 (wet & 4) != 0, (wet & 8) != 0, 1, limit);
+            Stress stress{};
+            const Stretch v = project({uniform(random), uniform(random), uniform(random)}, stress);
+            const Stretch now = evolve_stretch(v, g);
+            if (!(double(1 + now.xx) * double(1 + now.yy) > double(now.xy) * double(now.xy))) ++count.cayley;
+            if (!(double(1 + g.xx) * double(1 + g.yy) > double(g.xy) * double(g.yx))) ++count.explicit_form; // of F + G F
+        }
+        return count;
+    };
+    const auto within = inside_out(0.4F), beyond = inside_out(0.6F), none = inside_out(1e30F);
+    CHECK(within.cayley == 0);
+    CHECK(within.explicit_form == 0);
+    CHECK(beyond.explicit_form > 1000);
+    CHECK(none.cayley > 1000);
+    CHECK(none.explicit_form > 10000);
+}
+
 TEST_CASE("worlds whose steps would turn strain inside out stay finite; what is projected stays within the logarithm's bounds") {
     for (const auto transport : {StrainTransport::left_stretch, StrainTransport::polar, StrainTransport::direct}) {
         auto scene = mixed_scene(32, 28);
