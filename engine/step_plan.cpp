@@ -85,10 +85,6 @@ void account_water(Builder& b) {
 
 // Both layers' fluxes and the new height.
 void plan_water_transport(Builder& b) {
-    if (b.fuse("transport_mixed_water", {"water_height"})) {
-        if (b.has(EFFECT_OPEN_SIDES)) account_water(b);
-        return;
-    }
     if (b.has(EFFECT_DIFFUSION)) b.run("diffuse_mixed_water");
     b.run("limit_water_outflow");
     b.run("compute_water_flux");
