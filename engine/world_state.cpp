@@ -59,14 +59,10 @@ WorldState::WorldState(const Settings& settings, std::unique_ptr<compute::Device
     : settings_(settings), layout_{settings.grid.nx, settings.grid.ny}, params_(derive_params(settings)),
       level_(level_digest(settings)), device_(std::move(device)), group_(group) {}
 
-// Below it a GPU has too few tiles to be full: what the fused stages save in memory they lose in time (measured:
-// engine/README.md).
-constexpr std::int64_t least_fused_cells = std::int64_t{1} << 20;
-
 PlanChoice WorldState::plan_choice() const {
     const auto& device = device_->capabilities();
-    const bool gpu = device.kind != compute::DeviceKind::cpu && device.kind != compute::DeviceKind::software_gpu;
-    const bool gains = gpu && std::int64_t{settings_.grid.nx} * settings_.grid.ny >= least_fused_cells;
+    const std::int64_t cells = std::int64_t{settings_.grid.nx} * settings_.grid.ny;
+    const bool gains = device.fused_gain_cells > 0 && cells >= device.fused_gain_cells;
     const bool asked =
         settings_.fused_stages == FusedStages::always || (settings_.fused_stages == FusedStages::automatic && gains);
     const bool active_tiles = settings_.active_tiles > 0;

@@ -59,6 +59,9 @@ void read_properties(Context& c, const PhysicalDevice& chosen) {
         c.limits.group_size[0] >= compute::fused_group_x && c.limits.group_size[1] >= compute::fused_group_y &&
         c.limits.group_threads >= compute::fused_group_x * compute::fused_group_y &&
         limits.maxComputeSharedMemorySize >= compute::fused_shared_bytes && c.limits.storage_buffers >= bindings;
+    // H100: below it too few tiles fill the GPU (engine/README.md). A software device gains nothing.
+    const bool gpu = chosen.info.kind != compute::DeviceKind::software_gpu && chosen.info.kind != compute::DeviceKind::cpu;
+    c.capabilities.fused_gain_cells = gpu ? std::int64_t{1} << 18 : 0;
     c.capabilities.backend = "vulkan";
     c.capabilities.name = chosen.info.name;
     c.capabilities.driver = names_driver ? std::string(driver.driverName) + " " + driver.driverInfo
