@@ -8,7 +8,7 @@
 namespace wadi {
 namespace {
 
-std::size_t cell_count(const Frame& frame) { return static_cast<std::size_t>(frame.nx) * static_cast<std::size_t>(frame.ny); }
+std::size_t cell_count(const LevelFrame& frame) { return static_cast<std::size_t>(frame.nx) * static_cast<std::size_t>(frame.ny); }
 
 double value_at(const std::vector<float>& field, std::size_t cell) {
     return field.empty() ? 0 : static_cast<double>(field[cell]);
@@ -32,7 +32,7 @@ double combined(double current, double value, Combine combine) {
 
 double rounded(double height, double quantum) { return quantum > 0 ? std::round(height / quantum) * quantum : height; }
 
-Result<std::vector<float>> load_heights(const Layer& layer, const Frame& frame, const FileReader& files,
+Result<std::vector<float>> load_heights(const Layer& layer, const LevelFrame& frame, const FileReader& files,
                                         std::vector<std::string>& warnings) {
     const MapSource& source = *layer.map;
     auto map = read_map(source.file, source.size, files);
@@ -84,7 +84,7 @@ std::string filled_warning(const Map& map, const std::string& path) {
            " cells hold NODATA_value; they take the height of the nearest cell that has one";
 }
 
-Result<std::vector<float>> draw_layers(const std::vector<Layer>& layers, LayerTarget target, const Frame& frame,
+Result<std::vector<float>> draw_layers(const std::vector<Layer>& layers, LayerTarget target, const LevelFrame& frame,
                                        const FileReader& files, const std::vector<float>& terrain, const std::vector<float>& sand,
                                        std::vector<std::string>& warnings) {
     std::vector<float> field(layers.empty() ? 0 : cell_count(frame), 0.0f);
@@ -123,7 +123,7 @@ Result<std::vector<float>> draw_layers(const std::vector<Layer>& layers, LayerTa
     return field;
 }
 
-void draw_velocities(const std::vector<VelocityRegion>& regions, bool of_sand, const Frame& frame, std::vector<float>& x,
+void draw_velocities(const std::vector<VelocityRegion>& regions, bool of_sand, const LevelFrame& frame, std::vector<float>& x,
                      std::vector<float>& y) {
     for (const VelocityRegion& region : regions) {
         if (region.of_sand != of_sand) continue;

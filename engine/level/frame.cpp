@@ -57,9 +57,9 @@ void stretch(Settings& settings, double factor) {
 
 } // namespace
 
-Result<Frame> apply_overrides(const LevelOverrides& overrides, Settings& settings) {
+Result<LevelFrame> apply_overrides(const LevelOverrides& overrides, Settings& settings) {
     if (Status status = check(overrides); !status) return status;
-    Frame frame;
+    LevelFrame frame;
     if (const auto size = chosen_size(overrides, settings.grid)) {
         Grid& grid = settings.grid;
         const double dx = grid.nx * grid.dx / size->first;

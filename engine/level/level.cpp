@@ -53,7 +53,7 @@ Status read_root(const Json& json, const FileReader& files, Level& level, Layers
     return status;
 }
 
-Status draw(const Layers& layers, const Frame& frame, const FileReader& files, Level& level) {
+Status draw(const Layers& layers, const LevelFrame& frame, const FileReader& files, Level& level) {
     InitialFields& fields = level.fields;
     const auto into = [&](std::vector<float>& field, const std::vector<Layer>& list, LayerTarget target) {
         auto drawn = draw_layers(list, target, frame, files, fields.terrain, fields.sand, level.warnings);
