@@ -6,11 +6,12 @@ G = 9.81
 
 class Scene:
     """n: cells along x of its base size; step(dx): its base time step; make(n): the level without dt; measure(run, summary, level): list
-    of (name, unit, value, right answer or None), the first an error in percent, which the charts show."""
+    of (name, unit, value, right answer or None), the first an error in percent, which the charts show; most: cells along x of its finest run."""
 
-    def __init__(self, key, kind, title, n, seconds, make, measure, *, truth, step, fields=("W", "hs", "surface"), times=None, files=None, sweep=False):
+    def __init__(self, key, kind, title, n, seconds, make, measure, *, truth, step, fields=("W", "hs", "surface"), times=None, files=None, sweep=False, most=None):
         self.key, self.kind, self.title, self.n, self.seconds, self.make, self.measure = key, kind, title, n, seconds, make, measure
         self.truth, self.step, self.fields, self.times, self.files, self.sweep = truth, step, fields, times or (0, seconds), files, sweep
+        self.most = most or 2 * n
 
 
 def base(name, nx, ny, dx, **rest):

@@ -77,7 +77,7 @@ def points_of(scene, quick):
             yield Point(scene.key, sizes[-1], 1, 3, choice)
             yield Point(scene.key, sizes[-1], 0.25, 3, choice)
     else:
-        sizes = [scene.n // 4, scene.n // 2, scene.n] + ([] if quick else [2 * scene.n])
+        sizes = [scene.n // 4, scene.n // 2, scene.n] + [n for n in (2 * scene.n,) if not quick and n <= scene.most]
         if scene.key == "monai":
             sizes = [scene.n // 2] if quick else [scene.n // 2, scene.n, 2 * scene.n - 1]
         for n in sizes:

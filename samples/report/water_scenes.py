@@ -74,7 +74,7 @@ def smooth_wave():
         return [*norms(now, truth, 0.3), ("crest", "m", max(now), 1.3)]  # of the wave's height
 
     return Scene("wave", "water", "Smooth wave, 0.3 m high on 1 m of water, in percent of its height", 480, seconds, make, measure, truth="exact",
-                 step=lambda dx: 0.04 * dx, fields=("W",), files=files)
+                 step=lambda dx: 0.04 * dx, fields=("W",), files=files, most=480)  # a level holds 256 regions of velocity
 
 
 def planar_bowl():
