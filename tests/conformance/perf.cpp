@@ -202,6 +202,11 @@ Status measure_step(Device& device, int size, const std::string& name, std::uint
     auto scene = make_large_scene(size, effects);
     if (!scene) return scene.status();
     PassRunner runner(device, *scene, {.fused = fused});
+    const auto passes = runner.passes();
+    const bool has = std::any_of(passes.begin(), passes.end(), [](const PlanPass* pass) {
+        return compute::stage_table()[static_cast<std::size_t>(pass->stage)].fused();
+    });
+    if (fused && !has) return ok_status(); // the row without is the same
     if (auto status = runner.open(); !status) return status;
     Row row{.name = name, .size = size, .bytes_per_cell = runner.plan().bytes_per_cell()};
     row.world_bytes = 4.0 * static_cast<double>(runner.layout().size()) * runner.plan().field_buffers();
@@ -353,7 +358,7 @@ Status run_perf(Session& session, const PerfOptions& options, bool first) {
     if (!ceiling) return ceiling.status();
     std::vector<Row> rows;
     std::vector<bool> kinds = {false};
-    if ((*device)->capabilities().fused_stages) kinds.push_back(true);
+    if ((*device)->capabilities().fused_gain_cells > 0) kinds.push_back(true);
     for (int size = options.min_size; size <= options.max_size; size *= 2) {
         for (const bool fused : kinds)
             if (auto status = measure_stages(**device, size, fused, options, rows); !status) return status;

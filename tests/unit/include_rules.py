@@ -7,6 +7,7 @@ import sys
 # folder -> prefixes that its files may include; the longest matching folder decides. "<...>" headers are checked by LIBRARIES.
 RULES = {
     "shaders": ["../physics/", "effects.h", "step_params.h", "stage_", "division_"],
+    "shaders/tools": ["engine/compute/stage_table.hpp"],
     "engine": ["engine/", "shaders/step_params.h", "shaders/effects.h"],
     "backends/cpu": ["backends/cpu/", "engine/compute/"],
     "backends/vulkan": ["backends/vulkan/", "engine/compute/", "volk.h", "self_test.inc", "division_"],
@@ -46,7 +47,7 @@ def breaches(root, path):
             if name.startswith(library) and not relative.startswith(tuple(u + "/" for u in users)):
                 yield f"{where}: only {', '.join(users)} may use it"
         if kind == '"' and folder is not None and relative.startswith(tuple(RULES)):
-            local = (path.parent / name).is_file() and "/" not in name and not relative.startswith("shaders/")
+            local = (path.parent / name).is_file() and "/" not in name and (relative.startswith("shaders/tools/") or not relative.startswith("shaders/"))
             if not local and not any(name.startswith(p) for p in RULES[folder]):
                 yield f"{where}: {folder} may include only {', '.join(RULES[folder])}"
 
