@@ -87,6 +87,7 @@ std::string write_cuda(const FusedStage& f, const Effects& effects) {
     const std::string space = "wadi_stage_cuda_" + s.name;
     const auto tile = fields_kept(f, Keeping::tile);
     // Groups on a multiprocessor, for which the compiler saves registers: these kernels wait for instructions, not for memory.
+    // Before compute capability 8.0 it holds 1024 threads, 4 groups.
     const int groups = 4 * tile.size() * static_cast<std::size_t>(tile_floats(f)) > 16384 ? 5 : 6;
     std::ostringstream o;
     o << "// Written by stagec from " << s.name << ".fused.\nnamespace " << space << " {\n#include \"stage_cuda.h\"\n"
@@ -105,7 +106,8 @@ std::string write_cuda(const FusedStage& f, const Effects& effects) {
          "false;\n"
       << part_functions(f, effects) << "__device__ __forceinline__ void tile() {\n    PLACE_TILE;\n"
       << phase_loops(f) << "}\n};\n"
-      << "template <unsigned E> __global__ void __launch_bounds__(" << fused_group_x * fused_group_y << ", " << groups << ")\n"
+      << "#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ < 800\n#define GROUPS 4\n#else\n#define GROUPS " << groups << "\n#endif\n"
+      << "template <unsigned E> __global__ void __launch_bounds__(" << fused_group_x * fused_group_y << ", GROUPS)\n"
       << "run(const WorldParams P, const StepInput* __restrict__ input, const Slots b) {\n    __shared__ float tiles["
       << std::max<std::size_t>(1, tile.size()) << "][" << tile_floats(f) << "];\n    " << s.struct_name << "<E> stage{P, *input";
     for (const auto& b : s.bindings)
