@@ -1,16 +1,28 @@
 #include "engine/active_count.hpp"
+#include <algorithm>
+#include <array>
 #include <cstring>
 
 namespace wadi {
 
+namespace {
+
+using Counts = std::array<std::uint32_t, 2>; // one per list
+
+} // namespace
+
 Status ActiveCount::append(compute::ProgramBuilder& builder, int turn) {
     auto& slot = slots_[static_cast<std::size_t>(turn)];
     if (slot.buffer.id == 0) {
-        auto made = state_.make_buffer({4, "active count " + std::to_string(turn), compute::HostAccess::readback});
+        auto made = state_.make_buffer({sizeof(Counts), "active count " + std::to_string(turn), compute::HostAccess::readback});
         if (!made) return made.status();
         slot.buffer = *made;
     }
-    builder.copy({state_.buffer("active_dispatch", {}), slot.buffer, 0, 0, 4});
+    std::uint64_t at = 0;
+    for (const auto count : state_.active_counts()) {
+        builder.copy({count, slot.buffer, 0, at, sizeof(std::uint32_t)});
+        at += sizeof(std::uint32_t);
+    }
     return ok_status();
 }
 
@@ -23,7 +35,10 @@ bool ActiveCount::asleep() {
     for (const auto& slot : slots_) {
         // Only where no submission can be writing it.
         if (slot.ticket.value <= seen_ || !state_.device().finished(slot.ticket)) continue;
-        std::memcpy(&newest_, state_.device().mapped(slot.buffer).data(), sizeof newest_);
+        Counts counts{};
+        std::memcpy(counts.data(), state_.device().mapped(slot.buffer).data(),
+                    sizeof(std::uint32_t) * state_.active_counts().size());
+        newest_ = *std::max_element(counts.begin(), counts.end());
         seen_ = slot.ticket.value;
         report(newest_);
     }

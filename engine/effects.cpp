@@ -1,44 +1,9 @@
 #include "engine/effects.hpp"
 #include <algorithm>
-#include <array>
 
 namespace wadi {
 
 namespace {
-
-constexpr std::array<Effect, 12> table = {{
-    {EFFECT_WATER, "water", 0, "water that flows over the ground"},
-    {EFFECT_SAND, "sand", 0, "sand that flows, with Coulomb friction on the ground"},
-    {EFFECT_MIXTURE, "mixture", EFFECT_WATER | EFFECT_SAND, "a second water layer inside the sand with its own velocity"},
-    {EFFECT_DIFFUSION, "diffusion", EFFECT_MIXTURE, "water spreads inside sand"},
-    {EFFECT_DRAG, "drag", EFFECT_WATER | EFFECT_SAND, "momentum exchange between water and sand"},
-    {EFFECT_ELASTOPLASTIC, "elastoplastic", EFFECT_SAND, "sand holds its shape: strain, stress and yield"},
-    {EFFECT_COHESION, "cohesion", EFFECT_ELASTOPLASTIC | EFFECT_WATER, "cohesion follows the saturation of the sand"},
-    {EFFECT_SOURCES, "sources", 0, "points, discs and boxes that add or take water or sand"},
-    {EFFECT_RAIN, "rain", EFFECT_WATER, "rain and evaporation"},
-    {EFFECT_OPEN_SIDES, "open_sides", 0, "sides with discharge, level or outflow"},
-    {EFFECT_BED_FRICTION, "bed_friction", EFFECT_WATER, "Manning-like friction of pure water on its bed"},
-    {EFFECT_BED_SHEAR, "bed_shear", EFFECT_MIXTURE, "pure water drags the sand under it along: bed load"},
-}};
-
-constexpr std::array<Choice, 6> choices = {{
-    {EFFECT_SEMI_LAGRANGIAN, "semi_lagrangian", 0,
-     [](const Method& m) { return m.velocity_transport == VelocityTransport::semi_lagrangian; },
-     [](Method& m) { m.velocity_transport = VelocityTransport::semi_lagrangian; }},
-    {EFFECT_WHOLE_STRAIN, "whole_strain", EFFECT_ELASTOPLASTIC,
-     [](const Method& m) { return m.strain_transport != StrainTransport::left_stretch; },
-     [](Method& m) { m.strain_transport = StrainTransport::polar; }},
-    {EFFECT_DIRECT_STRAIN, "direct_strain", EFFECT_WHOLE_STRAIN,
-     [](const Method& m) { return m.strain_transport == StrainTransport::direct; },
-     [](Method& m) { m.strain_transport = StrainTransport::direct; }},
-    {EFFECT_EXPLICIT_DRAG, "explicit_drag", EFFECT_DRAG,
-     [](const Method& m) { return m.drag_friction == DragFriction::sequence; },
-     [](Method& m) { m.drag_friction = DragFriction::sequence; }},
-    {EFFECT_LAPLACE_DIFFUSION, "laplace_diffusion", EFFECT_DIFFUSION,
-     [](const Method& m) { return m.diffusion == Diffusion::laplacian; }, [](Method& m) { m.diffusion = Diffusion::laplacian; }},
-    {EFFECT_SECOND_ORDER_WATER, "second_order_water", EFFECT_WATER, [](const Method& m) { return m.water_transport_order == 2; },
-     [](Method& m) { m.water_transport_order = 2; }},
-}};
 
 bool ever_above_zero(const TimeSeries& series) {
     return std::any_of(series.samples.begin(), series.samples.end(), [](const auto& s) { return s.second > 0; });
@@ -103,33 +68,14 @@ Wanted wanted(const Effect& effect, std::uint32_t mask, const Settings& s, Conte
 
 } // namespace
 
-std::span<const Effect> effect_table() { return table; }
-
-std::span<const Choice> choice_table() { return choices; }
-
-std::string effect_names(std::uint32_t bits) {
-    std::string names;
-    for (const auto& effect : table) {
-        if ((bits & effect.bit) != 0) names += (names.empty() ? "" : ", ") + std::string(effect.name);
-    }
-    return names;
-}
-
-bool is_legal(std::uint32_t mask) {
-    return std::all_of(table.begin(), table.end(),
-                       [&](const Effect& e) { return (mask & e.bit) == 0 || (mask & e.needs) == e.needs; }) &&
-           std::all_of(choices.begin(), choices.end(),
-                       [&](const Choice& c) { return (mask & c.bit) == 0 || (mask & c.needs) == c.needs; });
-}
-
 Result<EffectChoice> effects_required(const Settings& settings, Content content) {
     for (const auto& forced : settings.effects) {
-        if (std::none_of(table.begin(), table.end(), [&](const Effect& e) { return forced.first == e.name; })) {
+        if (std::none_of(effect_table().begin(), effect_table().end(), [&](const Effect& e) { return forced.first == e.name; })) {
             return error(Code::bad_argument, "effects." + forced.first + ": no such effect; known: " + effect_names(~0u));
         }
     }
     EffectChoice choice;
-    for (const auto& effect : table) {
+    for (const auto& effect : effect_table()) {
         Force force = Force::automatic;
         for (const auto& [name, wish] : settings.effects) {
             if (name == effect.name) force = wish;
@@ -149,7 +95,7 @@ Result<EffectChoice> effects_required(const Settings& settings, Content content)
         if (want.on) choice.mask |= effect.bit;
         choice.reasons.push_back(want.reason);
     }
-    for (const auto& made : choices)
+    for (const auto& made : choice_table())
         if (made.chosen(settings.method) && (choice.mask & made.needs) == made.needs) choice.mask |= made.bit;
     return choice;
 }

@@ -51,6 +51,8 @@ Result<EffectChoice> effects_required(const Settings& settings, Content content)
 /// ok, or bad_argument where the level forces off what this content needs.
 Status check_allowed(const Settings& settings, Content content);
 
+/// The mask with all that its effects and choices need.
+std::uint32_t with_needs(std::uint32_t mask);
 /// True when every effect in the mask and choice in the mask has what it needs.
 bool is_legal(std::uint32_t mask);
 

@@ -154,13 +154,15 @@ Result<WorldStats> StateReader::stats() {
     if (!hash) return hash.status();
     s.hash = *hash;
     if (state_.plan().active_tiles) {
-        std::uint32_t count = 0;
-        const auto from = state_.buffer("active_dispatch", state_.parity());
-        if (auto status = state_.note(state_.device().read(from, 0, std::as_writable_bytes(std::span(&count, 1)))); !status)
-            return status;
         s.tiles =
             static_cast<std::uint64_t>(state_.params().tile_columns) * static_cast<std::uint64_t>(state_.params().tile_rows);
-        s.active_tiles = count;
+        for (const auto from : state_.active_counts()) {
+            std::uint32_t count = 0;
+            if (auto status = state_.note(state_.device().read(from, 0, std::as_writable_bytes(std::span(&count, 1)))); !status)
+                return status;
+            s.active_tiles = std::max<std::uint64_t>(s.active_tiles, count);
+            s.active_sand_tiles = count; // the last list
+        }
     }
     if (auto status = publish("mark_limits", {}, {"limit_marks"}); !status) return status;
     auto marks = read_buffer(output_[0]);

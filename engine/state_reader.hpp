@@ -14,7 +14,8 @@ struct WorldStats {
     double quantum = 0;
     double largest_sand = 0, largest_water = 0, largest_water_speed = 0, largest_sand_speed = 0, smallest_height = 0;
     std::uint64_t not_finite = 0, clamped_faces = 0, capped_faces = 0, limited_cells = 0, hash = 0;
-    std::uint64_t tiles = 0, active_tiles = 0; // of the newest step; 0 without active tiles
+    std::uint64_t tiles = 0, active_tiles = 0,
+                  active_sand_tiles = 0; // of the newest step, in the longer of its lists and in the sand's; 0 without
 };
 
 class StateReader {

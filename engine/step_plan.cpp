@@ -1,5 +1,6 @@
 #include "engine/step_plan.hpp"
 #include <algorithm>
+#include <array>
 #include <set>
 #include <string_view>
 
@@ -8,6 +9,9 @@ namespace wadi {
 namespace {
 
 constexpr std::string_view next_suffix = "_next";
+
+// What a list of active tiles consists of: the dispatches of a pass over tiles name them too.
+constexpr std::array tile_fields = {"activity", "active_tiles", "active_counts", "active_list", "active_dispatch"};
 
 bool is_next(const std::string& name) { return name.ends_with(next_suffix); }
 
@@ -30,8 +34,9 @@ using Names = std::map<std::string, std::string>; // a stage's binding name -> t
 
 class Builder {
   public:
-    Builder(std::uint32_t effects, std::vector<PlanPass>& passes, bool in_substep, bool fused)
-        : effects_(effects), passes_(passes), in_substep_(in_substep), fused_(fused) {}
+    Builder(const StepPlan& plan, std::vector<PlanPass>& passes, bool in_substep)
+        : effects_(plan.effects), passes_(passes), in_substep_(in_substep), fused_(plan.fused),
+          by_material_(plan.tiles_by_material) {}
 
     bool has(std::uint32_t bits) const { return (effects_ & bits) == bits; }
 
@@ -40,11 +45,16 @@ class Builder {
         const auto& info = compute::stage_table()[static_cast<std::size_t>(compute::find_stage(stage))];
         return fused_ && has(info.needs) && (effects_ & info.without) == 0;
     }
-    bool fuse(const char* stage, std::vector<std::string> flips) {
+    bool fuse(const char* stage, std::vector<std::string> flips, const Names& names = {}) {
         if (!can_fuse(stage)) return false;
-        run(stage, std::move(flips));
+        run(stage, std::move(flips), names);
         return true;
     }
+    /// In one pass with what accelerates the sand. That pass moves the water's velocities to their other buffers, which tiles
+    /// without sand would have to do as well.
+    bool fuses_momentum_exchange() const { return !by_material_ && can_fuse("accelerate_mixture"); }
+    /// Whether active tiles have a list for each material.
+    bool tiles_by_material() const { return by_material_; }
 
     void run(const char* stage, std::vector<std::string> flips = {}, const Names& names = {}) {
         PlanPass pass;
@@ -65,7 +75,7 @@ class Builder {
   private:
     std::uint32_t effects_;
     std::vector<PlanPass>& passes_;
-    bool in_substep_, fused_;
+    bool in_substep_, fused_, by_material_;
 };
 
 // Semi-Lagrangian transport of one layer's velocities, by the boundary types from before its height moved (NUMERICS 2.12).
@@ -148,7 +158,7 @@ void plan_sand(Builder b) {
     if (b.has(EFFECT_SEMI_LAGRANGIAN)) b.run("update_sand_boundary_types");
     plan_sand_transport(b);
     // Touches only the water's velocities, which the sand's velocity stage does not read: here both sand heights are at hand.
-    if (b.has(EFFECT_MIXTURE) && !b.can_fuse("accelerate_mixture")) b.run("compute_momentum_exchange");
+    if (b.has(EFFECT_MIXTURE) && !b.fuses_momentum_exchange()) b.run("compute_momentum_exchange");
 }
 
 // After the sand height has become current.
@@ -156,25 +166,48 @@ void plan_sand_forces(Builder b) {
     if (!b.has(EFFECT_SAND)) return;
     if (b.has(EFFECT_ELASTOPLASTIC) && !b.can_fuse("transport_sand")) b.run("project_deformation_gradient");
     const std::vector<std::string> sand = {"sand_velocity_x", "sand_velocity_y"};
-    std::vector<std::string> all = sand;
-    all.insert(all.end(), {"water_velocity_x", "water_velocity_y", "mixed_velocity_x", "mixed_velocity_y"});
-    if (b.fuse("accelerate_mixture", all) || b.fuse("accelerate_sand", sand)) return;
-    if (b.has(EFFECT_SEMI_LAGRANGIAN)) plan_backtrace(b, "sand", "backtrace_sand_velocity");
-    b.run("integrate_sand_velocity", sand);
-    if (b.has(EFFECT_WHOLE_STRAIN)) b.run("stretch_deformation_gradient");
     std::vector<std::string> moved = sand;
+    if (b.fuses_momentum_exchange()) {
+        moved.insert(moved.end(), {"water_velocity_x", "water_velocity_y", "mixed_velocity_x", "mixed_velocity_y"});
+        b.run("accelerate_mixture", moved);
+        return;
+    }
     Names drag;
     if (b.has(EFFECT_DRAG)) {
         const std::string layer = b.has(EFFECT_MIXTURE) ? "mixed_velocity_" : "water_velocity_";
         drag = {{"drag_velocity_x", layer + "x"}, {"drag_velocity_y", layer + "y"}};
         moved.insert(moved.end(), {layer + "x", layer + "y"});
     }
+    if (b.fuse("accelerate_sand", moved, drag)) return;
+    if (b.has(EFFECT_SEMI_LAGRANGIAN)) plan_backtrace(b, "sand", "backtrace_sand_velocity");
+    b.run("integrate_sand_velocity", sand);
+    if (b.has(EFFECT_WHOLE_STRAIN)) b.run("stretch_deformation_gradient");
     if (b.has(EFFECT_EXPLICIT_DRAG)) b.run("apply_drag", {}, drag);
     b.run("apply_friction", moved, drag);
 }
 
+// One list of tiles, or one for the water's passes and one for the sand's.
 void plan_active_tiles(Builder b) {
-    for (const char* stage : {"mark_active_tiles", "count_active_tiles", "list_active_tiles"}) b.run(stage);
+    if (!b.tiles_by_material()) {
+        for (const char* stage : {"mark_active_tiles", "count_active_tiles", "list_active_tiles"}) b.run(stage);
+        return;
+    }
+    b.run("choose_active_tiles");
+    b.run("look_into_tiles");
+    for (const char* stage : {"count_active_tiles", "list_active_tiles"}) {
+        for (const std::string material : {"_water", "_sand"}) {
+            Names names;
+            for (const char* name : tile_fields) names[name] = name + material;
+            b.run(stage, {}, names);
+        }
+    }
+}
+
+// Two lists, unless the substeps move the water's velocities to their other buffers, as single-layer drag does: they would have
+// to in tiles without sand, too.
+bool tells_materials_apart(std::uint32_t effects) {
+    constexpr std::uint32_t both = EFFECT_WATER | EFFECT_SAND, drag = EFFECT_DRAG | EFFECT_MIXTURE;
+    return (effects & both) == both && (effects & drag) != EFFECT_DRAG;
 }
 
 // Scratch fields whose lives do not overlap share memory. A life runs from the first to the last pass that names the field;
@@ -246,6 +279,13 @@ double StepPlan::least_traffic_per_cell() const {
     return 4 * count;
 }
 
+std::vector<std::string> StepPlan::tile_list(bool of_substeps) const {
+    std::vector<std::string> names(tile_fields.begin(), tile_fields.end());
+    for (auto& name : names)
+        if (tiles_by_material) name += of_substeps ? "_sand" : "_water";
+    return names;
+}
+
 const PlanField* StepPlan::find(const std::string& name) const {
     const auto found = std::find_if(fields.begin(), fields.end(), [&](const PlanField& f) { return f.name == name; });
     return found == fields.end() ? nullptr : &*found;
@@ -257,8 +297,8 @@ StepPlan make_step_plan(std::uint32_t effects, int substeps, PlanChoice choice) 
     plan.fused = choice.fused;
     plan.effects = effects;
     plan.substeps = substeps;
-    const Builder water(effects, plan.water_passes, false, choice.fused),
-        substep(effects, plan.substep_passes, true, choice.fused);
+    plan.tiles_by_material = choice.active_tiles && tells_materials_apart(effects);
+    const Builder water(plan, plan.water_passes, false), substep(plan, plan.substep_passes, true);
     if (choice.active_tiles) plan_active_tiles(water);
     plan_water(water);
     plan_sand(substep);
@@ -279,6 +319,8 @@ StepPlan make_step_plan(std::uint32_t effects, int substeps, PlanChoice choice) 
             }
         }
     }
+    // By name, so that a snapshot's bytes do not tell how a world was run.
+    std::sort(plan.fields.begin(), plan.fields.end(), [](const PlanField& a, const PlanField& b) { return a.name < b.name; });
     share_scratch(plan);
     const auto reach = [](const std::vector<PlanPass>& passes) {
         int sum = 0;

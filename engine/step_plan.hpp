@@ -35,6 +35,8 @@ struct StepPlan {
     std::vector<PlanField> fields;
     int scratch_blocks = 0;
     bool active_tiles = false, fused = false; // as asked for
+    /// Two lists of active tiles: the water's for the passes ahead of the substeps, the sand's for those in them.
+    bool tiles_by_material = false;
     /// Cells that one step carries a change along at most: the sum of what its passes read around them.
     int reach = 0;
 
@@ -48,13 +50,15 @@ struct StepPlan {
     /// Bytes per cell that any step must move: the fields of the state once in, those that change once out.
     double least_traffic_per_cell() const;
     const PlanField* find(const std::string& name) const;
+    /// The fields of a list of active tiles: activity, flags, counts, list, dispatch.
+    std::vector<std::string> tile_list(bool of_substeps) const;
 };
 
 /// What else a plan depends on, besides what it computes: none of it changes a bit of the result.
 struct PlanChoice {
     /// Every scratch field has memory of its own then: what a tile that is left out computed last must stay readable.
     bool active_tiles = false;
-    /// Fused stages where the mask allows them; not together with active tiles.
+    /// Fused stages where the mask allows them.
     bool fused = false;
 };
 

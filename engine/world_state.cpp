@@ -65,8 +65,7 @@ PlanChoice WorldState::plan_choice() const {
     const bool gains = device.fused_gain_cells > 0 && cells >= device.fused_gain_cells;
     const bool asked =
         settings_.fused_stages == FusedStages::always || (settings_.fused_stages == FusedStages::automatic && gains);
-    const bool active_tiles = settings_.active_tiles > 0;
-    return {active_tiles, asked && device.fused_stages && !active_tiles};
+    return {settings_.active_tiles > 0, asked && device.fused_stages};
 }
 
 Status WorldState::open(const EffectChoice& effects) {
@@ -150,7 +149,9 @@ std::uint64_t WorldState::field_bytes(const PlanField& field) const {
     if (field.role == FieldRole::tiles) {
         const auto columns = static_cast<std::uint64_t>(params_.tile_columns),
                    rows = static_cast<std::uint64_t>(params_.tile_rows);
-        return 4 * (field.name == "active_dispatch" ? 4 : field.name == "active_counts" ? rows : columns * rows);
+        return 4 * (field.name.starts_with("active_dispatch") ? 8
+                    : field.name.starts_with("active_counts") ? rows
+                                                              : columns * rows);
     }
     if (field.role != FieldRole::ledger) return layout_.size() * 4;
     if (field.name != "source_ledger") return static_cast<std::uint64_t>(layout_.rim()) * 4 * 4;
@@ -274,6 +275,13 @@ compute::Buffer WorldState::buffer(const std::string& name, const Parity& parity
     return buffers_.at(base)[next ? 1 - current : current];
 }
 
+std::vector<compute::Buffer> WorldState::active_counts() const {
+    std::vector<compute::Buffer> counts;
+    for (const bool of_substeps : {false, true})
+        if (!of_substeps || plan_.tiles_by_material) counts.push_back(buffer(plan_.tile_list(of_substeps)[4], {}));
+    return counts;
+}
+
 compute::GroupSize WorldState::group_of(int stage) const {
     auto group = group_;
     if (compute::stage_table()[static_cast<std::size_t>(stage)].marks) group.tile = settings_.active_tiles;
@@ -287,9 +295,9 @@ Status WorldState::append(compute::ProgramBuilder& builder, const PlanPass& pass
     compute::Dispatch dispatch{
         *pipeline, pass.stage, plan_.effects, {}, compute::extent_range(stage.extent, params_), std::string(stage.name)};
     if (plan_.active_tiles && stage.marks) {
-        const auto list = [&](const char* name) { return buffer(name, parity); };
-        dispatch.tiles = {list("activity"), list("active_tiles"), list("active_counts"), list("active_list"),
-                          list("active_dispatch")};
+        const auto names = plan_.tile_list(pass.in_substep);
+        const auto list = [&](std::size_t n) { return buffer(names[n], parity); };
+        dispatch.tiles = {list(0), list(1), list(2), list(3), list(4)};
     }
     for (const auto& name : pass.fields) dispatch.slots.push_back(name.empty() ? compute::Buffer{} : buffer(name, parity));
     builder.dispatch(std::move(dispatch));

@@ -83,6 +83,8 @@ class WorldState {
     /// Puts what is to be woken into a step's input; forgotten once the step is submitted.
     void put_wakes(StepInput& input) const;
     void forget_wakes() { wakes_.clear(); }
+    /// Whose first word is how many tiles the newest step ran over: one per list of tiles.
+    std::vector<compute::Buffer> active_counts() const;
     /// Stepper::set_tile_rings().
     void set_tile_rings(int rings) { params_.tile_rings = rings; }
 

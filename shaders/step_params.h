@@ -17,6 +17,8 @@
 #define LAYER_SAND 1
 #define LAYER_WATER 2
 #define POINT_ROW 64     // points in one row of a POINTS stage
+#define FUSED_COLUMNS 32 // cells that one group of a fused stage covers along x; sides of active tiles are multiples or parts of it
+#define FUSED_ROWS 16    // and along y
 #define MAX_WAKES 36     // rectangles of active tiles that one step wakes: all sources and all sides have room
 #define SAMPLE_FLOATS 12 // results per point of sample_points
 #define SOURCE_DISC 0

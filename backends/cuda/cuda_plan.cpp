@@ -96,8 +96,8 @@ class Planner {
         const auto groups = [](int first, int last, int size) {
             return static_cast<std::uint32_t>((last - first - 1) / size + 1);
         };
-        const int columns = info.fused() ? info.group_columns : pipeline->group_x;
-        const int rows = info.fused() ? info.group_rows : pipeline->group_y;
+        const int columns = info.fused() ? FUSED_COLUMNS : pipeline->group_x;
+        const int rows = info.fused() ? FUSED_ROWS : pipeline->group_y;
         call.groups = dim3(groups(d.range.i0, d.range.i1, columns), groups(d.range.j0, d.range.j1, rows));
         call.threads = dim3(static_cast<std::uint32_t>(pipeline->group_x), static_cast<std::uint32_t>(pipeline->group_y));
         // Enough groups to fill the GPU; each takes every so many-th tile of the list.

@@ -4,8 +4,8 @@
 namespace wadi::cuda {
 namespace {
 
-/// What cudaLaunchKernel and kernel nodes take: the addresses of the arguments, of which only kernels over active tiles have a
-/// fourth. They are copied during the call.
+/// What cudaLaunchKernel and kernel nodes take: the addresses of the arguments, of which only kernels over active tiles and
+/// fused ones have a fourth. They are copied during the call.
 struct Arguments {
     Arguments(WorldParams& params, const void*& input, KernelCall& call)
         : addresses{&params, &input, call.slots.data(), call.tiles.data()} {}

@@ -10,7 +10,8 @@ namespace wadi::cuda {
 using KernelSelect = const void* (*)(unsigned effects, int group_x, int group_y);
 
 /// The kernel that runs over active tiles, or that tells which tiles it changed (rim). Null for stages that can do neither, and
-/// for masks outside the stage's. One argument more, by value: device addresses of list, count and activity.
+/// for masks outside the stage's. One argument more, by value: device addresses of list, count and activity. A fused stage has
+/// one kernel for both, which runs over the whole grid where these are null.
 using ActiveKernelSelect = const void* (*)(unsigned effects);
 
 inline constexpr int largest_group = 1024;

@@ -178,8 +178,8 @@ class Planner {
             return (static_cast<std::uint32_t>(last - first) + size - 1) / size;
         };
         const compute::StageInfo& info = compute::stage_table()[static_cast<std::size_t>(d.stage)];
-        const auto columns = info.fused() ? static_cast<std::uint32_t>(info.group_columns) : pipeline.group_x;
-        const auto rows = info.fused() ? static_cast<std::uint32_t>(info.group_rows) : pipeline.group_y;
+        const auto columns = info.fused() ? std::uint32_t{FUSED_COLUMNS} : pipeline.group_x;
+        const auto rows = info.fused() ? std::uint32_t{FUSED_ROWS} : pipeline.group_y;
         const std::uint32_t x = groups(d.range.i0, d.range.i1, columns), y = groups(d.range.j0, d.range.j1, rows);
         if (x > c_.limits.group_count[0] || y > c_.limits.group_count[1]) {
             return fail(Code::not_supported, "dispatch '" + d.label + "'",
@@ -199,8 +199,9 @@ class Planner {
                             std::to_string(c_.limits.group_count[0]));
         }
         const VkBuffer groups = p_.buffers.find(d.tiles.dispatch)->buffer;
+        const bool fused = compute::stage_table()[static_cast<std::size_t>(d.stage)].fused();
         plan_.commands.emplace_back(DispatchCommand{p_.pipelines.find(d.pipeline)->handle, p_.pipelines.stage(d.stage).layout,
-                                                    sets_.at(key_of(d)), 0, 0, groups});
+                                                    sets_.at(key_of(d)), 0, 0, groups, fused ? VkDeviceSize{16} : 0});
         return ok_status();
     }
 

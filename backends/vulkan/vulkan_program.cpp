@@ -100,7 +100,7 @@ void CompiledProgram::record_command(VkCommandBuffer commands, const Command& co
         bound_pipeline_ = d->pipeline;
         bound_set_ = d->set;
         if (d->groups != VK_NULL_HANDLE) {
-            c_.vk.vkCmdDispatchIndirect(commands, d->groups, 0);
+            c_.vk.vkCmdDispatchIndirect(commands, d->groups, d->groups_offset);
         } else {
             c_.vk.vkCmdDispatch(commands, d->groups_x, d->groups_y, 1);
         }

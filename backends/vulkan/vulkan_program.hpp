@@ -17,7 +17,8 @@ struct DispatchCommand {
     VkPipelineLayout layout;
     VkDescriptorSet set;
     std::uint32_t groups_x, groups_y;
-    VkBuffer groups = VK_NULL_HANDLE; // read on the device in place of the two
+    VkBuffer groups = VK_NULL_HANDLE; // read on the device in place of the two, at `groups_offset`
+    VkDeviceSize groups_offset = 0;
 };
 struct CopyCommand {
     VkBuffer from, to;

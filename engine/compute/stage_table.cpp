@@ -26,6 +26,8 @@ Range2 extent_range(Extent extent, const WorldParams& p, int most_points) {
         return {0, 0, p.tile_columns, p.tile_rows};
     case Extent::tile_rows:
         return {0, 0, 1, p.tile_rows};
+    case Extent::tile_lines:
+        return {0, 0, p.tile_columns, p.ny + 1};
     case Extent::points:
         return {0, 0, POINT_ROW, (most_points + POINT_ROW - 1) / POINT_ROW};
     }

@@ -17,9 +17,9 @@ enum class Scalar : std::uint8_t { f32, u32, i32, vec2, vec4 };
 /// Which (i, j) a stage runs over.
 /// cells: nx x ny. faces: (nx+1) x (ny+1). rim: 2(nx+ny) x 1, the outer faces in the order west, east, south, north.
 /// strips: nx+1 columns x ceil((ny+1)/STRIP). source_box: the strips that hold all sources (origin not zero).
-/// tiles: tile_columns x tile_rows active tiles. tile_rows: 1 x tile_rows.
+/// tiles: tile_columns x tile_rows active tiles. tile_rows: 1 x tile_rows. tile_lines: tile_columns x (ny+1), a tile's line of cells.
 /// points: no grid, a list; point n is i = n % POINT_ROW, j = n / POINT_ROW. StepInput::point_count says how many there are.
-enum class Extent : std::uint8_t { cells, faces, rim, strips, source_box, points, tiles, tile_rows };
+enum class Extent : std::uint8_t { cells, faces, rim, strips, source_box, points, tiles, tile_rows, tile_lines };
 
 struct StageBinding {
     std::string_view name;
@@ -39,12 +39,12 @@ struct StageInfo {
     std::span<const std::uint32_t> spirv; // empty when the build has no Vulkan
     int parts;                            // stages that a fused stage runs in one pass; 0 for a stage that is none
     std::uint32_t needs, without;         // a fused stage is for masks that have all of `needs` and nothing of `without`
-    int group_columns, group_rows;        // cells that one group of a fused stage covers, whatever its threads
 
     bool fused() const { return parts > 0; }
 };
 
-/// Threads of a group of every fused stage, and bytes that groups of any of them share at most.
+/// Threads of a group of every fused stage, which covers FUSED_COLUMNS x FUSED_ROWS cells, and bytes that groups of any of them share
+/// at most.
 inline constexpr std::uint32_t fused_group_x = 64, fused_group_y = 4, fused_shared_bytes = 32768;
 
 std::span<const StageInfo> stage_table();

@@ -165,7 +165,7 @@ struct Rewriter {
             const Kept& k = kept->second;
             const std::string rim = k.rim ? " && (i == 0 || j == 0 || i == P.nx || j == P.ny)" : "";
             const std::string on = k.condition != 0 ? " && HAS(" + std::to_string(k.condition) + "u)" : "";
-            out += " if (owned" + rim + on + ") " + field + "[IN_MEMORY(" + at + ")] = stored;";
+            out += " if (owned" + rim + on + ") KEEP_STORED(" + field + ", IN_MEMORY(" + at + "));";
         }
         return out + " }";
     }
@@ -261,20 +261,14 @@ Margins tile_margins(const FusedStage& fused) {
     return most;
 }
 
-int columns_of(const FusedStage& fused) {
-    int widest = 0;
-    for (const auto& m : fused.phases) widest = std::max(widest, m.west + m.east);
-    return fused_group_x - widest;
-}
-
 int tile_pitch(const FusedStage& fused) {
     const Margins m = tile_margins(fused);
-    return columns_of(fused) + m.west + m.east;
+    return FUSED_COLUMNS + m.west + m.east;
 }
 
 int tile_floats(const FusedStage& fused) {
     const Margins m = tile_margins(fused);
-    return tile_pitch(fused) * (fused.rows + m.south + m.north);
+    return tile_pitch(fused) * (FUSED_ROWS + m.south + m.north);
 }
 
 std::vector<std::string> fields_kept(const FusedStage& fused, Keeping keeping) {
@@ -314,8 +308,6 @@ FusedStage parse_fused(const std::string& path, const Effects& effects) {
             fused.needs = effect_bits(a.at(0), effects, path);
         } else if (word == "WITHOUT") {
             fused.without = effect_bits(a.at(0), effects, path);
-        } else if (word == "ROWS") {
-            fused.rows = std::stoi(a.at(0));
         } else if (word == "PHASE") {
             fused.phases.push_back(margins_of(a, path));
         } else if (word == "RUN" || word == "RUN_IF") {
@@ -341,7 +333,7 @@ FusedStage parse_fused(const std::string& path, const Effects& effects) {
     const std::size_t bytes = 4 * fields_kept(fused, Keeping::tile).size() * static_cast<std::size_t>(tile_floats(fused));
     if (bytes > wadi::compute::fused_shared_bytes) {
         fail(path + ": tiles of " + std::to_string(bytes) + " bytes, at most " +
-             std::to_string(wadi::compute::fused_shared_bytes) + " are shared: fewer ROWS");
+             std::to_string(wadi::compute::fused_shared_bytes) + " are shared");
     }
     return fused;
 }
@@ -383,13 +375,13 @@ std::string index_macros(const FusedStage& fused) {
 
 std::string phase_loops(const FusedStage& fused) {
     std::ostringstream o;
-    const int columns = columns_of(fused);
     for (std::size_t p = 0; p < fused.phases.size(); ++p) {
         const Margins& m = fused.phases[p];
+        const int width = FUSED_COLUMNS + m.west + m.east, height = FUSED_ROWS + m.south + m.north;
         if (p > 0) o << "    BARRIER;\n";
-        o << "    for (int y = FIRST_Y; y < " << fused.rows + m.south + m.north << "; y += STEP_Y) {\n"
-          << "    for (int x = FIRST_X; x < " << columns + m.west + m.east << "; x += STEP_X) {\n"
-          << "        int i = own_i0 + x - " << m.west << ";\n        int j = own_j0 + y - " << m.south << ";\n"
+        o << "    for (int n = LANE; n < " << width * height << "; n += LANES) {\n"
+          << "        int i = own_i0 + n % " << width << " - " << m.west << ";\n        int j = own_j0 + n / " << width << " - "
+          << m.south << ";\n"
           << "        owned = i >= own_i0 && i < own_i1 && j >= own_j0 && j < own_j1;\n"
           << "        bool inside = i >= 0 && j >= 0;\n";
         for (const auto& part : fused.parts) {
@@ -406,7 +398,7 @@ std::string phase_loops(const FusedStage& fused) {
             o << "        }\n";
             if (part.condition != 0) o << "        }\n";
         }
-        o << "    }\n    }\n";
+        o << "    }\n";
     }
     return o.str();
 }

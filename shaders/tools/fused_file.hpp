@@ -30,16 +30,14 @@ struct Kept {
 struct FusedStage {
     Stage stage; // name, struct name, extent, bindings and tested effects, as of a stage that is written by hand
     unsigned needs = 0, without = 0;
-    int rows = 8;
     std::vector<Margins> phases;
     std::vector<FusedPart> parts;
     std::map<std::string, Keeping> fields; // fields that parts write
     std::map<std::string, Kept> kept;      // those that later passes read
 };
 
-/// Threads of a group of a fused stage along i and j; a group covers columns_of() x rows cells.
+/// Threads of a group of a fused stage along i and j; it covers FUSED_COLUMNS x FUSED_ROWS cells.
 inline constexpr int fused_group_x = wadi::compute::fused_group_x, fused_group_y = wadi::compute::fused_group_y;
-int columns_of(const FusedStage& fused);
 /// The box that holds every field kept in a tile: margins around a group's own cells.
 Margins tile_margins(const FusedStage& fused);
 int tile_pitch(const FusedStage& fused);
@@ -51,7 +49,7 @@ FusedStage parse_fused(const std::string& path, const Effects& effects);
 
 /// The parts' functions with their loads and stores redirected, one kernel function PART_kernel(i, j) each.
 std::string part_functions(const FusedStage& fused, const Effects& effects);
-/// The phases in order, with FIRST_X, STEP_X, FIRST_Y, STEP_Y, BARRIER left to the language.
+/// The phases in order, with LANE, LANES (a group's threads) and BARRIER left to the language.
 std::string phase_loops(const FusedStage& fused);
 /// Include lines of the parts' physics.
 std::string physics_includes(const FusedStage& fused);

@@ -1,4 +1,5 @@
 #include "writers.hpp"
+#include <array>
 #include <sstream>
 
 namespace stagec {
@@ -10,6 +11,7 @@ std::string guard(const std::string& extent) {
     if (extent == "STRIPS") return "i <= P.nx && j < P.strips";
     if (extent == "TILES") return "i < P.tile_columns && j < P.tile_rows";
     if (extent == "TILE_ROWS") return "i < 1 && j < P.tile_rows";
+    if (extent == "TILE_LINES") return "i < P.tile_columns && j <= P.ny";
     if (extent == "POINTS") return "i < POINT_ROW && j * POINT_ROW + i < S.point_count";
     return "i < P.source_i1 && j < P.source_s1";
 }
@@ -20,8 +22,7 @@ std::string origin(const std::string& extent, const char* axis) {
 }
 
 bool marks(const Stage& s) {
-    bool marks = !s.fused;
-    marks &= s.extent == "CELLS" || s.extent == "FACES" || s.extent == "RIM";
+    bool marks = s.extent == "CELLS" || s.extent == "FACES" || s.extent == "RIM";
     for (const auto& b : s.bindings) marks &= b.access == "IN" || b.type == "float" || (s.extent == "RIM" && b.type == "uint");
     return marks;
 }
@@ -50,6 +51,18 @@ std::string marking(const Stage& s, const std::string& member) {
     }
     return before.str() + "    " + member + "kernel(i, j);\n    if (look) {\n        bool changed = false;\n" + after.str() +
            "        if (changed) activity[tile] = uint(S.step);\n    }\n";
+}
+
+std::string tile_part(const std::string& m) {
+    std::string text = "        int across = (P.tile_size + FUSED_COLUMNS - 1) / FUSED_COLUMNS;\n";
+    for (const auto& [axis, place, size, part] : {std::array{"i", "tile % P.tile_columns", "FUSED_COLUMNS", "part % across"},
+                                                  std::array{"j", "tile / P.tile_columns", "FUSED_ROWS", "part / across"}}) {
+        const std::string low = m + "own_" + axis + "0", high = m + "own_" + axis + "1", first = std::string("first_") + axis;
+        text += "        int " + first + " = (" + place + ") * P.tile_size;\n        " + low + " = " + first + " + (" + part +
+                ") * " + size + ";\n        " + high + " = " + low + " + " + size + " < " + first + " + P.tile_size ? " + low +
+                " + " + size + " : " + first + " + P.tile_size;\n";
+    }
+    return text;
 }
 
 std::string rim_place(const Stage& s) {

@@ -1,4 +1,5 @@
 #include "stage_file.hpp"
+#include "engine/effects.hpp"
 #include <cctype>
 #include <cstdlib>
 #include <fstream>
@@ -7,7 +8,8 @@
 
 namespace stagec {
 namespace {
-const std::set<std::string> extents = {"CELLS", "FACES", "RIM", "STRIPS", "SOURCE_BOX", "POINTS", "TILES", "TILE_ROWS"};
+const std::set<std::string> extents = {"CELLS",  "FACES", "RIM",       "STRIPS",    "SOURCE_BOX",
+                                       "POINTS", "TILES", "TILE_ROWS", "TILE_LINES"};
 } // namespace
 
 void fail(const std::string& message) {
@@ -124,7 +126,7 @@ Stage parse_stage(const std::string& path) {
     }
     if (stage.struct_name.empty()) fail(path + ": no STAGE(Name)");
     if (!extents.count(stage.extent))
-        fail(path + ": EXTENT must be CELLS, FACES, RIM, STRIPS, SOURCE_BOX, POINTS, TILES or TILE_ROWS");
+        fail(path + ": EXTENT must be CELLS, FACES, RIM, STRIPS, SOURCE_BOX, POINTS, TILES, TILE_ROWS or TILE_LINES");
     const bool grid = stage.extent == "CELLS" || stage.extent == "FACES" || stage.extent == "RIM";
     if (stage.reach < 0) stage.reach = grid ? 1 : 0;
     if (stage.reach > 2) fail(path + ": REACH is at most 2, the width of the ghosts");
@@ -161,11 +163,12 @@ unsigned tested_bits(const Stage& stage, const Effects& effects) {
     return bits;
 }
 
-std::vector<unsigned> masks(unsigned tested) {
+std::vector<unsigned> masks(unsigned tested, unsigned needs, unsigned without) {
     std::vector<unsigned> result;
     unsigned mask = 0;
     do {
-        result.push_back(mask);
+        const unsigned least = wadi::with_needs(mask | needs); // of the worlds that have these bits
+        if ((least & tested) == mask && (least & without) == 0) result.push_back(mask);
         mask = (mask - tested) & tested;
     } while (mask != 0);
     return result;

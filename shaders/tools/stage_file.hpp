@@ -40,7 +40,8 @@ Effects parse_effects(const std::string& path);
 /// The bits of the effects that an expression names.
 unsigned effect_bits(const std::string& expression, const Effects& effects, const std::string& path);
 unsigned tested_bits(const Stage& stage, const Effects& effects);
-/// Every mask that a stage can tell apart: all subsets of the bits it tests.
-std::vector<unsigned> masks(unsigned tested);
+/// Every mask that a stage can meet: the subsets of the bits it tests which a world can have together with `needs` and without
+/// `without`.
+std::vector<unsigned> masks(unsigned tested, unsigned needs = 0, unsigned without = 0);
 
 } // namespace stagec

@@ -44,8 +44,7 @@ std::string stage_table(const std::vector<std::string>& paths, const Effects& ef
         o << "    {\"" << s.name << "\", Extent::" << extent << ", " << s.reach << ", " << (marks(s) ? "true" : "false") << ", "
           << tested_bits(s, effects) << "u, bindings_" << s.name << ", "
           << (spirv_dir != "-" ? "spirv_" + s.name : "std::span<const std::uint32_t>{}") << ", " << fused.parts.size() << ", "
-          << fused.needs << "u, " << fused.without << "u, " << (s.fused ? columns_of(fused) : 0) << ", "
-          << (s.fused ? fused.rows : 0) << "},\n";
+          << fused.needs << "u, " << fused.without << "u},\n";
     }
     o << "};\n} // namespace\nstd::span<const StageInfo> stage_table() {\n    return stages;\n}\n} // namespace wadi::compute\n";
     return o.str();

@@ -34,13 +34,12 @@ std::string file_head(const Stage& s, const std::string& isa) {
            ".\nnamespace wadi_stage_" + isa + " {\n#include \"stage_cpp.h\"\n";
 }
 
-std::string select_function(const Stage& s, const std::string& isa, unsigned tested) {
+std::string select_function(const Stage& s, const std::string& isa, unsigned tested, const std::vector<unsigned>& masks) {
     std::ostringstream o;
     o << "using Block = void (*)(void* const*, const unsigned long*, const void*, const void*, int, int, int, int);\n"
       << "extern \"C\" Block wadi_cpu_" << isa << "_" << s.name << "(unsigned effects) {\n    switch (effects & " << tested
       << "u) {\n";
-    for (const unsigned mask : masks(tested))
-        o << "    case " << mask << "u: return wadi_stage_" << isa << "::block<" << mask << "u>;\n";
+    for (const unsigned mask : masks) o << "    case " << mask << "u: return wadi_stage_" << isa << "::block<" << mask << "u>;\n";
     o << "    default: return nullptr;\n    }\n}\n";
     return o.str();
 }
@@ -58,7 +57,7 @@ std::string write_cpp(const Stage& s, const std::string& isa, unsigned tested) {
       << "#if defined(__GNUC__) && !defined(__clang__)\n#pragma GCC ivdep\n#elif defined(__clang__)\n#pragma clang loop "
          "vectorize(assume_safety)\n#endif\n"
       << "        for (int i = i0; i < i1; ++i) local.kernel(i, j);\n    }\n}\n} // namespace\n"
-      << select_function(s, isa, tested);
+      << select_function(s, isa, tested, masks(tested));
     return o.str();
 }
 
@@ -68,7 +67,8 @@ std::string write_cpp(const FusedStage& f, const std::string& isa, const Effects
     const Stage& s = f.stage;
     std::ostringstream o;
     o << file_head(s, isa) << physics_includes(f) << "struct Place { int x, y; };\n#define PLACE(X, Y) Place{X, Y}\n"
-      << index_macros(f) << "#define FIRST_X 0\n#define STEP_X 1\n#define FIRST_Y 0\n#define STEP_Y 1\n#define BARRIER (void)0\n"
+      << index_macros(f)
+      << "#define LANE 0\n#define LANES 1\n#define BARRIER (void)0\n#define KEEP_STORED(FIELD, AT) FIELD[AT] = stored\n"
       << "#define PART_FUNCTION inline __attribute__((always_inline))\n#define NOT_KEPT(X) (void)(X)\n"
       << "template <unsigned FREE> struct " << s.struct_name << " {\n    static constexpr unsigned EFFECTS = FREE | " << f.needs
       << "u;\n    const WorldParams& P;\n    const StepInput& S;\n";
@@ -81,12 +81,12 @@ std::string write_cpp(const FusedStage& f, const std::string& isa, const Effects
       << part_functions(f, effects) << "void tile() {\n    PLACE_TILE;\n"
       << phase_loops(f) << "}\n};\n"
       << block_head() << "    " << s.struct_name << "<E> stage{P, S\n"
-      << buffer_members(s) << "    };\n    for (int j = j0; j < j1; j += " << f.rows
-      << ") {\n        for (int i = i0; i < i1; i += " << columns_of(f)
-      << ") {\n            stage.own_i0 = i;\n            stage.own_j0 = j;\n            stage.own_i1 = i + " << columns_of(f)
-      << " < i1 ? i + " << columns_of(f) << " : i1;\n            stage.own_j1 = j + " << f.rows << " < j1 ? j + " << f.rows
-      << " : j1;\n            stage.tile();\n        }\n    }\n}\n} // namespace\n"
-      << select_function(s, isa, tested_bits(s, effects));
+      << buffer_members(s)
+      << "    };\n    for (int j = j0; j < j1; j += FUSED_ROWS) {\n        for (int i = i0; i < i1; i += "
+         "FUSED_COLUMNS) {\n            stage.own_i0 = i;\n            stage.own_j0 = j;\n            stage.own_i1 = i + "
+         "FUSED_COLUMNS < i1 ? i + FUSED_COLUMNS : i1;\n            stage.own_j1 = j + FUSED_ROWS < j1 ? j + FUSED_ROWS : "
+         "j1;\n            stage.tile();\n        }\n    }\n}\n} // namespace\n"
+      << select_function(s, isa, tested_bits(s, effects), masks(tested_bits(s, effects), f.needs, f.without));
     return o.str();
 }
 

@@ -12,11 +12,12 @@ struct CudaGroup {
 };
 const CudaGroup cuda_groups[] = {{64, 4}, {256, 1}, {0, 0}};
 
+const char* const active_argument = "struct Active { const uint* list; const uint* count; uint* activity; };\n";
+
 // As C++ and GLSL have them, but members of `stage` stand behind a dot.
 std::string cuda_active(const Stage& s) {
     std::ostringstream o;
-    o << "struct Active { const uint* list; const uint* count; uint* activity; };\n"
-      << "template <unsigned EFFECTS> __global__ void __launch_bounds__(256)\n"
+    o << active_argument << "template <unsigned EFFECTS> __global__ void __launch_bounds__(256)\n"
       << "run_active(const WorldParams P, const StepInput* __restrict__ input, const Slots b, const Active tiles) {\n"
       << "    const StepInput& S = *input;\n    const " << s.struct_name << "<EFFECTS> stage{P, S";
     for (const auto& b : s.bindings)
@@ -92,10 +93,10 @@ std::string write_cuda(const FusedStage& f, const Effects& effects) {
     std::ostringstream o;
     o << "// Written by stagec from " << s.name << ".fused.\nnamespace " << space << " {\n#include \"stage_cuda.h\"\n"
       << physics_includes(f) << "struct Place { int x, y; };\n#define PLACE(X, Y) Place{X, Y}\n"
-      << index_macros(f) << "#define FIRST_X static_cast<int>(threadIdx.x)\n#define STEP_X " << fused_group_x
-      << "\n#define FIRST_Y static_cast<int>(threadIdx.y)\n#define STEP_Y " << fused_group_y
+      << index_macros(f) << "#define LANE static_cast<int>(threadIdx.y * " << fused_group_x << " + threadIdx.x)\n#define LANES "
+      << fused_group_x * fused_group_y
       << "\n#define BARRIER __syncthreads()\n#define PART_FUNCTION __device__ __forceinline__\n#define NOT_KEPT(X) (void)(X)\n"
-      << "struct Slots { void* at[" << s.bindings.size() << "]; };\n"
+      << keep_stored << active_argument << "struct Slots { void* at[" << s.bindings.size() << "]; };\n"
       << "template <unsigned FREE> struct " << s.struct_name << " {\n    static constexpr unsigned EFFECTS = FREE | " << f.needs
       << "u;\n    const WorldParams& P;\n    const StepInput& S;\n";
     for (const auto& b : s.bindings)
@@ -103,24 +104,35 @@ std::string write_cuda(const FusedStage& f, const Effects& effects) {
     for (const auto& name : tile) o << "    float* __restrict__ tile_" << name << ";\n";
     for (const auto& name : fields_kept(f, Keeping::own_index)) o << "    float own_" << name << " = 0.0f;\n";
     o << "    int own_i0 = 0, own_j0 = 0, own_i1 = 0, own_j1 = 0, tile_i0 = 0, tile_j0 = 0;\n    bool owned = "
-         "false;\n"
+         "false, look = false, changed = false;\n"
       << part_functions(f, effects) << "__device__ __forceinline__ void tile() {\n    PLACE_TILE;\n"
       << phase_loops(f) << "}\n};\n"
       << "#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ < 800\n#define GROUPS 4\n#else\n#define GROUPS " << groups << "\n#endif\n"
       << "template <unsigned E> __global__ void __launch_bounds__(" << fused_group_x * fused_group_y << ", GROUPS)\n"
-      << "run(const WorldParams P, const StepInput* __restrict__ input, const Slots b) {\n    __shared__ float tiles["
-      << std::max<std::size_t>(1, tile.size()) << "][" << tile_floats(f) << "];\n    " << s.struct_name << "<E> stage{P, *input";
+      << "run(const WorldParams P, const StepInput* __restrict__ input, const Slots b, const Active active) {\n"
+      << "    __shared__ float tiles[" << std::max<std::size_t>(1, tile.size()) << "][" << tile_floats(f) << "];\n    "
+      << s.struct_name << "<E> stage{P, *input";
     for (const auto& b : s.bindings)
         o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << "float*>(b.at[" << b.slot << "])";
     for (std::size_t n = 0; n < tile.size(); ++n) o << ",\n        tiles[" << n << "]";
-    o << "};\n    stage.own_i0 = static_cast<int>(blockIdx.x) * " << columns_of(f)
-      << ";\n    stage.own_j0 = static_cast<int>(blockIdx.y) * " << f.rows << ";\n    stage.own_i1 = stage.own_i0 + "
-      << columns_of(f) << ";\n    stage.own_j1 = stage.own_j0 + " << f.rows << ";\n    stage.tile();\n}\n} // namespace " << space
-      << "\nextern \"C\" const void* wadi_cuda_" << s.name << "(unsigned effects, int, int) {\n    switch (effects) {\n";
-    for (const unsigned mask : masks(tested))
+    o << "};\n    if (active.list == nullptr) {\n        stage.own_i0 = static_cast<int>(blockIdx.x) * FUSED_COLUMNS;\n"
+      << "        stage.own_j0 = static_cast<int>(blockIdx.y) * FUSED_ROWS;\n        stage.own_i1 = stage.own_i0 + "
+         "FUSED_COLUMNS;\n"
+      << "        stage.own_j1 = stage.own_j0 + FUSED_ROWS;\n        stage.tile();\n        return;\n    }\n"
+      << "    volatile uint* const activity = active.activity;\n"
+      << "    const int parts = ((P.tile_size + FUSED_COLUMNS - 1) / FUSED_COLUMNS) * ((P.tile_size + FUSED_ROWS - 1) / "
+         "FUSED_ROWS);\n"
+      << "    const int count = static_cast<int>(*active.count) * parts;\n"
+      << "    for (int n = static_cast<int>(blockIdx.x); n < count; n += static_cast<int>(gridDim.x)) {\n"
+      << "        const int tile = static_cast<int>(active.list[n / parts]), part = n % parts;\n"
+      << tile_part("stage.") << "        stage.look = activity[tile] != uint(input->step);\n        stage.changed = false;\n"
+      << "        stage.tile();\n        if (stage.changed) activity[tile] = uint(input->step);\n        BARRIER;\n    }\n}\n} "
+         "// namespace "
+      << space << "\nextern \"C\" const void* wadi_cuda_" << s.name << "(unsigned effects, int, int) {\n    switch (effects) {\n";
+    for (const unsigned mask : masks(tested, f.needs, f.without))
         o << "    case " << mask << "u: return reinterpret_cast<const void*>(&" << space << "::run<" << mask << "u>);\n";
     o << "    default: return nullptr;\n    }\n}\nextern \"C\" const void* wadi_cuda_active_" << s.name
-      << "(unsigned) {\n    return nullptr;\n}\n";
+      << "(unsigned effects) {\n    return wadi_cuda_" << s.name << "(effects, 0, 0);\n}\n";
     return o.str();
 }
 

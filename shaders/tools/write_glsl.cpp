@@ -3,15 +3,22 @@
 
 namespace stagec {
 
+namespace {
+
+std::string tile_bindings(const Stage& s) {
+    const std::size_t slots = s.bindings.size();
+    return "layout(std430, set = 0, binding = " + std::to_string(slots + 2) +
+           ") readonly buffer active_list_block { uint active_list[]; };\nlayout(std430, set = 0, binding = " +
+           std::to_string(slots + 3) + ") buffer activity_block { uint activity[]; };\n";
+}
+
+} // namespace
+
 std::string write_glsl(const Stage& s) {
     std::ostringstream o;
     o << "#version 450\n#extension GL_GOOGLE_include_directive : require\n#include \"stage_glsl.h\"\n#include \"stages/" << s.name
       << ".stage\"\n";
-    const std::size_t slots = s.bindings.size();
-    if (marks(s)) {
-        o << "layout(std430, set = 0, binding = " << slots + 2 << ") readonly buffer active_list_block { uint active_list[]; };\n"
-          << "layout(std430, set = 0, binding = " << slots + 3 << ") buffer activity_block { uint activity[]; };\n";
-    }
+    if (marks(s)) o << tile_bindings(s);
     o << "void main() {\n    int i = int(gl_GlobalInvocationID.x)" << origin(s.extent, "i")
       << ";\n    int j = int(gl_GlobalInvocationID.y)" << origin(s.extent, "j") << ";\n";
     if (!marks(s)) {
@@ -39,17 +46,21 @@ std::string write_glsl(const FusedStage& f, const Effects& effects) {
     o << "#version 450\n#extension GL_GOOGLE_include_directive : require\n#include \"stage_glsl.h\"\n"
       << physics_includes(f) << "#undef HAS\n#define HAS(BITS) (((EFFECTS | " << f.needs << "u) & (BITS)) == (BITS))\n"
       << "#define Place ivec2\n#define PLACE(X, Y) ivec2(X, Y)\n"
-      << index_macros(f) << "#define FIRST_X int(gl_LocalInvocationID.x)\n#define STEP_X " << fused_group_x
-      << "\n#define FIRST_Y int(gl_LocalInvocationID.y)\n#define STEP_Y " << fused_group_y
-      << "\n#define BARRIER barrier()\n#define PART_FUNCTION\n#define NOT_KEPT(X)\n";
+      << index_macros(f) << "#define LANE int(gl_LocalInvocationIndex)\n#define LANES " << fused_group_x * fused_group_y
+      << "\n#define BARRIER barrier()\n#define PART_FUNCTION\n#define NOT_KEPT(X)\n"
+      << keep_stored;
     for (const auto& b : s.bindings) o << b.access << "(" << b.slot << ", float, " << b.name << ")\n";
+    o << tile_bindings(s);
     for (const auto& name : fields_kept(f, Keeping::tile)) o << "shared float tile_" << name << "[" << tile_floats(f) << "];\n";
     for (const auto& name : fields_kept(f, Keeping::own_index)) o << "float own_" << name << ";\n";
-    o << "int tile_i0, tile_j0;\nbool owned;\n"
-      << part_functions(f, effects) << "void main() {\n    int own_i0 = int(gl_WorkGroupID.x) * " << columns_of(f)
-      << ";\n    int own_j0 = int(gl_WorkGroupID.y) * " << f.rows << ";\n    int own_i1 = own_i0 + " << columns_of(f)
-      << ";\n    int own_j1 = own_j0 + " << f.rows << ";\n    PLACE_TILE;\n"
-      << phase_loops(f) << "}\n";
+    o << "int own_i0, own_j0, own_i1, own_j1, tile_i0, tile_j0;\nbool owned, look = false, changed = false;\n"
+      << part_functions(f, effects)
+      << "void main() {\n    own_i0 = int(gl_WorkGroupID.x) * FUSED_COLUMNS;\n    own_j0 = int(gl_WorkGroupID.y) * FUSED_ROWS;\n"
+      << "    own_i1 = own_i0 + FUSED_COLUMNS;\n    own_j1 = own_j0 + FUSED_ROWS;\n    int tile = 0;\n"
+      << "    if (ACTIVE_TILES != 0u) {\n        tile = int(active_list[gl_WorkGroupID.x]);\n        int part = "
+         "int(gl_WorkGroupID.y);\n"
+      << tile_part("") << "        look = activity[tile] != uint(S.step);\n    }\n    PLACE_TILE;\n"
+      << phase_loops(f) << "    if (changed) activity[tile] = uint(S.step);\n}\n";
     return o.str();
 }
 

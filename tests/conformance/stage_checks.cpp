@@ -140,6 +140,8 @@ constexpr Definition definitions[] = {
     {"sample_points", check_samples},
     {"apply_edits", check_edits},
     {"mark_active_tiles", check_active_tiles},
+    {"choose_active_tiles", check_active_tiles},
+    {"look_into_tiles", check_active_tiles},
     {"count_active_tiles", check_active_tiles},
     {"list_active_tiles", check_active_tiles},
 };

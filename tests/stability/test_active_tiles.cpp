@@ -25,7 +25,10 @@ double awake(World& world) {
 struct Twins {
     Twins(Scene scene, int size, const Target& target = {}) {
         scene.settings.active_tiles = 0;
+        const auto asked = scene.settings.fused_stages;
+        scene.settings.fused_stages = FusedStages::never;
         dense = make_world(scene);
+        scene.settings.fused_stages = asked;
         scene.settings.active_tiles = size;
         sparse = make_world(scene, target);
     }
@@ -91,6 +94,60 @@ TEST_CASE("active tiles: every level gives the bits of the dense run, step by st
         Twins twins(shipped_level(name, 96, 80), 8);
         CHECK(twins.differ(few_steps ? 10 : 40, few_steps ? 5 : 1) == -1);
         if (!few_steps) CHECK(twins.differ(80, 20) == -1);
+    }
+}
+
+TEST_CASE("active tiles: with fused stages, every level and every size of tiles, the same bits again") {
+    for (const auto& backend : available_backends()) {
+        CAPTURE(backend);
+        int turn = 0;
+        for (const char* name : levels) {
+            CAPTURE(name);
+            auto scene = shipped_level(name, 96, 80);
+            scene.settings.fused_stages = FusedStages::always;
+            const int size = 8 << turn++ % 4;
+            CAPTURE(size);
+            Twins twins(scene, size, {backend});
+            const auto& device = twins.sparse->device().capabilities();
+            if (!device.fused_stages || !device.exact_float) continue;
+            CHECK(twins.differ(few_steps ? 10 : 40, 5) == -1);
+            CHECK(twins.sparse->device().counters().validation_messages == 0);
+        }
+    }
+}
+
+TEST_CASE("active tiles: water runs no stage of the sand, dry sand none of the water, and they meet in the same bits") {
+    for (const bool fused : {false, true}) {
+        for (const auto& backend : available_backends()) {
+            CAPTURE(fused);
+            CAPTURE(backend);
+            auto scene = pond_and_pile();
+            scene.settings.fused_stages = fused ? FusedStages::always : FusedStages::never;
+            scene.settings.effects = {{"sand", Force::on}, {"water", Force::on}};
+            auto pond = scene, pile = scene;
+            pond.fields.sand.clear();
+            pile.fields.water.clear();
+            pile.fill(pile.fields.sand, [](double x, double y) { return std::max(0.0, 2 - 1.5 * std::hypot(x - 25, y - 18)); });
+            scene.fields.sand = pile.fields.sand;
+            Twins twins(scene, 8, {backend}), wet(pond, 8, {backend}), dry(pile, 8, {backend});
+            if (!twins.sparse->device().capabilities().exact_float) continue;
+            REQUIRE(twins.sparse->plan().tiles_by_material);
+            for (Twins* t : {&twins, &wet, &dry}) CHECK(t->differ(8, 2) == -1);
+            const auto both = twins.sparse->stats(), water = wet.sparse->stats(), sand = dry.sparse->stats();
+            REQUIRE((both && water && sand));
+            CHECK(water->active_tiles > 8);
+            CHECK(water->active_sand_tiles == 0);
+            CHECK(sand->active_sand_tiles > 8);
+            CHECK(sand->active_tiles == sand->active_sand_tiles);                           // the longer list
+            CHECK(both->active_tiles == std::max(water->active_tiles, sand->active_tiles)); // each its own
+            CHECK(both->active_sand_tiles == sand->active_sand_tiles);
+            // Sand into the pond, water onto the pile, and both where neither was.
+            twins.edit(pour(EditLayer::sand, 4, 5, 0.6));
+            twins.edit(pour(EditLayer::water, 25, 18, 0.4));
+            twins.edit(pour(EditLayer::water, 14, 12, 0.5));
+            twins.edit(pour(EditLayer::sand, 15, 12, 0.5));
+            CHECK(twins.differ(few_steps ? 12 : 60, 3) == -1);
+        }
     }
 }
 
@@ -216,6 +273,7 @@ TEST_CASE("active tiles: snapshots, roll-back, regions and other material wake w
     Twins twins(pond_and_pile(), 8);
     for (World* world : {twins.dense.get(), twins.sparse.get()}) REQUIRE(world->set_rollback(4, 50));
     twins.step(few_steps ? 100 : 300);
+    CHECK(twins.equal());
     const auto sleeping = save(*twins.dense);
     CHECK(sleeping == save(*twins.sparse)); // the same bytes: a snapshot does not know of tiles
     twins.edit(pour(EditLayer::water, 24, 16, 0.5));

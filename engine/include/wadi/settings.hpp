@@ -129,7 +129,7 @@ struct Settings {
     TimeSeries rain;                                    // [m/s]
     TimeSeries evaporation;                             // [m/s]
     std::vector<ScriptedEdit> edits;                    // at most 1000; the world queues them itself
-    std::vector<std::pair<std::string, Force>> effects; // names of engine/effects.cpp
+    std::vector<std::pair<std::string, Force>> effects; // names of engine/effect_table.cpp
     /// Side of the active tiles [cells]: 8, 16, 32 or 64, 0 = off. Tiles in which nothing changes any more are left out of a
     /// step. How a world is run, not what it is: every bit stays, also in snapshots and between worlds that have it and that do
     /// not.

@@ -222,7 +222,8 @@ typedef struct wadi_world_stats {
     uint64_t clamped_faces;       /* faces at the velocity clamp */
     uint64_t capped_faces;        /* faces whose gravity the next step caps */
     uint64_t limited_cells;       /* cells whose outflow the next step limits */
-    uint64_t tiles, active_tiles; /* of the world, and of those the ones that the newest step ran over; 0 without active tiles */
+    uint64_t tiles, active_tiles; /* of the world, and of those the ones that the newest step ran over, in the longer of its two lists where water
+                                     and sand have one each; 0 without active tiles */
     uint64_t hash;                /* 64-bit state hash, ghosts excluded */
 } wadi_world_stats;
 WADI_API wadi_world_stats wadi_default_world_stats(void);
