@@ -1,6 +1,7 @@
 // The conformance suite. Quick start for a new backend: register it, run `conformance --backend NAME`, read README.md here.
 #include "tests/conformance/coverage.hpp"
 #include "tests/conformance/perf.hpp"
+#include "tests/conformance/perf_tiles.hpp"
 #include "tests/conformance/report.hpp"
 #include "tests/conformance/self_check.hpp"
 #include "tests/conformance/target.hpp"
@@ -20,6 +21,7 @@ struct Options {
     bool validate = false;
     int max_cells = 0; // of a case's grid; 0 = no limit
     PerfOptions perf;
+    PerfTilesOptions perf_tiles;
 };
 
 const Layer* const layers[] = {&contract_layer(), &stage_layer(), &step_layer(), &invariant_layer(), &fused_layer()};
@@ -158,7 +160,7 @@ int run_list(const Options& options) {
     return 0;
 }
 
-int run_perf_mode(const Options& options) {
+int run_perf_mode(const Options& options, bool of_tiles) {
     std::vector<std::pair<std::string, std::string>> absent;
     auto targets = choose_targets(options, absent);
     if (!targets) return usage(targets.status());
@@ -171,7 +173,7 @@ int run_perf_mode(const Options& options) {
     bool first = true;
     for (const Target& target : *targets) {
         Session session(target, {});
-        if (auto status = run_perf(session, perf, first); !status) {
+        if (auto status = of_tiles ? run_perf_tiles(session, options.perf_tiles) : run_perf(session, perf, first); !status) {
             std::fprintf(stderr, "%s: %s\n", target.label().c_str(), status.message.c_str());
             return exit_failed;
         }
@@ -204,11 +206,22 @@ int run(int argc, char** argv) {
     perf->add_option("--max-size", options.perf.max_size, "largest grid side, by doubling from the smallest")
         ->check(CLI::Range(128, 16384));
     perf->add_option("--repeats", options.perf.repeats, "runs per row")->check(CLI::Range(1, 10000));
+    CLI::App* tiles =
+        app.add_subcommand("perf-tiles", "time steps of worlds of which a part moves, with and without active tiles");
+    tiles->add_option("--size", options.perf_tiles.size, "grid side")->check(CLI::Range(128, 16384));
+    tiles->add_option("--shares", options.perf_tiles.shares, "of the area that moves")
+        ->delimiter(',')
+        ->check(CLI::Range(0.0, 1.0));
+    tiles->add_option("--tiles", options.perf_tiles.tiles, "sides of active tiles, 0 = without")
+        ->delimiter(',')
+        ->check(CLI::IsMember({0, 8, 16, 32, 64}));
+    tiles->add_option("--steps", options.perf_tiles.steps, "steps per time")->check(CLI::Range(1, 100000));
+    tiles->add_option("--repeats", options.perf_tiles.repeats, "times per row")->check(CLI::Range(1, 1000));
     const CLI::App* list = app.add_subcommand("list", "print the cases and devices");
     const CLI::App* coverage = app.add_subcommand("coverage", "print which masks, grids, scenes and methods each stage meets");
     const CLI::App* self_check = app.add_subcommand("self-check", "tamper with results; the suite must notice");
     CLI11_PARSE(app, argc, argv);
-    if (perf->parsed()) return run_perf_mode(options);
+    if (perf->parsed() || tiles->parsed()) return run_perf_mode(options, tiles->parsed());
     if (list->parsed()) return run_list(options);
     if (coverage->parsed()) return print_coverage();
     if (self_check->parsed()) {
