@@ -210,6 +210,25 @@ bool tells_materials_apart(std::uint32_t effects) {
     return (effects & both) == both && (effects & drag) != EFFECT_DRAG;
 }
 
+// What a pass reads on one side carries changes to the other: the sums along each direction count, and the largest of them.
+int reach_of(const StepPlan& plan) {
+    compute::Reach sum;
+    const auto add = [&](const std::vector<PlanPass>& passes, int times) {
+        for (const auto& pass : passes) {
+            const auto& stage = compute::stage_table()[static_cast<std::size_t>(pass.stage)];
+            const bool far = stage.fused() || (plan.effects & stage.far_effects) == stage.far_effects;
+            const auto most = [&](int n) { return times * (far ? n : std::min(n, 1)); };
+            sum.west += most(stage.reach.west);
+            sum.south += most(stage.reach.south);
+            sum.east += most(stage.reach.east);
+            sum.north += most(stage.reach.north);
+        }
+    };
+    add(plan.water_passes, 1);
+    add(plan.substep_passes, plan.substeps);
+    return std::max({sum.west, sum.south, sum.east, sum.north});
+}
+
 // Scratch fields whose lives do not overlap share memory. A life runs from the first to the last pass that names the field;
 // what is written before the substeps and read in them lives through all of them.
 void share_scratch(StepPlan& plan) {
@@ -322,12 +341,7 @@ StepPlan make_step_plan(std::uint32_t effects, int substeps, PlanChoice choice) 
     // By name, so that a snapshot's bytes do not tell how a world was run.
     std::sort(plan.fields.begin(), plan.fields.end(), [](const PlanField& a, const PlanField& b) { return a.name < b.name; });
     share_scratch(plan);
-    const auto reach = [](const std::vector<PlanPass>& passes) {
-        int sum = 0;
-        for (const auto& pass : passes) sum += compute::stage_table()[static_cast<std::size_t>(pass.stage)].reach;
-        return sum;
-    };
-    plan.reach = reach(plan.water_passes) + substeps * reach(plan.substep_passes);
+    plan.reach = reach_of(plan);
     return plan;
 }
 

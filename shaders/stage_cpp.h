@@ -34,6 +34,7 @@ template <class T> struct StageBuffer {
         const StepInput& S;
 #define EXTENT(KIND)
 #define REACH(CELLS)
+#define FAR_IF(BITS)
 #define END_STAGE                                                                                                      \
     }                                                                                                                  \
     ;

@@ -16,6 +16,7 @@ typedef unsigned int uint;
         const StepInput& S;
 #define EXTENT(KIND)
 #define REACH(CELLS)
+#define FAR_IF(BITS)
 #define END_STAGE                                                                                                      \
     }                                                                                                                  \
     ;

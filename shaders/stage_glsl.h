@@ -4,6 +4,7 @@
 #define STAGE(NAME)
 #define EXTENT(KIND)
 #define REACH(CELLS)
+#define FAR_IF(BITS)
 #define END_STAGE
 #define HELPER
 #define HELPER_CONST

@@ -17,8 +17,9 @@ enum class Scalar : std::uint8_t { f32, u32, i32, vec2, vec4 };
 /// Which (i, j) a stage runs over.
 /// cells: nx x ny. faces: (nx+1) x (ny+1). rim: 2(nx+ny) x 1, the outer faces in the order west, east, south, north.
 /// strips: nx+1 columns x ceil((ny+1)/STRIP). source_box: the strips that hold all sources (origin not zero).
-/// tiles: tile_columns x tile_rows active tiles. tile_rows: 1 x tile_rows. tile_lines: tile_columns x (ny+1), a tile's line of cells.
-/// points: no grid, a list; point n is i = n % POINT_ROW, j = n / POINT_ROW. StepInput::point_count says how many there are.
+/// tiles: tile_columns x tile_rows active tiles. tile_rows: 1 x tile_rows. tile_lines: tile_columns x (ny+1), a tile's line of
+/// cells. points: no grid, a list; point n is i = n % POINT_ROW, j = n / POINT_ROW. StepInput::point_count says how many there
+/// are.
 enum class Extent : std::uint8_t { cells, faces, rim, strips, source_box, points, tiles, tile_rows, tile_lines };
 
 struct StageBinding {
@@ -29,10 +30,16 @@ struct StageBinding {
     std::uint32_t condition; // all these effect bits must be on for the buffer to exist; 0 = always
 };
 
+/// Cells from a thread's own index to the farthest that it reads.
+struct Reach {
+    int west = 0, south = 0, east = 0, north = 0;
+};
+
 struct StageInfo {
     std::string_view name; // file name without extension, as in the paper's Algorithm 1
     Extent extent;
-    int reach;                    // cells from a thread's own index to the farthest that it reads
+    Reach reach;
+    std::uint32_t far_effects;    // without these it reads no further than one cell
     bool marks;                   // can run over active tiles (cells, faces), or tell which tiles it changed (rim)
     std::uint32_t tested_effects; // bits that HAS() asks in its body or bindings
     std::span<const StageBinding> bindings;
@@ -43,8 +50,8 @@ struct StageInfo {
     bool fused() const { return parts > 0; }
 };
 
-/// Threads of a group of every fused stage, which covers FUSED_COLUMNS x FUSED_ROWS cells, and bytes that groups of any of them share
-/// at most.
+/// Threads of a group of every fused stage, which covers FUSED_COLUMNS x FUSED_ROWS cells, and bytes that groups of any of them
+/// share at most.
 inline constexpr std::uint32_t fused_group_x = 64, fused_group_y = 4, fused_shared_bytes = 32768;
 
 std::span<const StageInfo> stage_table();

@@ -130,7 +130,14 @@ void resolve(FusedStage& fused, const Effects& effects, std::set<std::string> te
     for (const auto& name : tested) {
         if ((effects.at(name) & (fused.needs | fused.without)) == 0) fused.stage.tested.push_back(name);
     }
-    for (const auto& part : fused.parts) fused.stage.reach += part.stage.reach;
+    for (const auto& part : fused.parts) {
+        auto add = part.stage.reach;
+        const bool far = (effect_bits(part.stage.far, effects, part.stage.path) & ~fused.needs) == 0;
+        for (int* n : {&add.west, &add.south, &add.east, &add.north})
+            if (!far) *n = std::min(*n, 1);
+        auto& sum = fused.stage.reach;
+        sum = {sum.west + add.west, sum.south + add.south, sum.east + add.east, sum.north + add.north};
+    }
 }
 
 struct Rewriter {
@@ -172,8 +179,8 @@ struct Rewriter {
 
     // The part's text from its stage file.
     std::string run(const std::string& text) {
-        static const std::set<std::string> dropped = {"STAGE", "EXTENT", "REACH",  "IN",      "OUT",
-                                                      "INOUT", "IN_IF",  "OUT_IF", "INOUT_IF"};
+        static const std::set<std::string> dropped = {"STAGE", "EXTENT", "REACH", "FAR_IF", "IN",
+                                                      "OUT",   "INOUT",  "IN_IF", "OUT_IF", "INOUT_IF"};
         std::string out;
         for (std::size_t at = 0; at < text.size();) {
             if (text[at] == '#') { // includes, gathered by physics_includes
@@ -284,7 +291,6 @@ FusedStage parse_fused(const std::string& path, const Effects& effects) {
     fused.stage.name = stem(path);
     fused.stage.extent = "FACES";
     fused.stage.fused = true;
-    fused.stage.reach = 0;
     const auto slash = path.find_last_of('/');
     const std::string folder = slash == std::string::npos ? "." : path.substr(0, slash);
     const std::string text = strip_comments(read_text(path));

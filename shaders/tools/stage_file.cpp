@@ -1,5 +1,6 @@
 #include "stage_file.hpp"
 #include "engine/effects.hpp"
+#include <algorithm>
 #include <cctype>
 #include <cstdlib>
 #include <fstream>
@@ -10,6 +11,15 @@ namespace stagec {
 namespace {
 const std::set<std::string> extents = {"CELLS",  "FACES", "RIM",       "STRIPS",    "SOURCE_BOX",
                                        "POINTS", "TILES", "TILE_ROWS", "TILE_LINES"};
+
+// "i - 1" and its like widen the reach along an axis; of anything else REACH must tell.
+void widen(int& low, int& high, const std::string& index, char axis) {
+    if (index.empty() || index[0] != axis || (index.size() > 1 && index[1] != '-' && index[1] != '+')) return;
+    const int offset = index.size() > 1 ? std::atoi(index.c_str() + 1) : 0;
+    low = std::max(low, -offset);
+    high = std::max(high, offset);
+}
+
 } // namespace
 
 void fail(const std::string& message) {
@@ -90,6 +100,7 @@ Stage parse_stage(const std::string& path) {
     std::set<std::string> tested;
     const auto note_effects = [&](const std::string& expression) { tested.merge(effects_in(expression)); };
     std::size_t at = 0;
+    bool grid = false;
     while (at < text.size()) {
         if (!std::isalpha(static_cast<unsigned char>(text[at]))) {
             ++at;
@@ -103,8 +114,16 @@ Stage parse_stage(const std::string& path) {
             stage.struct_name = arguments(text, end).at(0);
         } else if (word == "EXTENT") {
             stage.extent = arguments(text, end).at(0);
+            grid = stage.extent == "CELLS" || stage.extent == "FACES";
         } else if (word == "REACH") {
-            stage.reach = std::atoi(arguments(text, end).at(0).c_str());
+            const int n = std::atoi(arguments(text, end).at(0).c_str());
+            stage.reach = {n, n, n, n};
+        } else if (word == "FAR_IF") {
+            stage.far = arguments(text, end).at(0);
+        } else if (word == "IDX" && grid) {
+            const auto a = arguments(text, end);
+            widen(stage.reach.west, stage.reach.east, a.at(0), 'i');
+            widen(stage.reach.south, stage.reach.north, a.at(1), 'j');
         } else if (word == "HAS") {
             note_effects(arguments(text, end).at(0));
         } else if (conditional || word == "IN" || word == "OUT" || word == "INOUT") {
@@ -127,9 +146,8 @@ Stage parse_stage(const std::string& path) {
     if (stage.struct_name.empty()) fail(path + ": no STAGE(Name)");
     if (!extents.count(stage.extent))
         fail(path + ": EXTENT must be CELLS, FACES, RIM, STRIPS, SOURCE_BOX, POINTS, TILES, TILE_ROWS or TILE_LINES");
-    const bool grid = stage.extent == "CELLS" || stage.extent == "FACES" || stage.extent == "RIM";
-    if (stage.reach < 0) stage.reach = grid ? 1 : 0;
-    if (stage.reach > 2) fail(path + ": REACH is at most 2, the width of the ghosts");
+    for (const int n : {stage.reach.west, stage.reach.south, stage.reach.east, stage.reach.north})
+        if (n > 2) fail(path + ": reads more than 2 cells away, the width of the ghosts");
     stage.tested.assign(tested.begin(), tested.end());
     return stage;
 }

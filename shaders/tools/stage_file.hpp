@@ -25,9 +25,15 @@ struct Binding {
     int slot = 0;
 };
 
+/// Cells from the kernel's own index to the farthest that it reads.
+struct Reach {
+    int west = 0, south = 0, east = 0, north = 0;
+};
+
 struct Stage {
     std::string path, name, struct_name, extent;
-    int reach = -1; // cells from the kernel's own index to the farthest that it reads
+    Reach reach;
+    std::string far; // effects without which it reads no further than one cell
     std::vector<Binding> bindings;
     bool fused = false;
     std::vector<std::string> tested; // effect names that HAS() or a condition asks

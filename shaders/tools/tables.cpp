@@ -41,8 +41,9 @@ std::string stage_table(const std::vector<std::string>& paths, const Effects& ef
         const Stage& s = fused.stage;
         std::string extent = s.extent;
         for (auto& c : extent) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-        o << "    {\"" << s.name << "\", Extent::" << extent << ", " << s.reach << ", " << (marks(s) ? "true" : "false") << ", "
-          << tested_bits(s, effects) << "u, bindings_" << s.name << ", "
+        o << "    {\"" << s.name << "\", Extent::" << extent << ", {" << s.reach.west << ", " << s.reach.south << ", "
+          << s.reach.east << ", " << s.reach.north << "}, " << effect_bits(s.far, effects, s.path) << "u, "
+          << (marks(s) ? "true" : "false") << ", " << tested_bits(s, effects) << "u, bindings_" << s.name << ", "
           << (spirv_dir != "-" ? "spirv_" + s.name : "std::span<const std::uint32_t>{}") << ", " << fused.parts.size() << ", "
           << fused.needs << "u, " << fused.without << "u},\n";
     }
