@@ -98,7 +98,10 @@ WorldParams derive_params(const Settings& s) {
     p.water_density = f(m.water_density);
     p.sand_density = f(m.sand_density);
     p.friction = f(m.friction);
-    p.drag_kd = f(dts * m.exchange_rate);
+    const double kd = dts * m.exchange_rate;
+    p.drag_kd = f(kd);
+    p.drag_coupling = f(kd * m.water_density / (m.water_density + kd) / m.sand_density);
+    p.drag_share = f(kd / (m.water_density + kd));
 
     double lambda = m.young_modulus * m.poisson_ratio / ((1 + m.poisson_ratio) * (1 - 2 * m.poisson_ratio));
     double shear = m.young_modulus / (2 * (1 + m.poisson_ratio));

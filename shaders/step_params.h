@@ -98,6 +98,8 @@ struct WorldParams {
     float sand_density;         // [kg/m3]
     float friction;             // mu of sand on the ground
     float drag_kd;              // dts c_e [kg/m3]
+    float drag_coupling;        // rho_w kd/((rho_w + kd) rho_s): kappa per depth of mixed water over depth of sand
+    float drag_share;           // kd/(rho_w + kd): how far drag takes mixed water to the sand's velocity
 
     // elastoplastic sand
     float lambda;               // Lame's first parameter after the elastic cap [Pa]

@@ -4,13 +4,6 @@
 #define PHYSICS_DRAG
 #include "../physics/scalar.glsl"
 
-// Coupling kappa of mixed water and sand with velocities of their own.
-FN float drag_coupling(float mixed_height, float sand_height, float water_density, float sand_density, float kd, float dry) {
-    float r = divide_or_zero(mixed_height, sand_density * sand_height);
-    float kappa = r * wdiv(water_density * kd, water_density + kd);
-    return mixed_height > dry ? kappa : 0.0f;
-}
-
 // Coupling when one velocity stands for all water (single-layer water): momenta m = rho_w W and rho_s h_s, exchange kd h_m.
 FN float drag_coupling_single(float water_height, float mixed_height, float sand_height, float water_density, float sand_density, float kd, float dry) {
     float m = water_density * water_height;
@@ -29,18 +22,16 @@ FN void explicit_drag(REF(float) sand, REF(float) water, float impulse, float sa
     water = water + gained;
 }
 
-// Sand's velocity after drag and stick or slip. px, py: sand momentum per mass with the water's share, us + kappa um;
+// Sand's velocity after drag and stick or slip. along, across: sand momentum per mass with the water's share, us + kappa um;
 // slip: mu g dts max(0, 1 - rho_w h_m/(rho_s h_s)).
 FN float stick_or_slip(float along, float across, float slip, float kappa) {
     float size = wsqrt(square(along) + square(across));
-    float keep = wmax(0.0f, 1.0f - divide_or_zero(slip, size));
-    keep = size > 0.0f ? keep : 0.0f;
-    return wdiv(keep * along, 1.0f + kappa);
+    return along * divide_or_zero(wmax(size - slip, 0.0f), size * (1.0f + kappa));
 }
 
-FN float friction_slip(float mu, float gravity, float dts, float mixed_height, float sand_height, float density_ratio) {
-    float lift = density_ratio * divide_or_zero(mixed_height, sand_height);
-    return mu * gravity * dts * wmax(0.0f, 1.0f - lift);
+// wet: h_m/h_s.
+FN float friction_slip(float mu, float gravity, float dts, float wet, float density_ratio) {
+    return mu * gravity * dts * wmax(0.0f, 1.0f - density_ratio * wet);
 }
 
 #endif

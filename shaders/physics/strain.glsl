@@ -89,11 +89,13 @@ FN Stretch evolve_stretch(Stretch v, Gradient g) {
     float y = eyx - exy;
     float n = wsqrt(x * x + y * y);
     float safe_n = n > 0.0f ? n : 1.0f;
-    float cs = n > 0.0f ? wdiv(x, safe_n) : 1.0f;
-    float sn = wdiv(y, safe_n);
+    float inv_n = wdiv(1.0f, safe_n);
+    float sn = y * inv_n;
     float den = safe_n * (safe_n + x);
     float safe_den = x > 0.0f ? den : 1.0f;
     float small = -wdiv(y * y, safe_den);
+    float turned = n > 0.0f ? x * inv_n : 1.0f;
+    float cs = x > 0.0f ? 1.0f + small : turned;
     float cs_less_one = x > 0.0f ? small : cs - 1.0f;
     Stretch r;
     r.xx = (exx * cs - exy * sn) + cs_less_one;
@@ -200,7 +202,7 @@ FN void project_stretch(REF(Stretch) v, REF(Stress) stress, float c, float cap, 
     float y = yield_slope * tr - c;
     bool tip = y >= 0.0f;
     float limit = -y * inv_two_shear;
-    float size = wsqrt(2.0f * (square(dd) + square(dxy)));
+    float size = 0.707106781f * (e1 - e2);
     bool beyond = size > limit * slack;
     float shrink = beyond ? divide_or_zero(limit, size) : 1.0f;
     shrink = tip ? 0.0f : shrink;

@@ -5,12 +5,12 @@
 
 // Flux-form staggered upwind advection of one face velocity in increment form (NUMERICS 2.3, after Stelling and
 // Duinmeijer 2003): flux_* are the mean depths moved through the four sides of the face's own control volume,
-// height its mean new depth. A convex combination of the five velocities for any time step.
+// height its mean new depth, inv_height 1 over it. A convex combination of the five velocities for any time step.
 FN float advect_velocity(float u, float u_west, float u_east, float u_south, float u_north, float flux_west, float flux_east, float flux_south,
-                         float flux_north, float height, float dry) {
+                         float flux_north, float height, float inv_height, float dry) {
     float along = wmax(-flux_east, 0.0f) * (u_east - u) + wmax(flux_west, 0.0f) * (u_west - u);
     float across = wmax(-flux_north, 0.0f) * (u_north - u) + wmax(flux_south, 0.0f) * (u_south - u);
-    float moved = u + divide_or_zero(along + across, height);
+    float moved = u + (along + across) * inv_height;
     return height > dry ? moved : u;
 }
 
@@ -53,8 +53,7 @@ FN float line_gain(float u, FaceLine at, float flux_low, float flux_high, float 
 
 // advect_velocity with limited slopes, kept between the five velocities: no new extremum at any time step.
 FN float advect_velocity_second_order(float u, FaceLine along, FaceLine across, float flux_west, float flux_east, float flux_south, float flux_north,
-                                      float height, float dry) {
-    float inv_height = divide_or_zero(1.0f, height);
+                                      float height, float inv_height, float dry) {
     float gain = line_gain(u, along, flux_west, flux_east, inv_height) + line_gain(u, across, flux_south, flux_north, inv_height);
     float least = wmin(u, wmin(wmin(along.low, along.high), wmin(across.low, across.high)));
     float most = wmax(u, wmax(wmax(along.low, along.high), wmax(across.low, across.high)));
@@ -91,14 +90,15 @@ FN void exchange_split(REF(float) pure, REF(float) mixed, float gained_low, floa
 // damps instead of ringing, and gets tighter the faster the water moves.
 FN float water_gravity(float gravity, float speed, float deepest, float k, float base, float least, float inv_k2) {
     float margin = wmax(least, base - k * speed);
-    float cap = divide_or_zero(margin * margin * inv_k2, deepest);
-    return deepest > 0.0f ? wmin(gravity, cap) : gravity;
+    float cap = margin * margin * inv_k2; // of gravity times depth
+    float limited = divide_or_zero(cap, deepest);
+    return gravity * deepest > cap ? limited : gravity;
 }
 
 // The same for sand (NUMERICS 2.7): cap = 0.25/ks^2.
 FN float sand_gravity(float gravity, float highest, float cap) {
     float limited = divide_or_zero(cap, highest);
-    return highest > 0.0f ? wmin(gravity, limited) : gravity;
+    return gravity * highest > cap ? limited : gravity;
 }
 
 // Wet/dry rule (NUMERICS 2.4c): true where a face must stand still, because both cells are dry, or because the wet

@@ -54,7 +54,7 @@ std::string marking(const Stage& s, const std::string& member) {
 }
 
 std::string tile_part(const std::string& m) {
-    std::string text = "        int across = (P.tile_size + FUSED_COLUMNS - 1) / FUSED_COLUMNS;\n";
+    std::string text;
     for (const auto& [axis, place, size, part] : {std::array{"i", "tile % P.tile_columns", "FUSED_COLUMNS", "part % across"},
                                                   std::array{"j", "tile / P.tile_columns", "FUSED_ROWS", "part / across"}}) {
         const std::string low = m + "own_" + axis + "0", high = m + "own_" + axis + "1", first = std::string("first_") + axis;

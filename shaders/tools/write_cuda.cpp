@@ -115,20 +115,21 @@ std::string write_cuda(const FusedStage& f, const Effects& effects) {
     for (const auto& b : s.bindings)
         o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << "float*>(b.at[" << b.slot << "])";
     for (std::size_t n = 0; n < tile.size(); ++n) o << ",\n        tiles[" << n << "]";
-    o << "};\n    if (active.list == nullptr) {\n        stage.own_i0 = static_cast<int>(blockIdx.x) * FUSED_COLUMNS;\n"
-      << "        stage.own_j0 = static_cast<int>(blockIdx.y) * FUSED_ROWS;\n        stage.own_i1 = stage.own_i0 + "
-         "FUSED_COLUMNS;\n"
-      << "        stage.own_j1 = stage.own_j0 + FUSED_ROWS;\n        stage.tile();\n        return;\n    }\n"
-      << "    volatile uint* const activity = active.activity;\n"
-      << "    const int parts = ((P.tile_size + FUSED_COLUMNS - 1) / FUSED_COLUMNS) * ((P.tile_size + FUSED_ROWS - 1) / "
-         "FUSED_ROWS);\n"
-      << "    const int count = static_cast<int>(*active.count) * parts;\n"
-      << "    for (int n = static_cast<int>(blockIdx.x); n < count; n += static_cast<int>(gridDim.x)) {\n"
+    // One call of tile() for both ways: two would be two copies of all stages.
+    o << "};\n    const bool all = active.list == nullptr;\n"
+      << "    const int across = (P.tile_size + FUSED_COLUMNS - 1) / FUSED_COLUMNS;\n"
+      << "    const int parts = across * ((P.tile_size + FUSED_ROWS - 1) / FUSED_ROWS);\n"
+      << "    const int count = all ? 1 : static_cast<int>(*active.count) * parts;\n"
+      << "    for (int n = all ? 0 : static_cast<int>(blockIdx.x); n < count; n += static_cast<int>(gridDim.x)) {\n"
+      << "        stage.own_i0 = static_cast<int>(blockIdx.x) * FUSED_COLUMNS;\n"
+      << "        stage.own_j0 = static_cast<int>(blockIdx.y) * FUSED_ROWS;\n"
+      << "        stage.own_i1 = stage.own_i0 + FUSED_COLUMNS;\n        stage.own_j1 = stage.own_j0 + FUSED_ROWS;\n"
+      << "        volatile uint* activity = active.activity;\n        if (!all) {\n"
       << "        const int tile = static_cast<int>(active.list[n / parts]), part = n % parts;\n"
-      << tile_part("stage.") << "        stage.look = activity[tile] != uint(input->step);\n        stage.changed = false;\n"
-      << "        stage.tile();\n        if (stage.changed) activity[tile] = uint(input->step);\n        BARRIER;\n    }\n}\n} "
-         "// namespace "
-      << space << "\nextern \"C\" const void* wadi_cuda_" << s.name << "(unsigned effects, int, int) {\n    switch (effects) {\n";
+      << tile_part("stage.") << "        activity += tile;\n        stage.look = *activity != uint(input->step);\n"
+      << "        stage.changed = false;\n        }\n        stage.tile();\n"
+      << "        if (stage.changed) *activity = uint(input->step);\n        BARRIER;\n    }\n}\n} // namespace " << space
+      << "\nextern \"C\" const void* wadi_cuda_" << s.name << "(unsigned effects, int, int) {\n    switch (effects) {\n";
     for (const unsigned mask : masks(tested, f.needs, f.without))
         o << "    case " << mask << "u: return reinterpret_cast<const void*>(&" << space << "::run<" << mask << "u>);\n";
     o << "    default: return nullptr;\n    }\n}\nextern \"C\" const void* wadi_cuda_active_" << s.name

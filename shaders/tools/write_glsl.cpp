@@ -59,6 +59,7 @@ std::string write_glsl(const FusedStage& f, const Effects& effects) {
       << "    own_i1 = own_i0 + FUSED_COLUMNS;\n    own_j1 = own_j0 + FUSED_ROWS;\n    int tile = 0;\n"
       << "    if (ACTIVE_TILES != 0u) {\n        tile = int(active_list[gl_WorkGroupID.x]);\n        int part = "
          "int(gl_WorkGroupID.y);\n"
+         "        int across = (P.tile_size + FUSED_COLUMNS - 1) / FUSED_COLUMNS;\n"
       << tile_part("") << "        look = activity[tile] != uint(S.step);\n    }\n    PLACE_TILE;\n"
       << phase_loops(f) << "    if (changed) activity[tile] = uint(S.step);\n}\n";
     return o.str();

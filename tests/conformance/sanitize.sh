@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The stage and step layers on the CUDA backend under compute-sanitizer, on grids small enough for its pace (--max-cells, default 700).
+# The stage, step and fused layers on the CUDA backend under compute-sanitizer, on grids small enough for its pace (--max-cells, default 700).
 # Usage: tests/conformance/sanitize.sh [--binary FILE] [--limit SECONDS] [--max-cells N] [TOOL ...]; tools: memcheck racecheck initcheck synccheck.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
@@ -33,7 +33,7 @@ failed=0
 for tool in "${tools[@]}"; do
     status=0
     timeout "$limit" compute-sanitizer --tool "$tool" --error-exitcode 9 \
-        "$binary" test --backend cuda --layer stage,step --max-cells "$cells" >"$log" 2>&1 || status=$?
+        "$binary" test --backend cuda --layer fused,stage,step --max-cells "$cells" >"$log" 2>&1 || status=$?
     cases=$(grep -c '^OK' "$log" || true)
     errors=$(grep -o 'ERROR SUMMARY: .*\|RACECHECK SUMMARY: .*' "$log" | tail -1 || true)
     case $status in
