@@ -7,7 +7,7 @@ namespace {
 
 constexpr std::uint32_t most_groups_x = 0x7fffffff, most_groups_y = 65535; // of every compute capability that CUDA supports
 
-constexpr std::uint32_t active_groups = 1024; // 8 of 256 threads on each of 128 multiprocessors
+constexpr std::uint32_t active_groups = 4096; // several for each place on the largest GPUs, so that all end at nearly the same time
 
 // A timestamp waits for all that is ahead of it and holds up all that follows, so that it separates what it times.
 void add_timestamps(const std::vector<compute::Op>& ops, std::vector<std::vector<int>>& waits) {

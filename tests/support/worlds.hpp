@@ -9,6 +9,13 @@
 
 namespace wadi::test {
 
+/// Sanitizers look at memory, which a few steps use as many do.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool few_steps = true;
+#else
+constexpr bool few_steps = false;
+#endif
+
 /// A scene: settings and fields to change before the world is made.
 struct Scene {
     Settings settings;
