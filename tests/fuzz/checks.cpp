@@ -89,13 +89,18 @@ std::string check_driver(const Case& c, Session& session, const Base& base, Rand
 std::string check_tiles(const Case& c, Session& session, const Base& base, Random& random, Weaken weaken) {
     Case tiled = c;
     tiled.scene.settings.active_tiles = random.chance(0.7) ? 8 : random.chance(0.5) ? 16 : 32;
+    auto device = session.device();
+    if (!device) return {};
+    const bool fused = (*device)->capabilities().fused_stages && c.steps % 2 == 0; // half of the worlds
+    tiled.scene.settings.fused_stages = fused ? FusedStages::always : FusedStages::never;
     Run run = open(tiled, session);
     if (run.world != nullptr && !run.world->device().capabilities().exact_float) return {};
     if (run.good() && weaken == Weaken::rings) run.note("rings", run.world->stepper().set_tile_rings(0));
     queue(run, tiled);
     step(run, c.steps);
     const std::string wrong = same(run, hash(run), base.hash);
-    const std::string tiles = "tiles of " + std::to_string(tiled.scene.settings.active_tiles) + " cells: ";
+    const std::string tiles =
+        "tiles of " + std::to_string(tiled.scene.settings.active_tiles) + " cells" + (fused ? ", fused stages: " : ": ");
     if (!wrong.empty()) return tiles + wrong;
     // Once more with a host that writes regions and changes the material between steps.
     const std::string called = random.chance(0.5) ? check_calls(c, tiled, session) : "";
