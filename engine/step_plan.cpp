@@ -50,6 +50,9 @@ class Builder {
         run(stage, std::move(flips), names);
         return true;
     }
+    /// In one pass with what accelerates the sand. That pass moves the water's velocities to their other buffers, which tiles
+    /// without sand would have to do as well.
+    bool fuses_momentum_exchange() const { return !by_material_ && can_fuse("accelerate_mixture"); }
     /// Whether active tiles have a list for each material.
     bool tiles_by_material() const { return by_material_; }
 
@@ -127,7 +130,6 @@ void plan_water(Builder b) {
     // In flux form the diffusive flux carries its momentum; traced velocities need a pass for it.
     if (traced && b.has(EFFECT_LAPLACE_DIFFUSION)) b.run("diffuse_mixed_velocity", {"mixed_velocity_x", "mixed_velocity_y"});
     plan_water_motion(b);
-    if (b.tiles_by_material() && b.can_fuse("accelerate_mixture")) b.run("repeat_water_velocity");
     if (b.has(EFFECT_BED_SHEAR)) b.run("compute_bed_load");
     if (b.has(EFFECT_COHESION)) b.run("compute_saturation");
 }
@@ -156,7 +158,7 @@ void plan_sand(Builder b) {
     if (b.has(EFFECT_SEMI_LAGRANGIAN)) b.run("update_sand_boundary_types");
     plan_sand_transport(b);
     // Touches only the water's velocities, which the sand's velocity stage does not read: here both sand heights are at hand.
-    if (b.has(EFFECT_MIXTURE) && !b.can_fuse("accelerate_mixture")) b.run("compute_momentum_exchange");
+    if (b.has(EFFECT_MIXTURE) && !b.fuses_momentum_exchange()) b.run("compute_momentum_exchange");
 }
 
 // After the sand height has become current.
@@ -165,7 +167,7 @@ void plan_sand_forces(Builder b) {
     if (b.has(EFFECT_ELASTOPLASTIC) && !b.can_fuse("transport_sand")) b.run("project_deformation_gradient");
     const std::vector<std::string> sand = {"sand_velocity_x", "sand_velocity_y"};
     std::vector<std::string> moved = sand;
-    if (b.can_fuse("accelerate_mixture")) {
+    if (b.fuses_momentum_exchange()) {
         moved.insert(moved.end(), {"water_velocity_x", "water_velocity_y", "mixed_velocity_x", "mixed_velocity_y"});
         b.run("accelerate_mixture", moved);
         return;

@@ -46,7 +46,7 @@ FN float wdiv(float a, float b) {
     const float near = a * reciprocal;
     float q = fmaf(fmaf(-b, near, a), reciprocal, near);
     q = fmaf(fmaf(-b, q, a), reciprocal, q);
-    return fabsf(q) < 3.0e38f ? q : near; // infinities
+    return fabsf(q) < 3.0e38f && q != 0.0f ? q : near; // infinities, and zeros with their sign
 }
 FN float wsqrt(float x) {
     float inverse;

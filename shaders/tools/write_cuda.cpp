@@ -30,15 +30,12 @@ std::string cuda_active(const Stage& s) {
           << rim_place(s) << look << marking(s, "stage.") << "}\n";
         return o.str();
     }
-    // As many groups a tile as an indirect dispatch has.
-    o << "    const int parts = (P.tile_size * P.tile_size + 255) / 256;\n    const int count = static_cast<int>(*tiles.count) * "
-         "parts;\n"
-      << "    for (int n = static_cast<int>(blockIdx.x); n < count; n += static_cast<int>(gridDim.x)) {\n"
-      << "    const int tile = static_cast<int>(tiles.list[n / parts]);\n"
+    o << "    const uint count = *tiles.count;\n"
+      << "    for (uint n = blockIdx.x; n < count; n += gridDim.x) {\n    const int tile = static_cast<int>(tiles.list[n]);\n"
       << "    const int i = (tile % P.tile_columns) * P.tile_size + static_cast<int>(threadIdx.x);\n"
-      << "    const int row = (n % parts) * static_cast<int>(blockDim.y) + static_cast<int>(threadIdx.y);\n"
-      << "    const int j = (tile / P.tile_columns) * P.tile_size + row;\n    if (row < P.tile_size && " << guard(s.extent)
-      << ") {\n    const int at = IDX(i, j);\n"
+      << "    for (int row = static_cast<int>(threadIdx.y); row < P.tile_size; row += static_cast<int>(blockDim.y)) {\n"
+      << "    const int j = (tile / P.tile_columns) * P.tile_size + row;\n    if (!(" << guard(s.extent)
+      << ")) continue;\n    const int at = IDX(i, j);\n"
       << look << marking(s, "stage.") << "    }\n    }\n}\n";
     return o.str();
 }

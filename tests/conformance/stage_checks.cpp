@@ -115,19 +115,6 @@ Verdict check_source_ledger(const StageRun& run) {
     return {};
 }
 
-Verdict check_repeated(const StageRun& run) {
-    const FieldLayout layout{run.params.nx, run.params.ny};
-    for (const char* name : {"water_velocity_x", "water_velocity_y"}) {
-        const auto got = run.buffer((std::string(name) + "_next").c_str()).words();
-        for (int j = 0; j <= run.params.ny; ++j)
-            for (int i = 0; i <= run.params.nx; ++i)
-                if (got[layout.index(i, j)] != run.buffer(name).before[layout.index(i, j)])
-                    return failed(std::string(name) + " is not repeated at (" + std::to_string(i) + ", " + std::to_string(j) +
-                                  ")");
-    }
-    return {};
-}
-
 struct Definition {
     const char* stage;
     Verdict (*check)(const StageRun& run);
@@ -152,7 +139,6 @@ constexpr Definition definitions[] = {
     {"mark_limits", check_marks},
     {"sample_points", check_samples},
     {"apply_edits", check_edits},
-    {"repeat_water_velocity", check_repeated},
     {"mark_active_tiles", check_active_tiles},
     {"choose_active_tiles", check_active_tiles},
     {"look_into_tiles", check_active_tiles},
