@@ -37,23 +37,27 @@ typedef unsigned int uint;
 FN float wdiv(float a, float b) { return a / b; }
 FN float wsqrt(float x) { return sqrtf(x); }
 #else
-// As __fdiv_rn and __fsqrt_rn round, without their branches for results outside the normal range, which stages do not have: a fifth
-// of the time of fused stages. A reciprocal and a quotient, each corrected by residuals from fused multiply-adds (P. Markstein 1990).
+// As __fdiv_rn and __fsqrt_rn round, without their branches: a fifth of the time of fused stages. A reciprocal and a quotient, each
+// corrected by residuals from fused multiply-adds (P. Markstein 1990). The powers of two keep residuals of small operands normal; what
+// they leave out is dividends beyond 4e28, radicands beyond it and divisors beyond 8e37.
 FN float wdiv(float a, float b) {
     float reciprocal;
     asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(reciprocal) : "f"(b));
     reciprocal = fmaf(fmaf(-b, reciprocal, 1.0f), reciprocal, reciprocal);
-    const float near = a * reciprocal;
-    float q = fmaf(fmaf(-b, near, a), reciprocal, near);
-    q = fmaf(fmaf(-b, q, a), reciprocal, q);
-    return fabsf(q) < 3.0e38f && q != 0.0f ? q : near; // infinities, and zeros with their sign
+    const float scaled = a * 4294967296.0f; // 2^32
+    const float near = scaled * reciprocal;
+    float q = fmaf(fmaf(-b, near, scaled), reciprocal, near);
+    q = fmaf(fmaf(-b, q, scaled), reciprocal, q);
+    q = fabsf(q) < 3.0e38f && q != 0.0f ? q : near; // infinities, and zeros with their sign
+    return q * 2.32830644e-10f;                     // 2^-32
 }
 FN float wsqrt(float x) {
+    const float scaled = x * 4294967296.0f;
     float inverse;
-    asm("rsqrt.approx.ftz.f32 %0, %1;" : "=f"(inverse) : "f"(x));
-    float s = x * inverse;
-    s = fmaf(fmaf(-s, s, x), 0.5f * inverse, s);
-    return x > 0.0f ? s : x;
+    asm("rsqrt.approx.ftz.f32 %0, %1;" : "=f"(inverse) : "f"(scaled));
+    float s = scaled * inverse;
+    s = fmaf(fmaf(-s, s, scaled), 0.5f * inverse, s);
+    return x > 0.0f ? s * 1.52587891e-5f : x; // 2^-16
 }
 #endif
 FN float wabs(float x) { return fabsf(x); }
