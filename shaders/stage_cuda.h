@@ -37,7 +37,7 @@ typedef unsigned int uint;
 FN float wdiv(float a, float b) { return a / b; }
 FN float wsqrt(float x) { return sqrtf(x); }
 #else
-// As __fdiv_rn and __fsqrt_rn round, without their branches: a fifth of the time of fused stages. A reciprocal and a quotient, each
+// As __fdiv_rn and __fsqrt_rn round, without their branches: a sixth of a fused stage's code. A reciprocal and a quotient, each
 // corrected by residuals from fused multiply-adds (P. Markstein 1990). The powers of two keep residuals of small operands normal; what
 // they leave out is dividends beyond 4e28, radicands beyond it and divisors beyond 8e37.
 FN float wdiv(float a, float b) {
