@@ -5,7 +5,7 @@
 namespace stagec {
 
 // Group sizes with kernels of their own: the compiler then knows the limits of the indices and may use more registers.
-// {0, 0} takes any group. The defaults of backends/cuda are among them.
+// {0, 0} takes any group. The defaults of backends/cuda are among them: one row for stages of the rim, 64 x 4 for others.
 namespace {
 struct CudaGroup {
     int x, y;
@@ -60,6 +60,7 @@ std::string write_cuda(const Stage& s, unsigned tested) {
       << ";\n    if (" << guard(s.extent) << ") stage.kernel(i, j);\n}\n"
       << "template <unsigned E> static const void* select(int x, int y) {\n";
     for (const auto& g : cuda_groups) {
+        if (g.x > 0 && (g.y == 1) != (s.extent == "RIM")) continue; // nobody's default for it
         if (g.x > 0) o << "    if (x == " << g.x << " && y == " << g.y << ")\n    ";
         o << "    return reinterpret_cast<const void*>(&run<E, " << g.x << ", " << g.y << ">);\n";
     }
