@@ -103,7 +103,7 @@ TEST_CASE("active tiles: with fused stages, every level and every size of tiles,
             Twins twins(scene, size, {backend});
             const auto& device = twins.sparse->device().capabilities();
             if (!device.fused_stages || !device.exact_float) continue;
-            CHECK(twins.differ(few_steps ? 4 : 40, few_steps ? 2 : 5) == -1);
+            CHECK(twins.differ(few_steps ? 4 : 8, few_steps ? 2 : 4) == -1);
             CHECK(twins.sparse->device().counters().validation_messages == 0);
         }
     }
@@ -139,7 +139,7 @@ TEST_CASE("active tiles: water runs no stage of the sand, dry sand none of the w
             twins.edit(pour(EditLayer::water, 25, 18, 0.4));
             twins.edit(pour(EditLayer::water, 14, 12, 0.5));
             twins.edit(pour(EditLayer::sand, 15, 12, 0.5));
-            CHECK(twins.differ(few_steps ? 12 : 60, 3) == -1);
+            CHECK(twins.differ(few_steps ? 12 : 30, 3) == -1);
         }
     }
 }

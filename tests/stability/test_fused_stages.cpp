@@ -34,7 +34,7 @@ TEST_CASE("fused stages: every level gives the bits of its stages one by one") {
         CAPTURE(name);
         const auto scene = shipped_level(name, 96, 80); // several tiles along both axes, the last ones cut
         auto expected = apart(scene);
-        const int steps = few_steps ? 3 : 24;
+        const int steps = few_steps ? 3 : 12;
         step(*expected, steps);
         for (const auto& backend : available_backends()) {
             CAPTURE(backend);
