@@ -53,6 +53,10 @@ LevelOverrides to_overrides(const wadi_level_overrides* o) {
     return overrides;
 }
 
+// What no setting refuses later, since its kind has no such value.
+bool known_fused_stages(const wadi_level_overrides* o) { return o == nullptr || (o->fused_stages >= -1 && o->fused_stages <= 1); }
+constexpr const char* unknown_fused_stages = ": overrides.fused_stages is neither 1, -1 nor 0 (as the level says)";
+
 // The host's files: asked for their size first, then for their bytes.
 FileReader host_files(wadi_read_file_callback read_file, void* user) {
     return [=](const std::string& name, std::uint64_t limit) -> Result<std::vector<std::uint8_t>> {
@@ -157,6 +161,8 @@ wadi_result wadi_create_world_from_level(const char* path, const wadi_level_over
             return wrong_struct<wadi_level_overrides>("wadi_create_world_from_level", "overrides");
         if (options != nullptr && !right_size(options))
             return wrong_struct<wadi_device_options>("wadi_create_world_from_level", "options");
+        if (!known_fused_stages(overrides))
+            return bad_argument("wadi_create_world_from_level" + std::string(unknown_fused_stages));
         const bool json = std::string(path).ends_with(".json");
         return host(json ? load_level(path, to_overrides(overrides)) : level_from_terrain(path, to_overrides(overrides)), options,
                     world);
@@ -172,6 +178,8 @@ wadi_result wadi_create_world_from_level_text(const char* json, wadi_read_file_c
             return wrong_struct<wadi_level_overrides>("wadi_create_world_from_level_text", "overrides");
         if (options != nullptr && !right_size(options))
             return wrong_struct<wadi_device_options>("wadi_create_world_from_level_text", "options");
+        if (!known_fused_stages(overrides))
+            return bad_argument("wadi_create_world_from_level_text" + std::string(unknown_fused_stages));
         return host(parse_level(json, host_files(read_file, user), to_overrides(overrides)), options, world);
     });
 }

@@ -105,3 +105,17 @@ TEST_CASE("hosts without the file, or that change their mind, and texts that are
     CHECK(wadi_create_world_from_level_text("{}", nullptr, nullptr, nullptr, &unsized, &id) == WADI_ERROR_BAD_ARGUMENT);
     CHECK(id.index == 0);
 }
+
+TEST_CASE("level overrides: fused_stages is 1, -1 or 0") {
+    auto overrides = wadi_default_level_overrides();
+    overrides.nx = overrides.ny = 40;
+    const std::string path = WADI_SOURCE_DIR "/samples/levels/dam_break/level.json";
+    for (const int asked : {-2, 2, 1, -1}) {
+        overrides.fused_stages = asked;
+        wadi_world_id world{};
+        const bool known = asked == 1 || asked == -1;
+        CHECK((wadi_create_world_from_level(path.c_str(), &overrides, nullptr, &world) == WADI_OK) == known);
+        if (!known) CHECK(std::string(wadi_get_last_error()).find("fused_stages") != std::string::npos);
+        if (known) CHECK(wadi_destroy_world(world) == WADI_OK);
+    }
+}

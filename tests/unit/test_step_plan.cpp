@@ -21,6 +21,16 @@ std::vector<std::uint32_t> legal_masks() {
     return masks;
 }
 
+// Every legal mask one by one, and fused with and without active tiles.
+std::vector<std::pair<std::uint32_t, PlanChoice>> legal_plans() {
+    std::vector<std::pair<std::uint32_t, PlanChoice>> plans;
+    for (const auto mask : legal_masks())
+        for (const PlanChoice choice :
+             {PlanChoice{}, {.active_tiles = false, .fused = true}, {.active_tiles = true, .fused = true}})
+            plans.emplace_back(mask, choice);
+    return plans;
+}
+
 bool runs(const StepPlan& plan, const char* stage) {
     const int index = compute::find_stage(stage);
     REQUIRE(index >= 0);
@@ -87,11 +97,12 @@ TEST_CASE("scratch that lives across the substeps is overwritten by nobody in th
 }
 
 TEST_CASE("every flipped field comes back after two steps, and each pass writes what it flips") {
-    for (const auto mask : legal_masks()) {
-        const auto plan = make_step_plan(mask, 3);
+    for (const auto& [mask, choice] : legal_plans()) {
+        const auto plan = make_step_plan(mask, 3, choice);
         for (const auto* passes : {&plan.water_passes, &plan.substep_passes}) {
             std::set<std::string> written;
             for (const auto& pass : *passes) {
+                REQUIRE(pass.stage >= 0);
                 const auto& bindings = compute::stage_table()[static_cast<std::size_t>(pass.stage)].bindings;
                 for (std::size_t n = 0; n < bindings.size(); ++n) {
                     if (bindings[n].access != compute::Access::in) written.insert(pass.fields[n]);
