@@ -3,7 +3,7 @@
 Writes samples/report/effects.
 
 usage: samples/report/effects.py BIN_FOLDER [--backend cpu] [--only EFFECT ...] [--out DIR | --check]
---check: half the cells along x and y, no files; fails where a pair does not differ, where the same run twice does, or where an effect that
+--check: half the cells along x and y and half the time, no files; fails where a pair does not differ, where the same run twice does, or where an effect that
 the engine knows has no pair.
 """
 import argparse
@@ -58,8 +58,8 @@ def left_out(with_it, without, seconds):
     return result
 
 
-def run(recorder, effect, off, cells, repeats):
-    level, _, seconds, changes, _ = SHOWN[effect]
+def run(recorder, effect, off, cells, seconds, repeats):
+    level, _, _, changes, _ = SHOWN[effect]
     level = merged(recordings.read_level(level), changes)
     if off:
         level = merged(level, {"effects": {name: "off" for name in (effect, *NEEDED_BY.get(effect, ()))}})
@@ -72,9 +72,9 @@ def number(value):
     return f"{value:.3g}"
 
 
-def pair(recorder, effect, cells, repeats=1):
-    with_it, without = (run(recorder, effect, off, cells, repeats) for off in (False, True))
-    errors = left_out(with_it[0], without[0], SHOWN[effect][2])
+def pair(recorder, effect, cells, seconds, repeats=1):
+    with_it, without = (run(recorder, effect, off, cells, seconds, repeats) for off in (False, True))
+    errors = left_out(with_it[0], without[0], seconds)
     pixels = pairs.differing(with_it[3], without[3])
     print(f"{effect}: " + ", ".join(f"{what} {number(error)} %" for what, error in errors) + f", {number(pixels)} % of the pixels", flush=True)
     return with_it, without, errors, pixels
@@ -86,7 +86,7 @@ def write_page(recorder, only, out):
     for effect, (level, cells, seconds, changes, look) in SHOWN.items():
         if only and effect not in only:
             continue
-        with_it, without, errors, pixels = pair(recorder, effect, cells, 2)
+        with_it, without, errors, pixels = pair(recorder, effect, cells, seconds, 2)
         pairs.write(out / f"{effect}.png", with_it[3], without[3])
         by_field = dict(errors)
         both = lambda pick: f"{pick(with_it)} / {pick(without)}"
@@ -109,12 +109,12 @@ def check(recorder):
     lacking, unknown = set(known(recorder)) - set(SHOWN), set(SHOWN) - set(known(recorder))
     good = not lacking and not unknown and len(SHOWN) > 5
     print(f"{'OK  ' if good else 'FAIL'} every effect has a pair" + "".join(f"; {name}: none" for name in lacking) + "".join(f"; {name}: no effect" for name in unknown))
-    for effect, (_, cells, *_) in SHOWN.items():
-        with_it, _, errors, pixels = pair(recorder, effect, tuple(n // 2 for n in cells))
+    for effect, (_, cells, seconds, *_) in SHOWN.items():
+        with_it, _, errors, pixels = pair(recorder, effect, tuple(n // 2 for n in cells), seconds / 2)
         fine = pixels > LEAST_PIXELS and max(error for _, error in errors) > LEAST_ERROR
         good &= fine
         print(f"{'OK  ' if fine else 'FAIL'} {effect} shows: {number(pixels)} % of the pixels (above {LEAST_PIXELS:g})")
-    again = run(recorder, effect, False, tuple(n // 2 for n in SHOWN[effect][1]), 1)
+    again = run(recorder, effect, False, tuple(n // 2 for n in cells), seconds / 2, 1)
     same = pairs.differing(with_it[3], again[3])
     good &= same == 0
     print(f"{'OK  ' if same == 0 else 'FAIL'} control: the same run twice differs in {number(same)} % of the pixels")

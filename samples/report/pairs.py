@@ -20,12 +20,12 @@ def map_of(frame, nx, ny):
     zoom = width // nx
     block = math.ceil(width / WIDTH)
     rows = rows[CAPTION:CAPTION + ny * zoom]
-    small = []
+    small, columns = [], width // block
     for top in range(0, len(rows) - block + 1, block):
-        line = bytearray()
-        for left in range(0, width - block + 1, block):
-            for channel in range(3):
-                line.append(sum(rows[y][3 * x + channel] for y in range(top, top + block) for x in range(left, left + block)) // (block * block))
+        line = bytearray(3 * columns)
+        for channel in range(3):
+            parts = (rows[y][3 * x + channel:3 * block * columns:3 * block] for y in range(top, top + block) for x in range(block))
+            line[channel::3] = bytes(total // (block * block) for total in map(sum, zip(*parts)))
         small.append(bytes(line))
     return len(small[0]) // 3, len(small), small
 

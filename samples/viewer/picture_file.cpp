@@ -20,6 +20,7 @@ void write_png(const std::filesystem::path& file, const std::vector<uint8_t>& rg
     rgb.reserve(rgba.size() / 4 * 3);
     for (std::size_t k = 0; k + 3 < rgba.size(); k += 4) rgb.insert(rgb.end(), {rgba[k], rgba[k + 1], rgba[k + 2]});
     const std::filesystem::path part = file.string() + ".part";
+    stbi_write_force_png_filter = 2; // "up" in every row: trying all five takes longer than compressing, and gains little
     if (stbi_write_png(part.string().c_str(), static_cast<int>(width), static_cast<int>(height), 3, rgb.data(),
                        static_cast<int>(3 * width)) == 0)
         throw std::runtime_error("cannot write " + part.string());

@@ -21,9 +21,9 @@ std::size_t shifted(const compute::StageBinding& binding, std::size_t tile) {
 constexpr std::uint32_t looked = 90;
 std::uint32_t seen(std::size_t tile) { return tile % 5 == 2 ? looked : looked - 1; }
 
-struct Grid {
+struct TileGrid {
     std::size_t columns, rows;
-    explicit Grid(const WorldParams& p)
+    explicit TileGrid(const WorldParams& p)
         : columns(static_cast<std::size_t>(p.tile_columns)), rows(static_cast<std::size_t>(p.tile_rows)) {}
     std::uint32_t flags_of(std::size_t row) const {
         std::uint32_t count = 0;
@@ -101,7 +101,7 @@ bool holds(const StageRun& run, const char* height, int column, int row) {
 }
 
 Verdict check_look(const StageRun& run) {
-    const Grid grid(run.params);
+    const TileGrid grid(run.params);
     for (std::size_t at = 0; at < grid.columns * grid.rows; ++at) {
         const int column = static_cast<int>(at % grid.columns), row = static_cast<int>(at / grid.columns);
         const bool looks = flag(at) + flag(at + 4) != 0;
@@ -115,7 +115,7 @@ Verdict check_look(const StageRun& run) {
 }
 
 Verdict check_count(const StageRun& run) {
-    const Grid grid(run.params);
+    const TileGrid grid(run.params);
     for (std::size_t at = 0; at < grid.columns * grid.rows; ++at) {
         const bool woke = woken(run.pilot.input, static_cast<int>(at % grid.columns), static_cast<int>(at / grid.columns), 0);
         if (run.buffer("activity").words()[at] != (woke ? step : stamp(at))) return wrong("activity", at);
@@ -126,7 +126,7 @@ Verdict check_count(const StageRun& run) {
 }
 
 Verdict check_list(const StageRun& run) {
-    const Grid grid(run.params);
+    const TileGrid grid(run.params);
     std::uint32_t count = 0;
     const auto list = run.buffer("active_list").words(), dispatch = run.buffer("active_dispatch").words();
     for (std::size_t tile = 0; tile < grid.columns * grid.rows; ++tile)
@@ -156,7 +156,7 @@ void add_active_tiles(Scene& scene, StepInput& input) {
 
 bool fill_active_tiles(BenchBuffer& buffer, const compute::StageBinding& binding, const WorldParams& params) {
     if (!binding.name.starts_with("activ")) return false;
-    const Grid grid(params);
+    const TileGrid grid(params);
     const std::size_t words = binding.name == "active_counts"     ? grid.rows
                               : binding.name == "active_dispatch" ? 8
                                                                   : grid.columns * grid.rows;

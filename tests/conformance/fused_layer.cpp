@@ -46,7 +46,7 @@ std::vector<CaseSpec> list() {
                 cases.push_back({std::string(stages[stage].name),
                                  {{"grid", grid}, {"effects", effects_text(mask | more)}, {"scene", scene}, {"method", method}}});
             };
-            add("257x130", "random", "default");
+            add("70x50", "random", "default");
             if (((mask | stages[stage].without) & EFFECT_OPEN_SIDES) == 0) add("33x17", "random", "default", EFFECT_OPEN_SIDES);
             for (std::size_t n = 0; n < rounds; ++n, ++turn)
                 add(grids[turn % grids.size()], scenes[turn % scenes.size()], methods[turn % methods.size()]);

@@ -35,23 +35,23 @@ std::vector<CaseSpec> list() {
     std::vector<CaseSpec> cases;
     const auto add = [&](const char* name, const char* grid, std::uint32_t effects, const std::string& scene, const char* method,
                          int steps) { cases.push_back(spec_of(name, grid, effects, scene, method, steps)); };
-    add("bounds", "65x33", EFFECT_WATER, "dam_break", "default", 500);
+    add("bounds", "65x33", EFFECT_WATER, "dam_break", "default", 300);
     add("bounds", "33x17", EFFECT_WATER | EFFECT_RAIN | EFFECT_SOURCES | EFFECT_OPEN_SIDES | EFFECT_BED_FRICTION, "islands",
-        "default", 500);
-    add("bounds", "33x17", EFFECT_SAND | ELASTIC, "cliff", "default", 500);
-    add("bounds", "33x17", EFFECT_SAND | EFFECT_SOURCES | EFFECT_OPEN_SIDES, "random", "coarse", 500);
+        "default", 300);
+    add("bounds", "33x17", EFFECT_SAND | ELASTIC, "cliff", "default", 300);
+    add("bounds", "33x17", EFFECT_SAND | EFFECT_SOURCES | EFFECT_OPEN_SIDES, "random", "coarse", 300);
     add("bounds", "33x17", EFFECT_WATER | EFFECT_SAND | EFFECT_MIXTURE, "random", "default", 300);
     add("bounds", "33x17", EFFECT_WATER | EFFECT_SAND | EFFECT_DRAG, "dam_break", "default", 300);
-    add("bounds", "33x17", WET, "deep", "default", 500);
-    add("bounds", "64x48", ALL, "random", "default", 500);
+    add("bounds", "33x17", WET, "deep", "default", 300);
+    add("bounds", "64x48", ALL, "random", "default", 300);
     add("bounds", "64x48", ALL, "dam_break", "tapered", 300);
     add("bounds", "33x17", ALL, "thin_film", "default", 300);
     add("bounds", "33x17", WET | ELASTIC | EFFECT_COHESION, "cliff", "plain",
-        500); // closed: its ledger would count rounded quanta
+        300); // closed: its ledger would count rounded quanta
     add("bounds", "33x17", ALL | TRACED, "random", "default", 300);
     add("bounds", "33x17", ALL | SECOND, "random", "default", 300);
     add("bounds", "33x17", ALL | SECOND, "thin_film", "default", 300);
-    add("bounds", "33x17", WET | ELASTIC | EFFECT_COHESION | SECOND, "cliff", "plain", 500);
+    add("bounds", "33x17", WET | ELASTIC | EFFECT_COHESION | SECOND, "cliff", "plain", 300);
     add("bounds", "33x17", ALL | TRACED | POLAR, "random", "default", 300);
     add("bounds", "33x17", ALL | DIRECT, "random", "default", 300);
     add("bounds", "33x17", ALL | PUBLISHED, "random", "default", 300);
@@ -70,15 +70,15 @@ std::vector<CaseSpec> list() {
     add("static_pile", "65x33", EFFECT_SAND | ELASTIC, "static_pile", "default", 200);
     add("static_pile", "33x17", EFFECT_SAND | ELASTIC, "static_pile", "bare", 200);
     for (const char* symmetry : {"mirror_x", "mirror_y", "transpose"}) {
-        add(symmetry, "33x17", EFFECT_WATER | EFFECT_OPEN_SIDES | EFFECT_BED_FRICTION, "islands", "default", 60);
-        add(symmetry, "33x17", EFFECT_SAND | ELASTIC, "cliff", "default", 60);
-        add(symmetry, "33x17", WET | EFFECT_BED_SHEAR, "islands", "default", 60);
-        add(symmetry, "33x17", ALL, "random", "default", 60);
-        add(symmetry, "33x17", ALL | TRACED, "random", "default", 60);
-        add(symmetry, "33x17", ALL | SECOND, "random", "default", 60);
-        add(symmetry, "33x17", ALL | POLAR, "random", "default", 60);
-        add(symmetry, "33x17", ALL | DIRECT, "random", "default", 60);
-        add(symmetry, "33x17", ALL | PUBLISHED, "random", "default", 60);
+        add(symmetry, "33x17", EFFECT_WATER | EFFECT_OPEN_SIDES | EFFECT_BED_FRICTION, "islands", "default", 40);
+        add(symmetry, "33x17", EFFECT_SAND | ELASTIC, "cliff", "default", 40);
+        add(symmetry, "33x17", WET | EFFECT_BED_SHEAR, "islands", "default", 40);
+        add(symmetry, "33x17", ALL, "random", "default", 40);
+        add(symmetry, "33x17", ALL | TRACED, "random", "default", 40);
+        add(symmetry, "33x17", ALL | SECOND, "random", "default", 40);
+        add(symmetry, "33x17", ALL | POLAR, "random", "default", 40);
+        add(symmetry, "33x17", ALL | DIRECT, "random", "default", 40);
+        add(symmetry, "33x17", ALL | PUBLISHED, "random", "default", 40);
         add(symmetry, "65x3", ALL, "random", "plain", 30);
     }
     for (const char* variant : {"same_again", "same_without_replay", "same_with_full_barriers", "same_interleaved"})

@@ -99,9 +99,9 @@ std::vector<CaseSpec> list() {
                 // In a film of many cells some stress is smaller than what one bit of the stretch makes.
                 const char* const grid = grids[(turn + stage) % grids.size()];
                 const bool unresolved =
-                    scene == "thin_film" && grid == std::string("257x130") && (mask & EFFECT_ELASTOPLASTIC) != 0;
+                    scene == "thin_film" && grid == std::string("129x66") && (mask & EFFECT_ELASTOPLASTIC) != 0;
                 // Among many random cells without a quantum one holds so little mixed water that its height is rounding.
-                const bool film = scene == "random" && grid == std::string("257x130") && (mask & EFFECT_MIXTURE) != 0 &&
+                const bool film = scene == "random" && grid == std::string("129x66") && (mask & EFFECT_MIXTURE) != 0 &&
                                   (method == "plain" || method == "bare");
                 // One cell on a brush's soft rim: without a quantum nothing but that cell gives its strain a scale.
                 const bool one_value = scene == "one_wet_cell" && stages[stage].name == "apply_edits" &&

@@ -96,7 +96,7 @@ TEST_CASE("active tiles: with fused stages, every level and every size of tiles,
         int turn = 0;
         for (const char* name : levels) {
             CAPTURE(name);
-            auto scene = shipped_level(name, 96, 80);
+            auto scene = shipped_level(name, 70, 50);
             scene.settings.fused_stages = FusedStages::always;
             const int size = 8 << turn++ % 4;
             CAPTURE(size);
@@ -139,7 +139,7 @@ TEST_CASE("active tiles: water runs no stage of the sand, dry sand none of the w
             twins.edit(pour(EditLayer::water, 25, 18, 0.4));
             twins.edit(pour(EditLayer::water, 14, 12, 0.5));
             twins.edit(pour(EditLayer::sand, 15, 12, 0.5));
-            CHECK(twins.differ(few_steps ? 12 : 30, 3) == -1);
+            CHECK(twins.differ(few_steps ? 6 : 18, 3) == -1);
         }
     }
 }

@@ -32,9 +32,9 @@ std::unique_ptr<World> fused(Scene scene, const std::string& backend) {
 TEST_CASE("fused stages: every level gives the bits of its stages one by one") {
     for (const char* name : levels) {
         CAPTURE(name);
-        const auto scene = shipped_level(name, 96, 80); // several tiles along both axes, the last ones cut
+        const auto scene = shipped_level(name, 70, 50); // several groups along both axes, the last ones cut
         auto expected = apart(scene);
-        const int steps = few_steps ? 3 : 12;
+        const int steps = few_steps ? 3 : 8;
         step(*expected, steps);
         for (const auto& backend : available_backends()) {
             CAPTURE(backend);

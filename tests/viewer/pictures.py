@@ -18,25 +18,33 @@ def read_png(path):
     raw, rows, above = zlib.decompress(packed), [], bytes(3 * width)
     for y in range(height):
         start = y * (3 * width + 1)
-        how, line = raw[start], bytearray(raw[start + 1:start + 1 + 3 * width])
-        for k in range(3 * width):
-            left, up, corner = (line[k - 3] if k >= 3 else 0), above[k], (above[k - 3] if k >= 3 else 0)
-            if how == 1:
-                guess = left
-            elif how == 2:
-                guess = up
-            elif how == 3:
-                guess = (left + up) // 2
-            elif how == 4:
-                p = left + up - corner
-                a, b, c = abs(p - left), abs(p - up), abs(p - corner)
-                guess = left if a <= b and a <= c else up if b <= c else corner
-            else:
-                guess = 0
-            line[k] = (line[k] + guess) & 255
-        above = bytes(line)
+        how, line = raw[start], raw[start + 1:start + 1 + 3 * width]
+        above = line if how == 0 else sum_of_bytes(line, above) if how == 2 else unfiltered(how, line, above)
         rows.append(above)
     return width, height, rows
+
+
+def sum_of_bytes(a, b):
+    """Byte by byte modulo 256, as two long numbers: the filter that our programs write, and a picture has a million bytes."""
+    x, y, low = int.from_bytes(a, "little"), int.from_bytes(b, "little"), int.from_bytes(b"\x7f" * len(a), "little")
+    return (((x & low) + (y & low)) ^ ((x ^ y) & ~low)).to_bytes(len(a), "little")
+
+
+def unfiltered(how, line, above):
+    """A row stored as differences to its left neighbours (1), to the mean of left and upper ones (3), or by Paeth's guess (4)."""
+    line = bytearray(line)
+    for k, up in enumerate(above):
+        left, corner = (line[k - 3], above[k - 3]) if k >= 3 else (0, 0)
+        if how == 1:
+            guess = left
+        elif how == 3:
+            guess = (left + up) // 2
+        else:
+            p = left + up - corner
+            a, b, c = abs(p - left), abs(p - up), abs(p - corner)
+            guess = left if a <= b and a <= c else up if b <= c else corner
+        line[k] = (line[k] + guess) & 255
+    return bytes(line)
 
 
 def pixels(picture):
