@@ -49,12 +49,14 @@ std::string World::describe_plan() const {
         out << "  sand substep, " << plan.substeps << " times\n";
         list_passes(out, plan.substep_passes);
     }
-    int state = 0, partners = 0;
+    int state = 0, partners = 0, state_bytes = 0, partner_bytes = 0;
     std::string state_names, scratch_names;
     for (const auto& field : plan.fields) {
         if (field.role == FieldRole::state) {
             ++state;
             partners += field.ping_pong ? 1 : 0;
+            state_bytes += field.element_bytes();
+            partner_bytes += field.ping_pong ? field.element_bytes() : 0;
             state_names += (state_names.empty() ? "" : ", ") + field.name + (field.ping_pong ? " x2" : "");
         } else if (field.role == FieldRole::scratch) {
             scratch_names += (scratch_names.empty() ? "" : ", ") + field.name + " @" + std::to_string(field.memory);
@@ -64,7 +66,7 @@ std::string World::describe_plan() const {
         << plan.scratch_blocks << " scratch\n"
         << "  state    " << state_names << "\n";
     if (!scratch_names.empty()) out << "  scratch  " << scratch_names << "  (@n: shared memory block)\n";
-    out << "bytes per cell: " << plan.bytes_per_cell() << " (state " << 4 * state << ", ping-pong " << 4 * partners
+    out << "bytes per cell: " << plan.bytes_per_cell() << " (state " << state_bytes << ", ping-pong " << partner_bytes
         << ", scratch " << 4 * plan.scratch_blocks << "); on the device " << device_bytes() / 1024
         << " KiB with padding, ledgers and outputs\n";
     char line[160];

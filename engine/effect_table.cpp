@@ -21,7 +21,7 @@ constexpr std::array<Effect, 12> table = {{
     {EFFECT_BED_SHEAR, "bed_shear", EFFECT_MIXTURE, "pure water drags the sand under it along: bed load"},
 }};
 
-constexpr std::array<Choice, 6> choices = {{
+constexpr std::array<Choice, 7> choices = {{
     {EFFECT_SEMI_LAGRANGIAN, "semi_lagrangian", 0,
      [](const Method& m) { return m.velocity_transport == VelocityTransport::semi_lagrangian; },
      [](Method& m) { m.velocity_transport = VelocityTransport::semi_lagrangian; }},
@@ -38,7 +38,14 @@ constexpr std::array<Choice, 6> choices = {{
      [](const Method& m) { return m.diffusion == Diffusion::laplacian; }, [](Method& m) { m.diffusion = Diffusion::laplacian; }},
     {EFFECT_SECOND_ORDER_WATER, "second_order_water", EFFECT_WATER, [](const Method& m) { return m.water_transport_order == 2; },
      [](Method& m) { m.water_transport_order = 2; }},
+    {EFFECT_HALF_STORAGE, "half_storage", 0, [](const Method& m) { return m.half_storage; },
+     [](Method& m) { m.half_storage = true; }},
 }};
+
+// Half storage is for worlds that trade accuracy for memory; a method that does the opposite, or the paper's own, has no kernels
+// for it.
+constexpr std::uint32_t never_half =
+    EFFECT_SEMI_LAGRANGIAN | EFFECT_WHOLE_STRAIN | EFFECT_EXPLICIT_DRAG | EFFECT_LAPLACE_DIFFUSION | EFFECT_SECOND_ORDER_WATER;
 
 } // namespace
 
@@ -63,6 +70,8 @@ std::uint32_t with_needs(std::uint32_t mask) {
     return mask;
 }
 
-bool is_legal(std::uint32_t mask) { return with_needs(mask) == mask; }
+bool is_legal(std::uint32_t mask) {
+    return with_needs(mask) == mask && ((mask & EFFECT_HALF_STORAGE) == 0 || (mask & never_half) == 0);
+}
 
 } // namespace wadi

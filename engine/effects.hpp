@@ -53,7 +53,7 @@ Status check_allowed(const Settings& settings, Content content);
 
 /// The mask with all that its effects and choices need.
 std::uint32_t with_needs(std::uint32_t mask);
-/// True when every effect in the mask and choice in the mask has what it needs.
+/// True when every effect in the mask and choice in the mask has what it needs, and half storage no choice that is without it.
 bool is_legal(std::uint32_t mask);
 
 } // namespace wadi

@@ -14,23 +14,17 @@ namespace {
 class Rows {
   public:
     Rows(WorldState& state, const char* field, int first, int end)
-        : state_(state), buffer_(state.buffer(field, state.parity())),
+        : state_(state), field_(field),
           offset_(static_cast<std::size_t>(first + GHOST) * static_cast<std::size_t>(state.layout().pitch())),
           values_(static_cast<std::size_t>(end - first) * static_cast<std::size_t>(state.layout().pitch())) {}
 
-    Status read() {
-        if (buffer_.id == 0) return ok_status();
-        return state_.note(state_.device().read(buffer_, offset_ * 4, std::as_writable_bytes(std::span(values_))));
-    }
-    Status write() {
-        if (buffer_.id == 0) return ok_status();
-        return state_.note(state_.device().write(buffer_, offset_ * 4, std::as_bytes(std::span(values_))));
-    }
+    Status read() { return state_.read_field(field_, offset_, values_); }
+    Status write() { return state_.write_field(field_, offset_, values_); }
     float& at(int i, int j) { return values_[state_.layout().index(i, j) - offset_]; }
 
   private:
     WorldState& state_;
-    const compute::Buffer buffer_;
+    const char* const field_;
     const std::size_t offset_;
     std::vector<float> values_;
 };

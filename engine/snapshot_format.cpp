@@ -79,6 +79,7 @@ std::uint64_t level_digest(const Settings& s) {
                                double(w.diffusion),
                                double(w.water_transport_order)})
         add(value);
+    if (w.half_storage) add(1); // levels without it keep their digest
     for (const auto& side : s.sides) {
         add(static_cast<double>(side.kind));
         add(side.from);

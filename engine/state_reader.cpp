@@ -33,18 +33,23 @@ Result<std::vector<float>> StateReader::read_buffer(compute::Buffer from) {
 }
 
 Result<std::vector<float>> StateReader::read_raw(const std::string& field) {
-    const auto from = state_.buffer(field, state_.parity());
-    if (from.id == 0) return std::vector<float>(state_.layout().size(), 0.0F);
-    return read_buffer(from);
+    std::vector<float> raw(state_.layout().size());
+    if (auto status = state_.read_field(field, 0, raw); !status) return status;
+    return raw;
 }
 
-Status StateReader::read_cells(compute::Buffer from, const Region& region, std::span<float> values) {
+StateReader::Rows StateReader::rows_of(compute::Buffer from) {
+    return [this, from](std::size_t first, std::span<float> rows) {
+        return state_.note(state_.device().read(from, first * 4, std::as_writable_bytes(rows)));
+    };
+}
+
+Status StateReader::read_cells(const Rows& rows_from, const Region& region, std::span<float> values) {
     const auto& layout = state_.layout();
     const std::size_t first = layout.index(region.i0, region.j0), pitch = static_cast<std::size_t>(layout.pitch()),
                       width = static_cast<std::size_t>(region.nx);
     std::vector<float> rows(pitch * static_cast<std::size_t>(region.ny - 1) + width);
-    if (auto status = state_.note(state_.device().read(from, first * 4, std::as_writable_bytes(std::span(rows)))); !status)
-        return status;
+    if (auto status = rows_from(first, rows); !status) return status;
     for (std::size_t j = 0; j < static_cast<std::size_t>(region.ny); ++j)
         std::memcpy(values.data() + j * width, rows.data() + j * pitch, width * sizeof(float));
     return ok_status();
@@ -80,7 +85,7 @@ Status StateReader::read(const std::string& name, const Region& region, std::spa
         if (name != published) continue;
         const std::string stage = name == "surface_saturation" ? "publish_saturation" : "publish_" + name;
         auto status = publish(stage, {}, {published});
-        return status ? read_cells(output_[0], region, values) : status;
+        return status ? read_cells(rows_of(output_[0]), region, values) : status;
     }
     if (state_.plan().find(name) == nullptr) {
         if (std::find(std::begin(hashed_fields), std::end(hashed_fields), name) == std::end(hashed_fields))
@@ -94,9 +99,10 @@ Status StateReader::read(const std::string& name, const Region& region, std::spa
                                   {"centre_velocity_x", "centre_velocity_y"});
             !status)
             return status;
-        return read_cells(output_[name.back() == 'x' ? 0 : 1], region, values);
+        return read_cells(rows_of(output_[name.back() == 'x' ? 0 : 1]), region, values);
     }
-    return read_cells(state_.buffer(name, state_.parity()), region, values);
+    return read_cells([&](std::size_t first, std::span<float> rows) { return state_.read_field(name, first, rows); }, region,
+                      values);
 }
 
 Result<std::uint64_t> StateReader::hash_fields(const Look& look) {

@@ -3,6 +3,7 @@
 #include "engine/ledger.hpp"
 #include "engine/regions.hpp"
 #include "engine/state_program.hpp"
+#include <functional>
 #include <span>
 
 namespace wadi {
@@ -35,7 +36,10 @@ class StateReader {
   private:
     Status publish(const std::string& stage, const std::map<std::string, std::string>& fields,
                    const std::vector<const char*>& outputs);
-    Status read_cells(compute::Buffer from, const Region& region, std::span<float> values);
+    /// Reads numbers from element `first` on.
+    using Rows = std::function<Status(std::size_t first, std::span<float> rows)>;
+    Rows rows_of(compute::Buffer from);
+    Status read_cells(const Rows& rows_from, const Region& region, std::span<float> values);
     Result<std::vector<float>> read_buffer(compute::Buffer from);
     /// Reads every hashed field and hashes it; `look` sees each of its rows as well, ghosts excluded.
     using Look = std::function<void(const std::string& field, std::span<const float> row)>;

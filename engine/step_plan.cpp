@@ -274,6 +274,13 @@ int StepPlan::field_buffers() const {
     return count;
 }
 
+double StepPlan::bytes_per_cell() const {
+    int bytes = 4 * scratch_blocks;
+    for (const auto& field : fields)
+        if (field.role == FieldRole::state) bytes += field.element_bytes() * (field.ping_pong ? 2 : 1);
+    return bytes;
+}
+
 double StepPlan::traffic_per_cell() const {
     double moved = 0;
     const auto add = [&](const PlanPass& pass, int times) {
@@ -283,19 +290,19 @@ double StepPlan::traffic_per_cell() const {
         for (std::size_t n = 0; n < pass.fields.size(); ++n) {
             const auto* field = pass.fields[n].empty() ? nullptr : find(base_name(pass.fields[n]));
             if (field == nullptr || (field->role != FieldRole::state && field->role != FieldRole::scratch)) continue;
-            moved += times * (stage.bindings[n].access == compute::Access::inout ? 2 : 1);
+            moved += times * field->element_bytes() * (stage.bindings[n].access == compute::Access::inout ? 2 : 1);
         }
     };
     for (const auto& pass : water_passes) add(pass, 1);
     for (const auto& pass : substep_passes) add(pass, substeps);
-    return 4 * moved;
+    return moved;
 }
 
 double StepPlan::least_traffic_per_cell() const {
-    double count = 0;
+    double moved = 0;
     for (const auto& field : fields)
-        if (field.role == FieldRole::state) count += field.name == "terrain" ? 1 : 2;
-    return 4 * count;
+        if (field.role == FieldRole::state) moved += field.element_bytes() * (field.name == "terrain" ? 1 : 2);
+    return moved;
 }
 
 std::vector<std::string> StepPlan::tile_list(bool of_substeps) const {
@@ -324,16 +331,19 @@ StepPlan make_step_plan(std::uint32_t effects, int substeps, PlanChoice choice) 
     if (!plan.substep_passes.empty()) plan.substep_passes.back().flips.push_back("sand_height");
     plan_sand_forces(substep);
 
-    plan.fields.push_back({"terrain", FieldRole::state, false, -1});
-    plan.fields.push_back({"source_ledger", FieldRole::ledger, false, -1}); // edits count there in any world
+    plan.fields.push_back({"terrain", FieldRole::state});
+    plan.fields.push_back({"source_ledger", FieldRole::ledger}); // edits count there in any world
     for (const auto* passes : {&plan.water_passes, &plan.substep_passes}) {
         for (const auto& pass : *passes) {
-            for (const auto& name : pass.fields) {
+            const auto& bindings = compute::stage_table()[static_cast<std::size_t>(pass.stage)].bindings;
+            for (std::size_t n = 0; n < pass.fields.size(); ++n) {
+                const auto& name = pass.fields[n];
                 if (name.empty()) continue;
                 const std::string base = base_name(name);
                 auto found =
                     std::find_if(plan.fields.begin(), plan.fields.end(), [&](const PlanField& f) { return f.name == base; });
-                if (found == plan.fields.end()) found = plan.fields.insert(plan.fields.end(), {base, role_of(base), false, -1});
+                if (found == plan.fields.end()) found = plan.fields.insert(plan.fields.end(), {base, role_of(base)});
+                found->half = (effects & EFFECT_HALF_STORAGE) != 0 && bindings[n].type == compute::Scalar::f32_or_f16;
                 found->ping_pong |= is_next(name);
             }
         }

@@ -24,7 +24,10 @@ struct PlanField {
     std::string name;
     FieldRole role = FieldRole::state;
     bool ping_pong = false;
-    int memory = -1; // scratch: number of the memory block it shares with other scratch fields
+    int memory = -1;   // scratch: number of the memory block it shares with other scratch fields
+    bool half = false; // 16-bit floats
+
+    int element_bytes() const { return half ? 2 : 4; }
 };
 
 struct StepPlan {
@@ -40,10 +43,10 @@ struct StepPlan {
     /// Cells that one step carries a change along at most: the sum of what its passes read around them.
     int reach = 0;
 
-    /// Buffers of nx * ny floats: state, ping-pong partners and shared scratch.
+    /// Buffers of nx * ny numbers: state, ping-pong partners and shared scratch.
     int field_buffers() const;
     /// Bytes per cell of those.
-    double bytes_per_cell() const { return 4.0 * field_buffers(); }
+    double bytes_per_cell() const;
     /// Bytes per cell that the passes of a step read and write, each field of a pass once; those of the rim and of sources are
     /// left out.
     double traffic_per_cell() const;

@@ -1,4 +1,5 @@
 #include "engine/world_state.hpp"
+#include "engine/half.hpp"
 #include "engine/quanta.hpp"
 #include "engine/snapshot_format.hpp"
 #include "engine/step_inputs.hpp"
@@ -74,6 +75,10 @@ Status WorldState::open(const EffectChoice& effects) {
         return error(Code::not_supported, "fused_stages: '" + device_->capabilities().name + "' has no groups of " +
                                               std::to_string(compute::fused_group_x * compute::fused_group_y) +
                                               " threads that share " + std::to_string(compute::fused_shared_bytes) + " bytes");
+    }
+    if ((effects.mask & EFFECT_HALF_STORAGE) != 0 && !device_->capabilities().half_storage) {
+        return error(Code::not_supported, "method.half_storage: '" + device_->capabilities().name +
+                                              "' has no buffers of 16-bit floats, or no leave to use them");
     }
     plan_ = make_step_plan(effects.mask, settings_.method.substeps, plan_choice());
     derive();
@@ -153,7 +158,7 @@ std::uint64_t WorldState::field_bytes(const PlanField& field) const {
                     : field.name.starts_with("active_counts") ? rows
                                                               : columns * rows);
     }
-    if (field.role != FieldRole::ledger) return layout_.size() * 4;
+    if (field.role != FieldRole::ledger) return layout_.size() * static_cast<std::uint64_t>(field.element_bytes());
     if (field.name != "source_ledger") return static_cast<std::uint64_t>(layout_.rim()) * 4 * 4;
     return std::uint64_t{2 * LEDGER_ENTRIES} * static_cast<std::uint64_t>(layout_.strips()) *
            static_cast<std::uint64_t>(layout_.pitch()) * 4;
@@ -235,9 +240,7 @@ Status WorldState::prepare(std::uint32_t effects) const {
 
 Status WorldState::upload(const InitialFields& fields) {
     const double quantum = height_quantum(settings_.method);
-    const auto put = [&](const char* name, const std::vector<float>& values) {
-        return plan_.find(name) == nullptr ? ok_status() : device_->write(buffers_[name][0], 0, bytes_of(values));
-    };
+    const auto put = [&](const char* name, const std::vector<float>& values) { return write_field(name, 0, values); };
     const auto heights = [&](const std::vector<float>& cells, bool repeat_edges) {
         auto rounded = cells;
         round_heights(rounded, quantum);
@@ -262,6 +265,30 @@ Status WorldState::upload(const InitialFields& fields) {
     }
     if (plan_.find("source_shapes") == nullptr) return ok_status();
     return device_->write(buffers_["source_shapes"][0], 0, bytes_of(source_shapes(settings_)));
+}
+
+Status WorldState::read_field(const std::string& name, std::size_t first, std::span<float> values) {
+    const auto* field = plan_.find(name);
+    if (field == nullptr) {
+        std::fill(values.begin(), values.end(), 0.0F);
+        return ok_status();
+    }
+    const auto from = buffer(name, parity());
+    if (!field->half) return note(device_->read(from, first * 4, std::as_writable_bytes(values)));
+    std::vector<std::uint16_t> halves(values.size());
+    auto status = note(device_->read(from, first * 2, std::as_writable_bytes(std::span(halves))));
+    if (status) std::transform(halves.begin(), halves.end(), values.begin(), from_half);
+    return status;
+}
+
+Status WorldState::write_field(const std::string& name, std::size_t first, std::span<const float> values) {
+    const auto* field = plan_.find(name);
+    if (field == nullptr) return ok_status();
+    const auto to = buffer(name, parity());
+    if (!field->half) return note(device_->write(to, first * 4, std::as_bytes(values)));
+    std::vector<std::uint16_t> halves(values.size());
+    std::transform(values.begin(), values.end(), halves.begin(), to_half);
+    return note(device_->write(to, first * 2, bytes_of(halves)));
 }
 
 compute::Buffer WorldState::buffer(const std::string& name, const Parity& parity) const {

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -100,6 +101,10 @@ class WorldState {
     std::uint64_t field_bytes(const PlanField& field) const;
     std::vector<KeptField> kept_fields(const StepPlan& plan) const;
     std::vector<KeptField> kept_fields() const { return kept_fields(plan_); }
+    /// Numbers of a field at its current parity, from element `first` on: its 16-bit floats as floats where it has such. Zeros,
+    /// and nothing written, where the plan lacks the field.
+    Status read_field(const std::string& name, std::size_t first, std::span<float> values);
+    Status write_field(const std::string& name, std::size_t first, std::span<const float> values);
     /// A buffer that counts into device_bytes().
     Result<compute::Buffer> make_buffer(const compute::BufferDesc& desc);
     void free_buffer(compute::Buffer buffer, std::uint64_t bytes);

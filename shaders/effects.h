@@ -25,5 +25,6 @@
 #define EFFECT_EXPLICIT_DRAG 32768u // drag is an explicit step of its own ahead of friction
 #define EFFECT_LAPLACE_DIFFUSION 65536u // mixed water spreads by the Laplacian of its height
 #define EFFECT_SECOND_ORDER_WATER 131072u // heights and flux-form velocities of water move by limited slopes
+#define EFFECT_HALF_STORAGE 262144u // velocities and stretch lie in memory as 16-bit floats
 
 #endif

@@ -35,10 +35,13 @@ class Runner {
                 for (int i = i0; i < i1; ++i) {
                     const Place place = rim_place(i);
                     for (const auto& output : s_.outputs) {
-                        use(old[at++], output.words[output.count ? static_cast<std::size_t>(i) : place.face], place.tile);
-                        use(old[at++],
-                            output.words[output.count ? static_cast<std::size_t>(i + 4 * (p_.nx + p_.ny)) : place.ghost],
-                            place.tile);
+                        for (const std::size_t n :
+                             {output.count ? static_cast<std::size_t>(i) : place.face,
+                              output.count ? static_cast<std::size_t>(i + 4 * (p_.nx + p_.ny)) : place.ghost}) {
+                            std::uint32_t word = 0;
+                            std::memcpy(&word, output.data + n * output.size, output.size);
+                            use(old[at++], word, place.tile);
+                        }
                     }
                 }
             };
@@ -73,22 +76,23 @@ class Runner {
                 at = 0;
                 for (int n = 0; n < count && unstamped > 0; ++n) {
                     const int low = i0 + n * size, high = std::min(low + size, i1);
-                    if (watched_[static_cast<std::size_t>(n)]) use(tile + n, low, static_cast<std::size_t>(high - low) * 4);
+                    if (watched_[static_cast<std::size_t>(n)]) use(tile + n, low, static_cast<std::size_t>(high - low));
                 }
             };
             for (int n = 0; n < count; ++n) watched_[static_cast<std::size_t>(n)] = unstamped > 0 && !stamped(tile + n);
-            visit([&](int, int low, std::size_t bytes) {
+            visit([&](int, int low, std::size_t width) {
                 for (const auto& output : s_.outputs) {
-                    for (int row = j; row < end; ++row, at += bytes / 4)
-                        std::memcpy(old_.data() + at, output.words + index(low, row), bytes);
+                    for (int row = j; row < end; ++row, at += width)
+                        std::memcpy(old_.data() + at, output.data + index(low, row) * output.size, width * output.size);
                 }
             });
             call_(i0, i1, j, end);
-            visit([&](int watched, int low, std::size_t bytes) {
+            visit([&](int watched, int low, std::size_t width) {
                 bool same = true;
                 for (const auto& output : s_.outputs) {
-                    for (int row = j; row < end; ++row, at += bytes / 4)
-                        same = same && std::memcmp(old_.data() + at, output.words + index(low, row), bytes) == 0;
+                    for (int row = j; row < end; ++row, at += width)
+                        same = same && std::memcmp(old_.data() + at, output.data + index(low, row) * output.size,
+                                                   width * output.size) == 0;
                 }
                 if (!same) stamp(watched);
             });

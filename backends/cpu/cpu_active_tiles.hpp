@@ -2,6 +2,7 @@
 #pragma once
 #include "backends/cpu/cpu_stages.hpp"
 #include "engine/compute/stage_table.hpp"
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -9,9 +10,11 @@ namespace wadi::cpu {
 
 /// A stage with its buffers, and the lists of compute::ActiveTiles.
 struct ActiveStage {
-    /// Words that the stage writes; a count has its low words for in and out at i and i + 2 rim (account_sides).
+    /// Numbers of `size` bytes that the stage writes; a count has its low words for in and out at i and i + 2 rim
+    /// (account_sides).
     struct Output {
-        std::uint32_t* words;
+        std::byte* data;
+        std::size_t size;
         bool count;
     };
     static constexpr std::size_t most_outputs = 16;

@@ -31,6 +31,7 @@ CpuDevice::CpuDevice(const InstructionSet& set, int threads, const compute::Devi
     capabilities_.largest_buffer_bytes = capabilities_.memory_bytes;
     capabilities_.exact_float = true;
     capabilities_.timestamps = true;
+    capabilities_.half_storage = true;
     capabilities_.fused_stages = true;
     capabilities_.queue_depth = most_in_flight;
     runner_ = std::thread([this] { device_thread(); });
@@ -239,7 +240,9 @@ Status CpuDevice::set_active(const compute::Dispatch& d, const compute::StageInf
     active.rim = stage.extent == compute::Extent::rim;
     for (std::size_t b = 0; b < stage.bindings.size(); ++b) {
         if (stage.bindings[b].access == compute::Access::in || step.buffers[b] == nullptr) continue;
-        active.outputs.push_back({static_cast<std::uint32_t*>(step.buffers[b]), stage.bindings[b].type == compute::Scalar::u32});
+        const bool half = stage.bindings[b].type == compute::Scalar::f32_or_f16 && (d.effects & EFFECT_HALF_STORAGE) != 0;
+        active.outputs.push_back(
+            {static_cast<std::byte*>(step.buffers[b]), half ? 2u : 4u, stage.bindings[b].type == compute::Scalar::u32});
     }
     if (active.outputs.size() > ActiveStage::most_outputs)
         return error(Code::internal,

@@ -111,13 +111,14 @@ Pipelines::~Pipelines() {
     for (const auto& s : stages_) {
         if (s.layout != VK_NULL_HANDLE) c_.vk.vkDestroyPipelineLayout(c_.device, s.layout, nullptr);
         if (s.set_layout != VK_NULL_HANDLE) c_.vk.vkDestroyDescriptorSetLayout(c_.device, s.set_layout, nullptr);
-        if (s.module != VK_NULL_HANDLE) c_.vk.vkDestroyShaderModule(c_.device, s.module, nullptr);
+        for (const auto module : {s.module, s.half_module})
+            if (module != VK_NULL_HANDLE) c_.vk.vkDestroyShaderModule(c_.device, module, nullptr);
     }
     if (cache_ != VK_NULL_HANDLE) c_.vk.vkDestroyPipelineCache(c_.device, cache_, nullptr);
 }
 
 // Makes what is still missing, so that a call that failed half way can be repeated.
-Status Pipelines::prepare_stage(int stage) {
+Status Pipelines::prepare_stage(int stage, bool half) {
     const compute::StageInfo& info = compute::stage_table()[static_cast<std::size_t>(stage)];
     StageObjects& objects = stages_[static_cast<std::size_t>(stage)];
     if (info.spirv.empty()) return error(Code::not_supported, "this build has no SPIR-V for stage " + std::string(info.name));
@@ -126,10 +127,11 @@ Status Pipelines::prepare_stage(int stage) {
         return error(Code::not_supported, "stage " + std::string(info.name) + " binds " + std::to_string(storage) + " buffers; " +
                                               c_.capabilities.name + " allows " + std::to_string(c_.limits.storage_buffers));
     }
-    if (objects.module == VK_NULL_HANDLE) {
-        auto module = create_module(c_, info.spirv, info.name);
-        if (!module) return module.status();
-        objects.module = *module;
+    auto& module = half ? objects.half_module : objects.module;
+    if (module == VK_NULL_HANDLE) {
+        auto made = create_module(c_, half ? info.half_spirv : info.spirv, info.name);
+        if (!made) return made.status();
+        module = *made;
     }
     if (objects.set_layout == VK_NULL_HANDLE) {
         auto layout = create_set_layout(c_, first_slot_binding, storage, info.name);
@@ -162,10 +164,14 @@ Result<compute::Pipeline> Pipelines::create(int stage, std::uint32_t effects, co
     const auto known = std::find_if(pipelines_.begin(), pipelines_.end(), same);
     if (known != pipelines_.end()) return compute::Pipeline{static_cast<std::uint32_t>(known - pipelines_.begin()) + 1};
 
-    if (Status s = prepare_stage(stage); !s) return s;
+    const bool half = (constants->effects & EFFECT_HALF_STORAGE) != 0; // no stage asks for it but those with a module for it
+    if (half && !c_.capabilities.half_storage)
+        return error(Code::not_supported, c_.capabilities.name + " has no buffers of 16-bit floats, or no leave to use them");
+    if (Status s = prepare_stage(stage, half); !s) return s;
     pipelines_.reserve(pipelines_.size() + 1); // so that nothing can fail once the pipeline exists
     const StageObjects& objects = stages_[static_cast<std::size_t>(stage)];
-    auto handle = create_compute_pipeline(c_, cache_, objects.module, objects.layout, *constants, info.name);
+    auto handle =
+        create_compute_pipeline(c_, cache_, half ? objects.half_module : objects.module, objects.layout, *constants, info.name);
     if (!handle) return handle.status();
     pipelines_.push_back(
         {stage, constants->effects, constants->group_x, constants->group_y, constants->active_tiles != 0, *handle});

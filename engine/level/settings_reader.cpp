@@ -47,6 +47,7 @@ void read_method(const Json& value, Method& method, Status& status) {
     reader.string("name", name);
     choose_method(method, name); // the other keys change what the preset chose
     reader.boolean("outflow_limiter", method.outflow_limiter);
+    reader.boolean("half_storage", method.half_storage);
     read_fields(reader, method, METHOD_FIELDS);
     read_choice(reader, "velocity_transport", velocity_transport_names(), method.velocity_transport);
     read_choice(reader, "strain_transport", strain_transport_names(), method.strain_transport);

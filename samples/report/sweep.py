@@ -9,6 +9,7 @@ CHOICES = {
     "robust": {},
     "published": {"name": "published"},
     "second_order": {"water_transport_order": 2},
+    "half_storage": {"half_storage": True},
     "semi_lagrangian": {"velocity_transport": "semi_lagrangian"},
     "polar": {"strain_transport": "polar"},
     "direct": {"strain_transport": "direct"},
@@ -26,7 +27,8 @@ GUARDS = [choice for choice in CHOICES if choice.startswith("no_")]
 METHODS = [choice for choice in CHOICES if not choice.startswith("no_")]
 EFFECTS = ("elastoplastic", "cohesion", "drag", "diffusion", "mixture")
 NEEDED_BY = {"elastoplastic": "cohesion", "mixture": "diffusion"}  # what needs an effect goes with it
-CHOICES_OF = {"water": ("robust", "published", "second_order", "semi_lagrangian"), "dry sand": ("robust", "published", "semi_lagrangian", "polar", "direct"),
+CHOICES_OF = {"water": ("robust", "published", "second_order", "half_storage", "semi_lagrangian"),
+              "dry sand": ("robust", "published", "half_storage", "semi_lagrangian", "polar", "direct"),
               "wet sand": tuple(METHODS)}  # what a kind of scene has something of to show
 STEPS = (0.25, 0.5, 1, 2, 4)
 RATIOS = (1, 2, 3, 4, 6)
@@ -73,7 +75,7 @@ def points_of(scene, quick):
                 for dt in (1, 2) if quick else (0.5, 1, 2):
                     for ratio in (2, 3) if sand else (3,):
                         yield Point(scene.key, n, dt, ratio, choice)
-        for choice in [c for c in CHOICES_OF[scene.kind] if not quick or c in ("robust", "published", "second_order")]:
+        for choice in [c for c in CHOICES_OF[scene.kind] if not quick or c in ("robust", "published", "second_order", "half_storage")]:
             yield Point(scene.key, sizes[-1], 1, 3, choice)
             yield Point(scene.key, sizes[-1], 0.25, 3, choice)
     else:

@@ -65,9 +65,10 @@ std::size_t last_writer(const FusedStage& fused, const std::string& field) {
     return last;
 }
 
-void add_binding(FusedStage& fused, const std::string& field, const char* access, unsigned condition) {
+void add_binding(FusedStage& fused, const std::string& field, const std::string& type, const char* access, unsigned condition) {
     for (auto& b : fused.stage.bindings) {
         if (b.name != field) continue;
+        if (b.type != type) fail(fused.stage.path + ": " + field + " is bound as " + b.type + " and as " + type);
         if (b.access != access)
             fail(fused.stage.path + ": " + field + " is read from memory and kept: another group may have written it");
         if (b.condition != std::to_string(condition) + "u") {
@@ -78,7 +79,7 @@ void add_binding(FusedStage& fused, const std::string& field, const char* access
     }
     Binding b;
     b.name = field;
-    b.type = "float";
+    b.type = type;
     b.access = access;
     b.condition = std::to_string(condition) + "u";
     b.slot = static_cast<int>(fused.stage.bindings.size());
@@ -91,7 +92,8 @@ void resolve(FusedStage& fused, const Effects& effects, std::set<std::string> te
     for (std::size_t n = 0; n < fused.parts.size(); ++n) {
         const auto& part = fused.parts[n];
         for (const auto& b : part.stage.bindings) {
-            if (b.type != "float") fail(fused.stage.path + ": " + part.stage.name + " has a binding that is no float");
+            if (b.type != "float" && !b.narrow())
+                fail(fused.stage.path + ": " + part.stage.name + " has a binding that is no float");
         }
         tested.insert(part.stage.tested.begin(), part.stage.tested.end());
         for (const auto& [name, field] : part.reads) {
@@ -99,7 +101,7 @@ void resolve(FusedStage& fused, const Effects& effects, std::set<std::string> te
             const unsigned condition = condition_of(fused, part, binding_of(part.stage, name), effects, never);
             if (never) continue;
             if (!writes_before(fused, n, field)) {
-                add_binding(fused, field, "IN", condition);
+                add_binding(fused, field, binding_of(part.stage, name).type, "IN", condition);
                 continue;
             }
             auto& keeping = fused.fields[field];
@@ -124,7 +126,8 @@ void resolve(FusedStage& fused, const Effects& effects, std::set<std::string> te
         for (const auto& [name, written] : part.writes) {
             bool never = false;
             const unsigned condition = condition_of(fused, part, binding_of(part.stage, name), effects, never);
-            if (written == field && !never) add_binding(fused, field, "OUT", condition | (kept.condition & ~fused.needs));
+            if (written == field && !never)
+                add_binding(fused, field, binding_of(part.stage, name).type, "OUT", condition | (kept.condition & ~fused.needs));
         }
     }
     for (const auto& name : tested) {
@@ -156,14 +159,15 @@ struct Rewriter {
     std::string load(const std::string& binding, const std::string& at) const {
         if (absent(binding)) return "0.0f";
         const std::string& field = part.reads.at(binding);
-        if (!writes_before(fused, index, field)) return field + "[IN_MEMORY(" + at + ")]";
+        if (!writes_before(fused, index, field)) return "float(" + field + "[IN_MEMORY(" + at + ")])";
         return fused.fields.at(field) == Keeping::tile ? "tile_" + field + "[IN_TILE(" + at + ")]" : "own_" + field;
     }
 
     std::string store(const std::string& binding, const std::string& at, const std::string& value) const {
         if (absent(binding)) return "NOT_KEPT(" + value + ");";
         const std::string& field = part.writes.at(binding);
-        std::string out = "{ float stored = " + value + ";";
+        const bool narrow = binding_of(part.stage, binding).narrow();
+        std::string out = "{ float stored = " + (narrow ? "to_stored(" + value + ")" : value) + ";";
         const Keeping keeping = fused.fields.at(field);
         if (keeping == Keeping::tile) out += " tile_" + field + "[IN_TILE(" + at + ")] = stored;";
         if (keeping == Keeping::own_index) out += " own_" + field + " = stored;";
@@ -172,7 +176,8 @@ struct Rewriter {
             const Kept& k = kept->second;
             const std::string rim = k.rim ? " && (i == 0 || j == 0 || i == P.nx || j == P.ny)" : "";
             const std::string on = k.condition != 0 ? " && HAS(" + std::to_string(k.condition) + "u)" : "";
-            out += " if (owned" + rim + on + ") KEEP_STORED(" + field + ", IN_MEMORY(" + at + "));";
+            out += " if (owned" + rim + on + ") KEEP_STORED(" + field + ", IN_MEMORY(" + at + "), " +
+                   (narrow ? "float_or_half" : "float") + ");";
         }
         return out + " }";
     }

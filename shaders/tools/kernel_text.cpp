@@ -23,7 +23,8 @@ std::string origin(const std::string& extent, const char* axis) {
 
 bool marks(const Stage& s) {
     bool marks = s.extent == "CELLS" || s.extent == "FACES" || s.extent == "RIM";
-    for (const auto& b : s.bindings) marks &= b.access == "IN" || b.type == "float" || (s.extent == "RIM" && b.type == "uint");
+    for (const auto& b : s.bindings)
+        marks &= b.access == "IN" || b.type == "float" || b.narrow() || (s.extent == "RIM" && b.type == "uint");
     return marks;
 }
 
@@ -41,10 +42,11 @@ std::string marking(const Stage& s, const std::string& member) {
         if (b.access == "IN") continue;
         const std::string has = b.condition == "0u" ? "" : "if (HAS(" + b.condition + ")) ";
         for (const std::string& at : written(s, b)) {
-            const bool is_float = b.type == "float";
-            const std::string old = "old" + std::to_string(count++), value = member + b.name + "[" + at + "]";
-            before << "    " << b.type << " " << old << " = " << (is_float ? "0.0f" : "0u") << ";\n    if (look) {\n        "
-                   << has << old << " = " << value << ";\n    }\n";
+            const bool is_float = b.type == "float" || b.narrow();
+            const std::string old = "old" + std::to_string(count++), element = member + b.name + "[" + at + "]",
+                              value = b.narrow() ? "float(" + element + ")" : element;
+            before << "    " << (is_float ? "float" : b.type) << " " << old << " = " << (is_float ? "0.0f" : "0u")
+                   << ";\n    if (look) {\n        " << has << old << " = " << value << ";\n    }\n";
             after << "        " << has << "changed = changed || "
                   << (is_float ? "float_bits(" + value + ") != float_bits(" + old + ")" : value + " != " + old) << ";\n";
         }
@@ -67,7 +69,7 @@ std::string tile_part(const std::string& m) {
 
 std::string rim_place(const Stage& s) {
     bool ghosts = false;
-    for (const auto& b : s.bindings) ghosts |= b.access != "IN" && b.type == "float";
+    for (const auto& b : s.bindings) ghosts |= b.access != "IN" && b.type != "uint";
     return std::string("    int west_east = 2 * P.ny;\n    bool along_y = i < west_east;\n"
                        "    bool low = along_y ? i < P.ny : i < west_east + P.nx;\n"
                        "    int along = along_y ? (low ? i : i - P.ny) : (low ? i - west_east : i - west_east - P.nx);\n"

@@ -138,6 +138,7 @@ Stage parse_stage(const std::string& path) {
             b.type = a[shift + 1];
             b.name = a[shift + 2];
             b.access = word.substr(0, word.find('_'));
+            if (b.narrow()) tested.insert(half_storage);
             if (b.slot != static_cast<int>(stage.bindings.size()))
                 fail(path + ": slot of " + b.name + " is " + a[shift] + ", expected " + std::to_string(stage.bindings.size()));
             stage.bindings.push_back(b);
@@ -186,7 +187,7 @@ std::vector<unsigned> masks(unsigned tested, unsigned needs, unsigned without) {
     unsigned mask = 0;
     do {
         const unsigned least = wadi::with_needs(mask | needs); // of the worlds that have these bits
-        if ((least & tested) == mask && (least & without) == 0) result.push_back(mask);
+        if ((least & tested) == mask && (least & without) == 0 && wadi::is_legal(least)) result.push_back(mask);
         mask = (mask - tested) & tested;
     } while (mask != 0);
     return result;

@@ -23,6 +23,8 @@ std::set<std::string> effects_in(const std::string& expression);
 struct Binding {
     std::string name, type, access, condition;
     int slot = 0;
+    /// Lies in memory as 16-bit floats with EFFECT_HALF_STORAGE.
+    bool narrow() const { return type == "float_or_half"; }
 };
 
 /// Cells from the kernel's own index to the farthest that it reads.
@@ -38,6 +40,8 @@ struct Stage {
     bool fused = false;
     std::vector<std::string> tested; // effect names that HAS() or a condition asks
 };
+
+inline constexpr const char* half_storage = "EFFECT_HALF_STORAGE"; // asked by every stage with a narrow binding
 
 Stage parse_stage(const std::string& path);
 

@@ -19,12 +19,8 @@ int main(int argc, char** argv) {
         write_text(a[3], is_fused(a[2]) ? write_glsl(parse_fused(a[2], effects), effects) : write_glsl(parse_stage(a[2])));
     } else if (mode == "cpp" && a.size() == 5) {
         const Effects effects = parse_effects(a[1]);
-        if (is_fused(a[2])) {
-            write_text(a[3], write_cpp(parse_fused(a[2], effects), a[4], effects));
-        } else {
-            const Stage s = parse_stage(a[2]);
-            write_text(a[3], write_cpp(s, a[4], tested_bits(s, effects)));
-        }
+        write_text(a[3], is_fused(a[2]) ? write_cpp(parse_fused(a[2], effects), a[4], effects)
+                                        : write_cpp(parse_stage(a[2]), a[4], effects));
     } else if (mode == "cuda" && a.size() == 4) {
         const Effects effects = parse_effects(a[1]);
         if (is_fused(a[2])) {

@@ -10,13 +10,13 @@ std::string buffer_members(const Stage& s) {
     std::ostringstream o;
     o << "#ifdef WADI_STAGE_CHECKED\n";
     for (const auto& b : s.bindings) {
-        const std::string type = (b.access == "IN" ? "const " : "") + b.type;
-        o << ",\n        {static_cast<" << type << "*>(b[" << b.slot << "]), sizes[" << b.slot << "] / sizeof(" << b.type
+        const std::string element = element_type(b, "E"), type = (b.access == "IN" ? "const " : "") + element;
+        o << ",\n        {static_cast<" << type << "*>(b[" << b.slot << "]), sizes[" << b.slot << "] / sizeof(" << element
           << "), \"" << s.name << "\", \"" << b.name << "\"}";
     }
     o << "\n#else\n";
     for (const auto& b : s.bindings)
-        o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << b.type << "*>(b[" << b.slot << "])";
+        o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << element_type(b, "E") << "*>(b[" << b.slot << "])";
     o << "\n#endif\n";
     return o.str();
 }
@@ -34,19 +34,25 @@ std::string file_head(const Stage& s, const std::string& isa) {
            ".\nnamespace wadi_stage_" + isa + " {\n#include \"stage_cpp.h\"\n";
 }
 
-std::string select_function(const Stage& s, const std::string& isa, unsigned tested, const std::vector<unsigned>& masks) {
+// Half storage saves memory and no time here: one instruction set is enough for it.
+std::string select_function(const Stage& s, const std::string& isa, unsigned tested, std::vector<unsigned> masks,
+                            const Effects& effects) {
+    const unsigned half = isa == "base" ? 0 : effects.at(half_storage) & tested;
+    std::erase_if(masks, [&](unsigned mask) { return (mask & half) != 0; });
     std::ostringstream o;
-    o << "using Block = void (*)(void* const*, const unsigned long*, const void*, const void*, int, int, int, int);\n"
-      << "extern \"C\" Block wadi_cpu_" << isa << "_" << s.name << "(unsigned effects) {\n    switch (effects & " << tested
+    o << "using Block = void (*)(void* const*, const unsigned long*, const void*, const void*, int, int, int, int);\n";
+    if (half != 0) o << "extern \"C\" Block wadi_cpu_base_" << s.name << "(unsigned effects);\n";
+    o << "extern \"C\" Block wadi_cpu_" << isa << "_" << s.name << "(unsigned effects) {\n    switch (effects & " << tested
       << "u) {\n";
     for (const unsigned mask : masks) o << "    case " << mask << "u: return wadi_stage_" << isa << "::block<" << mask << "u>;\n";
-    o << "    default: return nullptr;\n    }\n}\n";
+    o << "    default: return " << (half != 0 ? "wadi_cpu_base_" + s.name + "(effects)" : "nullptr") << ";\n    }\n}\n";
     return o.str();
 }
 
 } // namespace
 
-std::string write_cpp(const Stage& s, const std::string& isa, unsigned tested) {
+std::string write_cpp(const Stage& s, const std::string& isa, const Effects& effects) {
+    const unsigned tested = tested_bits(s, effects);
     std::ostringstream o;
     o << file_head(s, isa) << "#include \"stages/" << s.name << ".stage\"\n"
       << block_head() << "    const " << s.struct_name << "<E> stage{P, S\n"
@@ -57,7 +63,7 @@ std::string write_cpp(const Stage& s, const std::string& isa, unsigned tested) {
       << "#if defined(__GNUC__) && !defined(__clang__)\n#pragma GCC ivdep\n#elif defined(__clang__)\n#pragma clang loop "
          "vectorize(assume_safety)\n#endif\n"
       << "        for (int i = i0; i < i1; ++i) local.kernel(i, j);\n    }\n}\n} // namespace\n"
-      << select_function(s, isa, tested, masks(tested));
+      << select_function(s, isa, tested, masks(tested), effects);
     return o.str();
 }
 
@@ -68,12 +74,13 @@ std::string write_cpp(const FusedStage& f, const std::string& isa, const Effects
     std::ostringstream o;
     o << file_head(s, isa) << physics_includes(f) << "struct Place { int x, y; };\n#define PLACE(X, Y) Place{X, Y}\n"
       << index_macros(f)
-      << "#define LANE 0\n#define LANES 1\n#define BARRIER (void)0\n#define KEEP_STORED(FIELD, AT) FIELD[AT] = stored\n"
+      << "#define LANE 0\n#define LANES 1\n#define BARRIER (void)0\n#define KEEP_STORED(FIELD, AT, TYPE) FIELD[AT] = "
+         "TYPE(stored)\n"
       << "#define PART_FUNCTION inline __attribute__((always_inline))\n#define NOT_KEPT(X) (void)(X)\n"
       << "template <unsigned FREE> struct " << s.struct_name << " {\n    static constexpr unsigned EFFECTS = FREE | " << f.needs
-      << "u;\n    const WorldParams& P;\n    const StepInput& S;\n";
+      << "u;\n    typedef Stored<EFFECTS> float_or_half;\n    const WorldParams& P;\n    const StepInput& S;\n";
     for (const auto& b : s.bindings)
-        o << "    WADI_BUFFER(" << (b.access == "IN" ? "const float" : "float") << ") " << b.name << ";\n";
+        o << "    WADI_BUFFER(" << (b.access == "IN" ? "const " : "") << b.type << ") " << b.name << ";\n";
     for (const auto& name : fields_kept(f, Keeping::tile)) o << "    float tile_" << name << "[" << tile_floats(f) << "] = {};\n";
     for (const auto& name : fields_kept(f, Keeping::own_index)) o << "    float own_" << name << " = 0.0f;\n";
     o << "    int own_i0 = 0, own_j0 = 0, own_i1 = 0, own_j1 = 0, tile_i0 = 0, tile_j0 = 0;\n    bool owned = "
@@ -86,7 +93,7 @@ std::string write_cpp(const FusedStage& f, const std::string& isa, const Effects
          "FUSED_COLUMNS) {\n            stage.own_i0 = i;\n            stage.own_j0 = j;\n            stage.own_i1 = i + "
          "FUSED_COLUMNS < i1 ? i + FUSED_COLUMNS : i1;\n            stage.own_j1 = j + FUSED_ROWS < j1 ? j + FUSED_ROWS : "
          "j1;\n            stage.tile();\n        }\n    }\n}\n} // namespace\n"
-      << select_function(s, isa, tested_bits(s, effects), masks(tested_bits(s, effects), f.needs, f.without));
+      << select_function(s, isa, tested_bits(s, effects), masks(tested_bits(s, effects), f.needs, f.without), effects);
     return o.str();
 }
 

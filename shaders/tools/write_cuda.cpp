@@ -21,7 +21,8 @@ std::string cuda_active(const Stage& s) {
       << "run_active(const WorldParams P, const StepInput* __restrict__ input, const Slots b, const Active tiles) {\n"
       << "    const StepInput& S = *input;\n    const " << s.struct_name << "<EFFECTS> stage{P, S";
     for (const auto& b : s.bindings)
-        o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << b.type << "*>(b.at[" << b.slot << "])";
+        o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << element_type(b, "EFFECTS") << "*>(b.at[" << b.slot
+          << "])";
     const std::string look = "    const bool look = activity[tile] != uint(S.step);\n";
     o << "};\n    volatile uint* const activity = tiles.activity;\n";
     if (s.extent == "RIM") {
@@ -54,7 +55,8 @@ std::string write_cuda(const Stage& s, unsigned tested) {
          "const "
       << s.struct_name << "<E> stage{P, S";
     for (const auto& b : s.bindings)
-        o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << b.type << "*>(b.at[" << b.slot << "])";
+        o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << element_type(b, "E") << "*>(b.at[" << b.slot
+          << "])";
     o << "};\n    const int i = static_cast<int>(blockIdx.x * (X > 0 ? X : blockDim.x) + threadIdx.x)" << origin(s.extent, "i")
       << ";\n    const int j = static_cast<int>(blockIdx.y * (Y > 0 ? Y : blockDim.y) + threadIdx.y)" << origin(s.extent, "j")
       << ";\n    if (" << guard(s.extent) << ") stage.kernel(i, j);\n}\n"
@@ -99,9 +101,9 @@ std::string write_cuda(const FusedStage& f, const Effects& effects) {
       << "\n#define BARRIER __syncthreads()\n#define PART_FUNCTION __device__ __forceinline__\n#define NOT_KEPT(X) (void)(X)\n"
       << keep_stored << active_argument << "struct Slots { void* at[" << s.bindings.size() << "]; };\n"
       << "template <unsigned FREE> struct " << s.struct_name << " {\n    static constexpr unsigned EFFECTS = FREE | " << f.needs
-      << "u;\n    const WorldParams& P;\n    const StepInput& S;\n";
+      << "u;\n    typedef Stored<EFFECTS> float_or_half;\n    const WorldParams& P;\n    const StepInput& S;\n";
     for (const auto& b : s.bindings)
-        o << "    " << (b.access == "IN" ? "const " : "") << "float* __restrict__ " << b.name << ";\n";
+        o << "    " << (b.access == "IN" ? "const " : "") << b.type << "* __restrict__ " << b.name << ";\n";
     for (const auto& name : tile) o << "    float* __restrict__ tile_" << name << ";\n";
     for (const auto& name : fields_kept(f, Keeping::own_index)) o << "    float own_" << name << " = 0.0f;\n";
     o << "    int own_i0 = 0, own_j0 = 0, own_i1 = 0, own_j1 = 0, tile_i0 = 0, tile_j0 = 0;\n    bool owned = "
@@ -114,7 +116,8 @@ std::string write_cuda(const FusedStage& f, const Effects& effects) {
       << "    __shared__ float tiles[" << std::max<std::size_t>(1, tile.size()) << "][" << tile_floats(f) << "];\n    "
       << s.struct_name << "<E> stage{P, *input";
     for (const auto& b : s.bindings)
-        o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << "float*>(b.at[" << b.slot << "])";
+        o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << element_type(b, "E") << "*>(b.at[" << b.slot
+          << "])";
     for (std::size_t n = 0; n < tile.size(); ++n) o << ",\n        tiles[" << n << "]";
     // One call of tile() for both ways: two would be two copies of all stages.
     o << "};\n    const bool all = active.list == nullptr;\n"

@@ -17,14 +17,18 @@ std::string marking(const Stage& stage, const std::string& member);
 /// The place of a rim kernel: its face, the cell outside it where that is written, the tile that holds the face.
 std::string rim_place(const Stage& stage);
 /// KEEP_STORED of a fused stage: stores, and notes whether that changed a bit where somebody looks.
-inline constexpr const char* keep_stored = "#define KEEP_STORED(FIELD, AT) { if (look) changed = changed || "
-                                           "float_bits(FIELD[AT]) != float_bits(stored); FIELD[AT] = stored; }\n";
+inline constexpr const char* keep_stored = "#define KEEP_STORED(FIELD, AT, TYPE) { if (look) changed = changed || "
+                                           "float_bits(float(FIELD[AT])) != float_bits(stored); FIELD[AT] = TYPE(stored); }\n";
+/// The type of a buffer's elements in C++ and CUDA, where `effects` names the mask.
+inline std::string element_type(const Binding& binding, const std::string& effects) {
+    return binding.narrow() ? "Stored<" + effects + ">" : binding.type;
+}
 /// Where group `part` of an active tile begins and ends: own_i0 ... own_j1, members of `member`.
 std::string tile_part(const std::string& member);
 
 std::string write_glsl(const Stage& stage);
 std::string write_glsl(const FusedStage& fused, const Effects& effects);
-std::string write_cpp(const Stage& stage, const std::string& isa, unsigned tested);
+std::string write_cpp(const Stage& stage, const std::string& isa, const Effects& effects);
 std::string write_cpp(const FusedStage& fused, const std::string& isa, const Effects& effects);
 std::string write_cuda(const Stage& stage, unsigned tested);
 std::string write_cuda(const FusedStage& fused, const Effects& effects);

@@ -48,7 +48,7 @@ std::vector<CaseSpec> list() {
             };
             add("70x50", "random", "default");
             if (((mask | stages[stage].without) & EFFECT_OPEN_SIDES) == 0) add("33x17", "random", "default", EFFECT_OPEN_SIDES);
-            for (std::size_t n = 0; n < rounds; ++n, ++turn)
+            for (std::size_t n = 0; n < ((mask & EFFECT_HALF_STORAGE) != 0 ? 1 : rounds); ++n, ++turn)
                 add(grids[turn % grids.size()], scenes[turn % scenes.size()], methods[turn % methods.size()]);
         }
     }

@@ -209,7 +209,7 @@ Status measure_step(Device& device, int size, const std::string& name, std::uint
     if (fused && !has) return ok_status(); // the row without is the same
     if (auto status = runner.open(); !status) return status;
     Row row{.name = name, .size = size, .bytes_per_cell = runner.plan().bytes_per_cell()};
-    row.world_bytes = 4.0 * static_cast<double>(runner.layout().size()) * runner.plan().field_buffers();
+    row.world_bytes = static_cast<double>(runner.layout().size()) * runner.plan().bytes_per_cell();
     std::vector<compute::Program> timed, plain; // a step for each parity, with timestamps and without
     Status status;
     for (int parity = 0; parity < 2 && status; ++parity) {
@@ -229,7 +229,7 @@ Status measure_step(Device& device, int size, const std::string& name, std::uint
     }
     const double cells = static_cast<double>(size) * size;
     for (const auto& field : runner.plan().fields)
-        if (field.role == FieldRole::state) row.floor_bytes += cells * (field.name == "terrain" ? 4 : 8);
+        if (field.role == FieldRole::state) row.floor_bytes += cells * field.element_bytes() * (field.name == "terrain" ? 1 : 2);
     const auto inputs = inputs_of(*scene, options.repeats + 2);
     auto times = status ? time_programs(device, timed, inputs, options.repeats) : Result<std::vector<double>>(status);
     auto host = times ? time_host(device, plain, inputs[0], 5 * options.repeats) : times;
@@ -366,6 +366,7 @@ Status run_perf(Session& session, const PerfOptions& options, bool first) {
         constexpr std::uint32_t published =
             EFFECT_SEMI_LAGRANGIAN | EFFECT_WHOLE_STRAIN | EFFECT_EXPLICIT_DRAG | EFFECT_LAPLACE_DIFFUSION;
         constexpr std::pair<const char*, std::uint32_t> steps[] = {{"step, all effects", ALL},
+                                                                   {"step, half storage", ALL | EFFECT_HALF_STORAGE},
                                                                    {"step, published", ALL | published},
                                                                    {"step, water only", EFFECT_WATER},
                                                                    {"step, dry sand", EFFECT_SAND | EFFECT_ELASTOPLASTIC}};

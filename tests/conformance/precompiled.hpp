@@ -1,4 +1,5 @@
-// What most of the suite includes, for CMake to precompile. A file includes what it uses all the same: preset dev compiles without.
+// What most of the suite includes, for CMake to precompile. A file includes what it uses all the same: preset dev compiles
+// without.
 #pragma once
 #include "engine/world_params.hpp"
 #include "tests/conformance/case.hpp"

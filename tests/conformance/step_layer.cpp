@@ -19,7 +19,7 @@ constexpr std::uint32_t ELASTIC = EFFECT_ELASTOPLASTIC;
 constexpr std::uint32_t TRACED = EFFECT_SEMI_LAGRANGIAN;
 constexpr std::uint32_t POLAR = EFFECT_WHOLE_STRAIN, DIRECT = EFFECT_WHOLE_STRAIN | EFFECT_DIRECT_STRAIN;
 constexpr std::uint32_t PUBLISHED = TRACED | POLAR | EFFECT_EXPLICIT_DRAG | EFFECT_LAPLACE_DIFFUSION;
-constexpr std::uint32_t SECOND = EFFECT_SECOND_ORDER_WATER;
+constexpr std::uint32_t SECOND = EFFECT_SECOND_ORDER_WATER, HALF = EFFECT_HALF_STORAGE;
 constexpr std::uint32_t ALL = 4095;
 
 struct Row {
@@ -98,6 +98,11 @@ constexpr Row in_bits[] = {
     {"1x1", ALL, "random", "default", 40},
     {"1x1", ALL | TRACED, "random", "default", 20},
     {"9x1", ALL, "dam_break", "default", 40},
+    {"33x17", ALL | HALF, "random", "default", 20},
+    {"64x4", WET | HALF, "slope", "coarse", 30},
+    {"33x17", EFFECT_SAND | ELASTIC | HALF, "cliff", "default", 40},
+    {"33x17", EFFECT_WATER | EFFECT_SAND | EFFECT_DRAG | HALF, "islands", "plain", 30},
+    {"1x1", ALL | HALF, "random", "default", 20},
 };
 
 std::vector<CaseSpec> list() {

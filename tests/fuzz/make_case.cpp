@@ -211,6 +211,11 @@ Case make_case(std::uint64_t seed) {
     make_rims_and_sources(random, s, size);
     make_commands(random, c, size);
     if (random.chance(0.4)) s.method.water_transport_order = 2; // drawn last: seeds keep the rest of their cases
+    const Method& m = s.method;
+    const bool plain = m.velocity_transport == VelocityTransport::flux_form &&
+                       m.strain_transport == StrainTransport::left_stretch && m.drag_friction == DragFriction::joint &&
+                       m.diffusion == Diffusion::limited && m.water_transport_order == 1;
+    if (random.chance(0.4) && plain) s.method.half_storage = true;
     return c;
 }
 

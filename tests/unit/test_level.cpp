@@ -238,6 +238,8 @@ TEST_CASE("level: settings by name") {
     CHECK(s.method.drag_friction == DragFriction::sequence);
     CHECK(s.method.diffusion == Diffusion::laplacian);
     CHECK(s.method.water_transport_order == 2);
+    CHECK(!s.method.half_storage);
+    CHECK(must(parse(R"("method": {"half_storage": true})")).settings.method.half_storage);
     CHECK(s.sides[1].kind == SideKind::level);
     CHECK(s.sides[1].to == 3);
     CHECK(s.sides[1].value.at(5) == 2);

@@ -337,7 +337,7 @@ TEST_CASE("shipped levels: every key is in the schema, and the schema has every 
     check_against_schema(properties["method"]["properties"], METHOD_FIELDS, Method{});
     check_against_schema(properties["method"]["properties"], METHOD_COUNTS, Method{});
     CHECK(properties["method"]["properties"].size() ==
-          std::size(METHOD_FIELDS) + std::size(METHOD_COUNTS) + 6);                       // name, outflow_limiter, four choices
+          std::size(METHOD_FIELDS) + std::size(METHOD_COUNTS) + 7); // name, outflow_limiter, half_storage, four choices
     CHECK(properties["material"]["properties"].size() == std::size(MATERIAL_FIELDS) + 1); // saturation
     for (const std::string& effect : effect_names()) CHECK(properties["effects"]["properties"].contains(effect));
     CHECK(properties["effects"]["properties"].size() == effect_names().size());

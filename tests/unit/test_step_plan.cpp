@@ -194,6 +194,20 @@ TEST_CASE("choices of method are passes of their own at their place in the order
         });
     };
     CHECK(reads_terrain(second) == reads_terrain(first) + 2);
+    // The same passes and fields, velocities and stretch in half the bytes.
+    constexpr std::uint32_t all = 4095 & ~EFFECT_BED_SHEAR;
+    const auto half = make_step_plan(all | EFFECT_HALF_STORAGE, 3), whole = make_step_plan(all, 3);
+    CHECK(order(half.water_passes) == order(whole.water_passes));
+    CHECK(whole.bytes_per_cell() == 124);
+    CHECK(half.bytes_per_cell() == 88);
+    CHECK(half.traffic_per_cell() < 0.8 * whole.traffic_per_cell());
+    for (const auto& field : half.fields) {
+        CAPTURE(field.name);
+        CHECK(field.half == (field.name.find("_velocity_") != std::string::npos || field.name.starts_with("stretch_")));
+        CHECK(!whole.find(field.name)->half);
+    }
+    CHECK(!is_legal(all | EFFECT_HALF_STORAGE | EFFECT_SEMI_LAGRANGIAN));
+    CHECK(!is_legal(EFFECT_WATER | EFFECT_HALF_STORAGE | EFFECT_SECOND_ORDER_WATER));
     auto dry = test::flat_scene(8, 8, 1, 0.01);
     dry.fill(dry.fields.sand, [](double, double) { return 1; });
     dry.settings.method.water_transport_order = 2; // no water: nothing to act on

@@ -77,6 +77,7 @@ struct Method {
     StrainTransport strain_transport = StrainTransport::left_stretch;
     DragFriction drag_friction = DragFriction::joint;
     Diffusion diffusion = Diffusion::limited;
+    bool half_storage = false;     // velocities and stretch lie in memory as 16-bit floats (NUMERICS 2.17)
     int water_transport_order = 1; // of heights and flux-form velocities of water (NUMERICS 2.2, 2.3, 2.16): 1, 2
 };
 
