@@ -1,4 +1,5 @@
 #include "engine/step_inputs.hpp"
+#include "engine/half.hpp"
 #include "engine/world_params.hpp"
 #include <algorithm>
 #include <cmath>
@@ -31,8 +32,10 @@ void StepInputs::set_sides(StepInput& input, double time) const {
         if (side.kind == SideKind::discharge) {
             value = last >= first ? std::max(0.0, value) / ((last - first + 1) * dx) : 0.0;
             // Deep enough that the flow into a dry cell is critical and within the velocity clamp.
-            least_depth = std::max(std::cbrt(value * value / std::max(1e-9, settings_.gravity)),
-                                   value * k / settings_.method.velocity_clamp);
+            least_depth =
+                std::max(std::cbrt(value * value / std::max(1e-9, settings_.gravity)),
+                         settings_.method.half_storage ? value / static_cast<double>(velocity_limit(settings_.method, k))
+                                                       : value * k / settings_.method.velocity_clamp);
         }
         input.side[n] = {static_cast<float>(value), static_cast<float>(least_depth), static_cast<float>(first),
                          static_cast<float>(last)};
@@ -51,8 +54,12 @@ StepInput StepInputs::next(int step) {
         const auto& source = settings_.sources[n];
         const double rate = source.rate.at(time);
         const bool velocity = source.set_velocity && rate > 0;
-        input.source[n] = {advance(totals_[n], rate), static_cast<float>(source.velocity[0]),
-                           static_cast<float>(source.velocity[1]), velocity ? 1.0F : 0.0F};
+        const auto stored = [&](double v) {
+            const auto speed = static_cast<float>(std::abs(v));
+            return std::copysign(settings_.method.half_storage ? half_at_most(speed) : speed, static_cast<float>(v));
+        };
+        input.source[n] = {advance(totals_[n], rate), stored(source.velocity[0]), stored(source.velocity[1]),
+                           velocity ? 1.0F : 0.0F};
     }
     set_sides(input, time);
     return input;

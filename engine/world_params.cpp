@@ -1,4 +1,5 @@
 #include "engine/world_params.hpp"
+#include "engine/half.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -39,6 +40,11 @@ double ledger_quantum(const Method& method) {
     return height_quantum(method) > 0 ? height_quantum(method) : height_quantum(chosen);
 }
 
+float velocity_limit(const Method& method, double k) {
+    const auto limit = static_cast<float>(method.velocity_clamp / k);
+    return method.half_storage ? half_at_most(limit) : limit;
+}
+
 WorldParams derive_params(const Settings& s) {
     const auto& m = s.material;
     const auto& w = s.method;
@@ -70,7 +76,7 @@ WorldParams derive_params(const Settings& s) {
     p.dry_threshold = f(w.dry_threshold);
 
     p.k = f(k);
-    p.water_velocity_clamp = f(w.velocity_clamp / k);
+    p.water_velocity_clamp = velocity_limit(w, k);
     p.shock_viscosity = f(w.shock_viscosity * k * std::sqrt(s.gravity));
     p.gravity_cap_base = w.gravity_cap > 0 ? f(w.gravity_cap) : gravity_cap_off;
     p.gravity_cap_floor = f(w.gravity_cap_least);
@@ -92,7 +98,7 @@ WorldParams derive_params(const Settings& s) {
 
     p.ks = f(ks);
     p.dts = f(dts);
-    p.sand_velocity_clamp = f(w.velocity_clamp / ks);
+    p.sand_velocity_clamp = velocity_limit(w, ks);
     p.sand_gravity_cap = w.sand_gravity_cap > 0 ? f(w.sand_gravity_cap / (ks * ks)) : off;
     p.density_ratio = f(m.water_density / m.sand_density);
     p.water_density = f(m.water_density);

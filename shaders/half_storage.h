@@ -3,19 +3,36 @@
 
 // The nearest 16-bit float (IEEE binary16), ties to even, its denormals included; at most 65504, NaN stays.
 FN float half_of(float x) {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
+    unsigned short h;
+    float y;
+    asm("{ .reg .f32 t; min.NaN.f32 t, %2, 0f477FE000; max.NaN.f32 t, t, 0fC77FE000; cvt.rn.f16.f32 %0, t; cvt.f32.f16 %1, %0; }"
+        : "=h"(h), "=f"(y) : "f"(x));
+    return y + 0.0f; // no negative zero
+#else
     float y = x > 65504.0f ? 65504.0f : x;
     y = y < -65504.0f ? -65504.0f : y;
     int bits = float_bits(y);
     float normal = bits_float((bits + 4095 + ((bits >> 13) & 1)) & ~8191);
     float tiny = (y + 0.75f) - 0.75f; // floats in [1/2, 1) are 2^-24 apart, as denormals of 16 bits are
     return wabs(y) < 6.103515625e-05f ? tiny : normal;
+#endif
 }
 #ifndef WADI_GLSL
 
-// One 16-bit float in memory. Values are those of half_of, so that nothing is left to round.
+// One 16-bit float in memory.
 struct Half {
     unsigned short bits;
-    HELPER explicit Half(float x) { *this = x; }
+    // From a value of half_of: nothing is left to round.
+    HELPER explicit Half(float y) {
+#ifdef __CUDA_ARCH__
+        asm("cvt.rn.f16.f32 %0, %1;" : "=h"(bits) : "f"(y));
+#else
+        int size = float_bits(wabs(y) * 1.925929944387236e-34f) >> 13; // 2^-112
+        int sign = y < 0.0f ? 0x8000 : 0;
+        bits = static_cast<unsigned short>(y == y ? sign | size : 0x7e00);
+#endif
+    }
     HELPER operator float() const {
 #ifdef __CUDA_ARCH__
         float x;
@@ -28,15 +45,7 @@ struct Half {
 #endif
     }
     HELPER Half& operator=(float x) {
-        float y = half_of(x);
-#ifdef __CUDA_ARCH__
-        asm("cvt.rn.f16.f32 %0, %1;" : "=h"(bits) : "f"(y));
-#else
-        int size = float_bits(wabs(y) * 1.925929944387236e-34f) >> 13; // 2^-112
-        int sign = y < 0.0f ? 0x8000 : 0;
-        bits = static_cast<unsigned short>(y == y ? sign | size : 0x7e00);
-#endif
-        return *this;
+        return *this = Half(half_of(x));
     }
 };
 template <bool HALF> struct StoredType { typedef float T; };

@@ -46,6 +46,7 @@ Json method_of(const Method& m) {
     for (const auto& field : METHOD_COUNTS)
         if (m.name != Method().name || m.*field.member != Method().*field.member) json[field.name] = m.*field.member;
     if (!m.outflow_limiter) json["outflow_limiter"] = false;
+    if (m.half_storage) json["half_storage"] = true;
     const auto name = [](const std::vector<std::string>& names, auto value) { return names[static_cast<std::size_t>(value)]; };
     const Method normal;
     if (m.velocity_transport != normal.velocity_transport)

@@ -109,6 +109,7 @@ std::vector<Change> changes() {
     for (const auto& field : METHOD_COUNTS)
         list.push_back([&field](Case& c) { return reset(c.scene.settings.method.*field.member, Method().*field.member); });
     list.push_back([](Case& c) { return reset(c.scene.settings.method.outflow_limiter, true); });
+    list.push_back([](Case& c) { return reset(c.scene.settings.method.half_storage, false); });
     list.push_back([](Case& c) { return reset(c.scene.settings.method.velocity_transport, Method().velocity_transport); });
     list.push_back([](Case& c) { return reset(c.scene.settings.method.strain_transport, Method().strain_transport); });
     list.push_back([](Case& c) { return reset(c.scene.settings.method.drag_friction, Method().drag_friction); });
