@@ -4,10 +4,9 @@
 // The nearest 16-bit float (IEEE binary16), ties to even, its denormals included; at most 65504, NaN stays.
 FN float half_of(float x) {
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
-    unsigned short h;
     float y;
-    asm("{ .reg .f32 t; min.NaN.f32 t, %2, 0f477FE000; max.NaN.f32 t, t, 0fC77FE000; cvt.rn.f16.f32 %0, t; cvt.f32.f16 %1, %0; }"
-        : "=h"(h), "=f"(y) : "f"(x));
+    asm("{ .reg .f32 t; .reg .b16 h; min.NaN.f32 t, %1, 0f477FE000; max.NaN.f32 t, t, 0fC77FE000; cvt.rn.f16.f32 h, t; cvt.f32.f16 %0, h; }"
+        : "=f"(y) : "f"(x));
     return y + 0.0f; // no negative zero
 #else
     float y = x > 65504.0f ? 65504.0f : x;
