@@ -20,9 +20,10 @@ with tempfile.TemporaryDirectory() as folder:
     table = pathlib.Path(folder) / "perf.csv"
     table.write_text(run(sys.argv[1], "perf", "--backend", "cpu", "--max-size", 128, "--repeats", 3, "--output", "csv"))
     steps = [row for row in perf_table.read(table) if row["row"].startswith("step, ")]
-    assert len(steps) == 4, steps
+    assert len(steps) == 5, steps
     for row in steps:
         assert 0 < row["floor_ms"] < row["median_ms"] <= row["p95_ms"], row
+        assert row["bytes_per_cell"] == {"step, half storage": 88, "step, all effects": 124}.get(row["row"], row["bytes_per_cell"]), row
         assert row["world_bytes"] > row["bytes_per_cell"] * 128 * 128 and row["host_us_median"] > 0, row
     # Half a dozen of 289 tiles move: left out, the others cost nothing and change no bit.
     tiles = run(sys.argv[1], "perf-tiles", "--backend", "cpu", "--size", 256, "--shares", 0.01, "--tiles", "0,16", "--steps", 10, "--repeats", 1)
@@ -36,4 +37,4 @@ with tempfile.TemporaryDirectory() as folder:
     assert "| step, all effects |" in ratios and "| 1.00 |" in ratios, ratios
     empty = subprocess.run([sys.executable, here / "plot.py", picture, "/dev/null"], capture_output=True, text=True)
     assert empty.returncode != 0 and "no rows" in empty.stderr, empty
-print("four whole steps measured and compared, three drawn")
+print("five whole steps measured and compared, three drawn")
