@@ -15,8 +15,8 @@ say "packages"
 ./samples/install_packages.sh
 jobs=$(nproc)
 options=()
-if [ ! -e /dev/nvidiactl ]; then # no GPU to run them on: that CUDA's stages compile, ptxas included, is seen from the smallest one
-    options+=(-DWADI_CUDA_ARCHITECTURES=75)
+if [ ! -e /dev/nvidiactl ]; then # no GPU to run them on: that CUDA's stages compile, ptxas included, is seen from the smallest one and all effects
+    options+=(-DWADI_CUDA_ARCHITECTURES=75 -DWADI_CUDA_MASKS=largest)
 fi
 failed=()
 for preset in "${presets[@]}"; do

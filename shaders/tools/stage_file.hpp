@@ -53,5 +53,7 @@ unsigned tested_bits(const Stage& stage, const Effects& effects);
 /// Every mask that a stage can meet: the subsets of the bits it tests which a world can have together with `needs` and without
 /// `without`.
 std::vector<unsigned> masks(unsigned tested, unsigned needs = 0, unsigned without = 0);
+/// Those that no other one includes.
+std::vector<unsigned> largest(const std::vector<unsigned>& masks);
 
 } // namespace stagec

@@ -1,7 +1,7 @@
 // stagec: the build's own tool for stage files and fused files. It has no dependencies and is built first.
 //   stagec glsl  EFFECTS_H STAGE OUT.comp          GLSL wrapper: prelude, stage, main()
 //   stagec cpp   EFFECTS_H STAGE OUT.cpp ISA       every mask the stage distinguishes, for one instruction set
-//   stagec cuda  EFFECTS_H STAGE OUT.cu            the same as CUDA kernels
+//   stagec cuda  EFFECTS_H STAGE OUT.cu all|largest  the same as CUDA kernels; largest: masks that no other one includes
 //   stagec nocontract IN.spv OUT.spv               decorates every float operation NoContraction
 //   stagec embed IN.spv OUT.inc                    a module as the words of a C++ array
 //   stagec table EFFECTS_H OUT.cpp SPIRV_DIR|- STAGES...   the stage table that the engine reads
@@ -21,14 +21,11 @@ int main(int argc, char** argv) {
         const Effects effects = parse_effects(a[1]);
         write_text(a[3], is_fused(a[2]) ? write_cpp(parse_fused(a[2], effects), a[4], effects)
                                         : write_cpp(parse_stage(a[2]), a[4], effects));
-    } else if (mode == "cuda" && a.size() == 4) {
+    } else if (mode == "cuda" && a.size() == 5 && (a[4] == "all" || a[4] == "largest")) {
         const Effects effects = parse_effects(a[1]);
-        if (is_fused(a[2])) {
-            write_text(a[3], write_cuda(parse_fused(a[2], effects), effects));
-        } else {
-            const Stage s = parse_stage(a[2]);
-            write_text(a[3], write_cuda(s, tested_bits(s, effects)));
-        }
+        const bool all = a[4] == "all";
+        write_text(a[3], is_fused(a[2]) ? write_cuda(parse_fused(a[2], effects), effects, all)
+                                        : write_cuda(parse_stage(a[2]), effects, all));
     } else if (mode == "nocontract" && a.size() == 3) {
         write_nocontract(a[1], a[2]);
     } else if (mode == "embed" && a.size() == 3) {

@@ -44,7 +44,8 @@ std::string cuda_active(const Stage& s) {
 } // namespace
 
 // A namespace per stage: kernels of two files that had one name would be one function to the linker.
-std::string write_cuda(const Stage& s, unsigned tested) {
+std::string write_cuda(const Stage& s, const Effects& effects, bool all_masks) {
+    const auto chosen = all_masks ? masks(tested_bits(s, effects)) : largest(masks(tested_bits(s, effects)));
     const std::string space = "wadi_stage_cuda_" + s.name;
     std::ostringstream o;
     o << "// Written by stagec from " << s.name << ".stage.\nnamespace " << space
@@ -70,13 +71,12 @@ std::string write_cuda(const Stage& s, unsigned tested) {
     if (marks(s)) o << cuda_active(s);
     o << "} // namespace " << space << "\nextern \"C\" const void* wadi_cuda_" << s.name
       << "(unsigned effects, int x, int y) {\n    switch (effects) {\n";
-    for (const unsigned mask : masks(tested))
-        o << "    case " << mask << "u: return " << space << "::select<" << mask << "u>(x, y);\n";
+    for (const unsigned mask : chosen) o << "    case " << mask << "u: return " << space << "::select<" << mask << "u>(x, y);\n";
     o << "    default: return nullptr;\n    }\n}\nextern \"C\" const void* wadi_cuda_active_" << s.name
       << "([[maybe_unused]] unsigned effects) {\n";
     if (marks(s)) {
         o << "    switch (effects) {\n";
-        for (const unsigned mask : masks(tested))
+        for (const unsigned mask : chosen)
             o << "    case " << mask << "u: return reinterpret_cast<const void*>(&" << space << "::run_active<" << mask
               << "u>);\n";
         o << "    default: break;\n    }\n";
@@ -85,9 +85,9 @@ std::string write_cuda(const Stage& s, unsigned tested) {
     return o.str();
 }
 
-std::string write_cuda(const FusedStage& f, const Effects& effects) {
+std::string write_cuda(const FusedStage& f, const Effects& effects, bool all_masks) {
     const Stage& s = f.stage;
-    const unsigned tested = tested_bits(s, effects);
+    const auto legal = masks(tested_bits(s, effects), f.needs, f.without), chosen = all_masks ? legal : largest(legal);
     const std::string space = "wadi_stage_cuda_" + s.name;
     const auto tile = fields_kept(f, Keeping::tile);
     // Groups on a multiprocessor, for which the compiler saves registers: these kernels wait for instructions, not for memory.
@@ -134,7 +134,7 @@ std::string write_cuda(const FusedStage& f, const Effects& effects) {
       << "        stage.changed = false;\n        }\n        stage.tile();\n"
       << "        if (stage.changed) *activity = uint(input->step);\n        BARRIER;\n    }\n}\n} // namespace " << space
       << "\nextern \"C\" const void* wadi_cuda_" << s.name << "(unsigned effects, int, int) {\n    switch (effects) {\n";
-    for (const unsigned mask : masks(tested, f.needs, f.without))
+    for (const unsigned mask : chosen)
         o << "    case " << mask << "u: return reinterpret_cast<const void*>(&" << space << "::run<" << mask << "u>);\n";
     o << "    default: return nullptr;\n    }\n}\nextern \"C\" const void* wadi_cuda_active_" << s.name
       << "(unsigned effects) {\n    return wadi_cuda_" << s.name << "(effects, 0, 0);\n}\n";

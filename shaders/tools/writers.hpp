@@ -30,8 +30,8 @@ std::string write_glsl(const Stage& stage);
 std::string write_glsl(const FusedStage& fused, const Effects& effects);
 std::string write_cpp(const Stage& stage, const std::string& isa, const Effects& effects);
 std::string write_cpp(const FusedStage& fused, const std::string& isa, const Effects& effects);
-std::string write_cuda(const Stage& stage, unsigned tested);
-std::string write_cuda(const FusedStage& fused, const Effects& effects);
+std::string write_cuda(const Stage& stage, const Effects& effects, bool all_masks);
+std::string write_cuda(const FusedStage& fused, const Effects& effects, bool all_masks);
 
 /// Decorates every float operation of a module NoContraction.
 void write_nocontract(const std::string& in, const std::string& out);
