@@ -6,11 +6,11 @@ import sys
 
 # folder -> prefixes that its files may include; the longest matching folder decides. "<...>" headers are checked by LIBRARIES.
 RULES = {
-    "shaders": ["../physics/", "effects.h", "step_params.h", "stage_", "division_"],
+    "shaders": ["../physics/", "effects.h", "step_params.h", "stage_", "division_", "half_"],
     "shaders/tools": ["engine/compute/stage_table.hpp", "engine/effects.hpp"],
     "engine": ["engine/", "shaders/step_params.h", "shaders/effects.h"],
     "backends/cpu": ["backends/cpu/", "engine/compute/"],
-    "backends/vulkan": ["backends/vulkan/", "engine/compute/", "volk.h", "self_test.inc", "division_"],
+    "backends/vulkan": ["backends/vulkan/", "engine/compute/", "volk.h", "self_test.inc", "division_", "half_"],
     "backends/cuda": ["backends/cuda/", "engine/compute/", "shaders/", "stage_cuda.h"],
     "backends": ["backends/", "engine/compute/"],
     "plugin": ["plugin/", "engine/", "wadi/"],
