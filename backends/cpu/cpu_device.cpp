@@ -149,7 +149,12 @@ Result<compute::Pipeline> CpuDevice::create_pipeline(int stage, std::uint32_t ef
     const std::uint32_t mask = effects & table[static_cast<std::size_t>(stage)].tested_effects;
     auto& id = pipeline_ids_[{stage, mask}];
     if (id == 0) {
-        pipelines_.push_back({stage, mask, set_.select[stage](mask)});
+        const auto block = set_.select[stage](mask);
+        if (block == nullptr) {
+            return error(Code::internal, "stage " + std::string(table[static_cast<std::size_t>(stage)].name) +
+                                             " has no code for the effects " + std::to_string(mask));
+        }
+        pipelines_.push_back({stage, mask, block});
         id = static_cast<std::uint32_t>(pipelines_.size());
     }
     return compute::Pipeline{id};

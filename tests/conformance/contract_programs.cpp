@@ -232,8 +232,9 @@ void pipelines(Session&, Device& device, Expect& expect) {
     expect.that(a && untested && a->id == untested->id, "an effect that the stage does not test makes another pipeline");
     expect.that(a && other && a->id != other->id, "a tested effect makes no other pipeline");
     for (int stage = 0; stage < stages; ++stage)
-        expect.ok(device.create_pipeline(stage, ~EFFECT_HALF_STORAGE, {}).status(),
-                  "all effects of " + std::string(compute::stage_table()[static_cast<std::size_t>(stage)].name));
+        for (const std::uint32_t mask : {~EFFECT_HALF_STORAGE, EFFECT_HALF_STORAGE | 4095u})
+            expect.ok(device.create_pipeline(stage, mask, {}).status(),
+                      "all effects of " + std::string(compute::stage_table()[static_cast<std::size_t>(stage)].name));
 }
 
 void timings(Session&, Device& device, Expect& expect) {
