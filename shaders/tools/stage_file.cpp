@@ -193,11 +193,12 @@ std::vector<unsigned> masks(unsigned tested, unsigned needs, unsigned without) {
     return result;
 }
 
-std::vector<unsigned> largest(const std::vector<unsigned>& masks) {
+std::vector<unsigned> largest(const std::vector<unsigned>& masks, unsigned apart) {
     std::vector<unsigned> result;
     for (const unsigned mask : masks) {
-        const bool included =
-            std::any_of(masks.begin(), masks.end(), [&](unsigned other) { return other != mask && (other & mask) == mask; });
+        const bool included = std::any_of(masks.begin(), masks.end(), [&](unsigned other) {
+            return other != mask && (other & mask) == mask && (other & apart) == (mask & apart);
+        });
         if (!included) result.push_back(mask);
     }
     return result;

@@ -41,7 +41,8 @@ struct Stage {
     std::vector<std::string> tested; // effect names that HAS() or a condition asks
 };
 
-inline constexpr const char* half_storage = "EFFECT_HALF_STORAGE"; // asked by every stage with a narrow binding
+inline constexpr const char* half_storage = "EFFECT_HALF_STORAGE";    // asked by every stage with a narrow binding
+inline constexpr const char* first_choice = "EFFECT_SEMI_LAGRANGIAN"; // from its bit on the bits are choices of method
 
 Stage parse_stage(const std::string& path);
 
@@ -53,7 +54,7 @@ unsigned tested_bits(const Stage& stage, const Effects& effects);
 /// Every mask that a stage can meet: the subsets of the bits it tests which a world can have together with `needs` and without
 /// `without`.
 std::vector<unsigned> masks(unsigned tested, unsigned needs = 0, unsigned without = 0);
-/// Those that no other one includes.
-std::vector<unsigned> largest(const std::vector<unsigned>& masks);
+/// Those that no other one with the same bits of `apart` includes.
+std::vector<unsigned> largest(const std::vector<unsigned>& masks, unsigned apart = 0);
 
 } // namespace stagec

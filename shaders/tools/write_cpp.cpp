@@ -34,24 +34,27 @@ std::string file_head(const Stage& s, const std::string& isa) {
            ".\nnamespace wadi_stage_" + isa + " {\n#include \"stage_cpp.h\"\n";
 }
 
-// Half storage saves memory and no time here: one instruction set is enough for it.
+// Base has every mask. Half storage saves memory and no time here: the other sets leave it to base.
 std::string select_function(const Stage& s, const std::string& isa, unsigned tested, std::vector<unsigned> masks,
-                            const Effects& effects) {
-    const unsigned half = isa == "base" ? 0 : effects.at(half_storage) & tested;
-    std::erase_if(masks, [&](unsigned mask) { return (mask & half) != 0; });
+                            const Effects& effects, bool all_masks) {
+    const bool base = isa == "base";
+    if (!base) {
+        std::erase_if(masks, [&](unsigned mask) { return (mask & effects.at(half_storage)) != 0; });
+        if (!all_masks) masks = largest(masks, ~(effects.at(first_choice) - 1));
+    }
     std::ostringstream o;
     o << "using Block = void (*)(void* const*, const unsigned long*, const void*, const void*, int, int, int, int);\n";
-    if (half != 0) o << "extern \"C\" Block wadi_cpu_base_" << s.name << "(unsigned effects);\n";
+    if (!base) o << "extern \"C\" Block wadi_cpu_base_" << s.name << "(unsigned effects);\n";
     o << "extern \"C\" Block wadi_cpu_" << isa << "_" << s.name << "(unsigned effects) {\n    switch (effects & " << tested
       << "u) {\n";
     for (const unsigned mask : masks) o << "    case " << mask << "u: return wadi_stage_" << isa << "::block<" << mask << "u>;\n";
-    o << "    default: return " << (half != 0 ? "wadi_cpu_base_" + s.name + "(effects)" : "nullptr") << ";\n    }\n}\n";
+    o << "    default: return " << (base ? "nullptr" : "wadi_cpu_base_" + s.name + "(effects)") << ";\n    }\n}\n";
     return o.str();
 }
 
 } // namespace
 
-std::string write_cpp(const Stage& s, const std::string& isa, const Effects& effects) {
+std::string write_cpp(const Stage& s, const std::string& isa, const Effects& effects, bool all_masks) {
     const unsigned tested = tested_bits(s, effects);
     std::ostringstream o;
     o << file_head(s, isa) << "#include \"stages/" << s.name << ".stage\"\n"
@@ -63,13 +66,13 @@ std::string write_cpp(const Stage& s, const std::string& isa, const Effects& eff
       << "#if defined(__GNUC__) && !defined(__clang__)\n#pragma GCC ivdep\n#elif defined(__clang__)\n#pragma clang loop "
          "vectorize(assume_safety)\n#endif\n"
       << "        for (int i = i0; i < i1; ++i) local.kernel(i, j);\n    }\n}\n} // namespace\n"
-      << select_function(s, isa, tested, masks(tested), effects);
+      << select_function(s, isa, tested, masks(tested), effects, all_masks);
     return o.str();
 }
 
 // One tile after the other, what a GPU keeps in shared memory on the stack. Slower than the stages one by one: it is there to be
 // compared with them.
-std::string write_cpp(const FusedStage& f, const std::string& isa, const Effects& effects) {
+std::string write_cpp(const FusedStage& f, const std::string& isa, const Effects& effects, bool all_masks) {
     const Stage& s = f.stage;
     std::ostringstream o;
     o << file_head(s, isa) << physics_includes(f) << "struct Place { int x, y; };\n#define PLACE(X, Y) Place{X, Y}\n"
@@ -93,7 +96,7 @@ std::string write_cpp(const FusedStage& f, const std::string& isa, const Effects
          "FUSED_COLUMNS) {\n            stage.own_i0 = i;\n            stage.own_j0 = j;\n            stage.own_i1 = i + "
          "FUSED_COLUMNS < i1 ? i + FUSED_COLUMNS : i1;\n            stage.own_j1 = j + FUSED_ROWS < j1 ? j + FUSED_ROWS : "
          "j1;\n            stage.tile();\n        }\n    }\n}\n} // namespace\n"
-      << select_function(s, isa, tested_bits(s, effects), masks(tested_bits(s, effects), f.needs, f.without), effects);
+      << select_function(s, isa, tested_bits(s, effects), masks(tested_bits(s, effects), f.needs, f.without), effects, all_masks);
     return o.str();
 }
 

@@ -28,8 +28,8 @@ std::string tile_part(const std::string& member);
 
 std::string write_glsl(const Stage& stage);
 std::string write_glsl(const FusedStage& fused, const Effects& effects);
-std::string write_cpp(const Stage& stage, const std::string& isa, const Effects& effects);
-std::string write_cpp(const FusedStage& fused, const std::string& isa, const Effects& effects);
+std::string write_cpp(const Stage& stage, const std::string& isa, const Effects& effects, bool all_masks);
+std::string write_cpp(const FusedStage& fused, const std::string& isa, const Effects& effects, bool all_masks);
 std::string write_cuda(const Stage& stage, const Effects& effects, bool all_masks);
 std::string write_cuda(const FusedStage& fused, const Effects& effects, bool all_masks);
 

@@ -5,6 +5,12 @@
 
 namespace wadi::test {
 
+wadi_device_options cpu_device() {
+    auto options = wadi_default_device_options();
+    options.backend = "cpu";
+    return options;
+}
+
 std::vector<std::string> abi_backends() {
     std::uint32_t count = 0;
     REQUIRE(wadi_list_devices(nullptr, &count, nullptr, 0) == WADI_OK);
@@ -78,9 +84,9 @@ std::uint64_t steps_of(const AbiWorld& world) {
     return steps;
 }
 
-std::uint64_t device_bytes(const AbiWorld& world) {
+std::uint64_t device_bytes(wadi_world_id world) {
     auto info = wadi_default_world_info();
-    REQUIRE(wadi_world_get_info(world.id, &info) == WADI_OK);
+    REQUIRE(wadi_world_get_info(world, &info) == WADI_OK);
     return info.device_bytes;
 }
 

@@ -17,6 +17,7 @@ class AbiWorld {
     wadi_world_id id;
 };
 
+wadi_device_options cpu_device();
 /// Backends with a device here, the CPU first.
 std::vector<std::string> abi_backends();
 /// Every effect: sand, water, wet sand, a source, rain, an open side. n x n cells of 0.25 m.
@@ -30,7 +31,7 @@ AbiWorld world_of(const std::string& backend, const std::string& json, int nx, i
 void step(const AbiWorld& world, unsigned count);
 std::uint64_t hash_of(const AbiWorld& world);
 std::uint64_t steps_of(const AbiWorld& world);
-std::uint64_t device_bytes(const AbiWorld& world);
+std::uint64_t device_bytes(wadi_world_id world);
 /// By wadi_world_save.
 std::vector<unsigned char> saved(const AbiWorld& world);
 bool error_mentions(const std::string& text);

@@ -10,10 +10,13 @@
 
 namespace plugin_test {
 
+using wadi::test::device_bytes;
 using wadi::test::error_mentions;
 
 /// Backends with a device here, the CPU first.
 inline std::vector<std::string> backends() { return wadi::test::abi_backends(); }
+
+constexpr uint64_t step_time = 10000000; // of the worlds here [ns]
 
 /// nx * ny cells of 0.5 m, dt [s], sand and water that meet; destroyed at the end.
 struct World {

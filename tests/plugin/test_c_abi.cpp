@@ -1,5 +1,6 @@
 // The C ABI against the shared library: good calls, bad handles, bad sizes, bad files; nothing crashes and every error has a
 // text.
+#include "tests/plugin/abi_worlds.hpp"
 #include <cmath>
 #include <cstring>
 #include <doctest/doctest.h>
@@ -8,24 +9,21 @@
 #include <vector>
 #include <wadi/wadi.h>
 
+using wadi::test::cpu_device;
+using wadi::test::error_mentions;
+
 namespace {
 
-const std::string levels = WADI_SOURCE_DIR "/samples/levels/";
+const std::string LEVELS = WADI_SOURCE_DIR "/samples/levels/";
 
-wadi_device_options cpu() {
-    auto options = wadi_default_device_options();
-    options.backend = "cpu";
-    return options;
-}
-
-constexpr const char* settings = R"({"format_version": 1, "name": "pond", "grid": {"nx": 16, "ny": 12, "dx": 0.5}, "dt": 0.01})";
+constexpr const char* POND = R"({"format_version": 1, "name": "pond", "grid": {"nx": 16, "ny": 12, "dx": 0.5}, "dt": 0.01})";
 
 wadi_world_arrays pond(std::vector<float>& terrain, std::vector<float>& water) {
     terrain.assign(16 * 12, 0.0F);
     water.assign(16 * 12, 0.0F);
     for (std::size_t k = 0; k < water.size(); ++k) water[k] = k % 16 < 5 ? 1.0F : 0.0F;
     auto arrays = wadi_default_world_arrays();
-    arrays.settings_json = settings;
+    arrays.settings_json = POND;
     arrays.nx = 16;
     arrays.ny = 12;
     arrays.terrain = terrain.data();
@@ -33,23 +31,21 @@ wadi_world_arrays pond(std::vector<float>& terrain, std::vector<float>& water) {
     return arrays;
 }
 
-struct World {
+struct Pond {
     wadi_world_id id{};
-    World() {
+    Pond() {
         std::vector<float> terrain, water;
         const auto arrays = pond(terrain, water);
-        const auto options = cpu();
+        const auto options = cpu_device();
         REQUIRE_MESSAGE(wadi_create_world_from_arrays(&arrays, &options, &id) == WADI_OK, std::string(wadi_get_last_error()));
     }
-    ~World() { wadi_destroy_world(id); }
+    ~Pond() { wadi_destroy_world(id); }
 };
-
-bool error_mentions(const char* text) { return std::string(wadi_get_last_error()).find(text) != std::string::npos; }
 
 } // namespace
 
 TEST_CASE("a world from arrays steps, reads back and keeps its books") {
-    const World world;
+    const Pond world;
     CHECK(wadi_get_abi_version() == WADI_ABI_VERSION);
     REQUIRE(wadi_world_step(world.id, 100) == WADI_OK);
     double seconds = 0;
@@ -81,13 +77,13 @@ TEST_CASE("a world from arrays steps, reads back and keeps its books") {
 }
 
 TEST_CASE("same level, same hash; profiling names every stage and changes nothing") {
-    const auto options = cpu();
+    const auto options = cpu_device();
     auto overrides = wadi_default_level_overrides();
     overrides.nx = overrides.ny = 48;
     uint64_t hashes[2];
     for (int n = 0; n < 2; ++n) {
         wadi_world_id id{};
-        REQUIRE_MESSAGE(wadi_create_world_from_level((levels + "dam_break/level.json").c_str(), &overrides, &options, &id) ==
+        REQUIRE_MESSAGE(wadi_create_world_from_level((LEVELS + "dam_break/level.json").c_str(), &overrides, &options, &id) ==
                             WADI_OK,
                         std::string(wadi_get_last_error()));
         CHECK(wadi_world_set_profiling(id, n) == WADI_OK);
@@ -107,7 +103,7 @@ TEST_CASE("same level, same hash; profiling names every stage and changes nothin
 }
 
 TEST_CASE("null and destroyed ids are refused by every call") {
-    World world;
+    Pond world;
     const auto dead = world.id;
     REQUIRE(wadi_destroy_world(dead) == WADI_OK);
     float value;
@@ -127,13 +123,13 @@ TEST_CASE("null and destroyed ids are refused by every call") {
         CHECK(wadi_world_describe_plan(id, nullptr, 0) == 0);
         CHECK(wadi_world_get_warning(id, 0) == nullptr);
     }
-    const World reborn; // takes the freed slot; the old id must not reach it
+    const Pond reborn; // takes the freed slot; the old id must not reach it
     CHECK(reborn.id.index == dead.index);
     CHECK(wadi_world_step(dead, 1) == WADI_ERROR_BAD_ARGUMENT);
 }
 
 TEST_CASE("bad arguments get a code and a text, and leave the world as it was") {
-    const World world;
+    const Pond world;
     auto stats = wadi_default_world_stats();
     REQUIRE(wadi_world_get_stats(world.id, &stats) == WADI_OK);
     const auto hash = stats.hash;
@@ -152,7 +148,7 @@ TEST_CASE("bad arguments get a code and a text, and leave the world as it was") 
 }
 
 TEST_CASE("bad worlds are refused before anything is made") {
-    const auto options = cpu();
+    const auto options = cpu_device();
     wadi_world_id id{};
     std::vector<float> terrain, water;
     auto arrays = pond(terrain, water);
@@ -170,22 +166,22 @@ TEST_CASE("bad worlds are refused before anything is made") {
     CHECK(wadi_create_world_from_arrays(&arrays, &options, &id) == WADI_ERROR_BAD_FILE);
     CHECK(wadi_create_world_from_level("no/such/level.json", nullptr, &options, &id) == WADI_ERROR_NOT_FOUND);
     CHECK(wadi_create_world_from_level(nullptr, nullptr, &options, &id) == WADI_ERROR_BAD_ARGUMENT);
-    auto nowhere = cpu();
+    auto nowhere = cpu_device();
     nowhere.backend = "abacus";
-    CHECK(wadi_create_world_from_level((levels + "dam_break/level.json").c_str(), nullptr, &nowhere, &id) ==
+    CHECK(wadi_create_world_from_level((LEVELS + "dam_break/level.json").c_str(), nullptr, &nowhere, &id) ==
           WADI_ERROR_NOT_FOUND);
     CHECK(error_mentions("abacus"));
     nowhere.backend = "cpu";
     nowhere.device = 7;
-    CHECK(wadi_create_world_from_level((levels + "dam_break/level.json").c_str(), nullptr, &nowhere, &id) ==
+    CHECK(wadi_create_world_from_level((LEVELS + "dam_break/level.json").c_str(), nullptr, &nowhere, &id) ==
           WADI_ERROR_NOT_FOUND);
     nowhere.device = -1;
     nowhere.threads = 100000;
-    CHECK(wadi_create_world_from_level((levels + "dam_break/level.json").c_str(), nullptr, &nowhere, &id) ==
+    CHECK(wadi_create_world_from_level((LEVELS + "dam_break/level.json").c_str(), nullptr, &nowhere, &id) ==
           WADI_ERROR_BAD_ARGUMENT);
     auto overrides = wadi_default_level_overrides();
     overrides.nx = overrides.ny = 1 << 20;
-    CHECK(wadi_create_world_from_level((levels + "dam_break/level.json").c_str(), &overrides, &options, &id) ==
+    CHECK(wadi_create_world_from_level((LEVELS + "dam_break/level.json").c_str(), &overrides, &options, &id) ==
           WADI_ERROR_BAD_ARGUMENT);
     CHECK(id.index == 0);
 }

@@ -20,9 +20,9 @@ std::string with(const char* more) {
     return text;
 }
 
-struct World {
+struct Site {
     wadi_world_id id{};
-    explicit World(const char* backend = "cpu", const std::string& level = with("")) {
+    explicit Site(const char* backend = "cpu", const std::string& level = with("")) {
         auto options = wadi_default_device_options();
         options.backend = backend;
         std::vector<float> terrain;
@@ -35,9 +35,9 @@ struct World {
         arrays.terrain = terrain.data();
         REQUIRE_MESSAGE(wadi_create_world_from_arrays(&arrays, &options, &id) == WADI_OK, last_error());
     }
-    ~World() { wadi_destroy_world(id); }
-    World(const World&) = delete;
-    World& operator=(const World&) = delete;
+    ~Site() { wadi_destroy_world(id); }
+    Site(const Site&) = delete;
+    Site& operator=(const Site&) = delete;
 
     uint64_t hash() const {
         uint64_t value = 0;
@@ -73,7 +73,7 @@ wadi_edit brush(wadi_layer layer, double x, double y, double amount) {
 wadi_region region(int i0, int j0, int nx, int ny) { return {i0, j0, nx, ny}; }
 
 // A session of 41 steps with every kind of command in it.
-void session(const World& world) {
+void session(const Site& world) {
     std::mt19937 random(5);
     const float image[6] = {0, 1, 0.5F, 0.25F, -1, 1};
     uint32_t stamp = 0;
@@ -115,7 +115,7 @@ void session(const World& world) {
 } // namespace
 
 TEST_CASE("a command log replays to the same hash on every backend, in steps of any number") {
-    const World first;
+    const Site first;
     REQUIRE(wadi_world_set_command_log(first.id, 1) == WADI_OK);
     session(first);
     const auto hash = first.hash();
@@ -124,14 +124,14 @@ TEST_CASE("a command log replays to the same hash on every backend, in steps of 
     for (const auto& name : wadi::test::abi_backends()) {
         const char* const backend = name.c_str();
         for (const uint32_t at_once : {1u, 7u, 41u}) {
-            const World again(backend);
+            const Site again(backend);
             REQUIRE_MESSAGE(wadi_world_play_commands(again.id, log.data(), log.size()) == WADI_OK, last_error());
             for (uint32_t done = 0; done < 41; done += at_once) again.step(std::min(at_once, 41 - done));
             CHECK(again.hash() == hash);
             CHECK(again.stats().water_drift_quanta == 0);
             CHECK(again.stats().sand_drift_quanta == 0);
         }
-        const World live(backend); // and so does the session itself
+        const Site live(backend); // and so does the session itself
         REQUIRE(wadi_world_set_command_log(live.id, 1) == WADI_OK);
         session(live);
         CHECK(live.hash() == hash);
@@ -140,24 +140,24 @@ TEST_CASE("a command log replays to the same hash on every backend, in steps of 
 }
 
 TEST_CASE("a log that was played is remembered as if it had been called") {
-    const World first;
+    const Site first;
     REQUIRE(wadi_world_set_command_log(first.id, 1) == WADI_OK);
     session(first);
     const auto log = first.commands();
-    const World second;
+    const Site second;
     REQUIRE(wadi_world_set_command_log(second.id, 1) == WADI_OK);
     REQUIRE(wadi_world_play_commands(second.id, log.data(), log.size()) == WADI_OK);
     second.step(41);
     const auto copy = second.commands();
     CHECK(copy.size() == log.size());
-    const World third;
+    const Site third;
     REQUIRE(wadi_world_play_commands(third.id, copy.data(), copy.size()) == WADI_OK);
     third.step(41);
     CHECK(third.hash() == first.hash());
 }
 
 TEST_CASE("going back drops what waits and what the log has of later steps") {
-    const World world;
+    const Site world;
     REQUIRE(wadi_world_set_command_log(world.id, 1) == WADI_OK);
     world.edit(brush(WADI_LAYER_WATER, 5, 5, 0.4));
     world.step(5);
@@ -175,14 +175,14 @@ TEST_CASE("going back drops what waits and what the log has of later steps") {
     CHECK(world.commands() == then);
     world.step(10);
     CHECK(world.stats().sand_in == 0);
-    const World replay;
+    const Site replay;
     REQUIRE(wadi_world_play_commands(replay.id, then.data(), then.size()) == WADI_OK);
     replay.step(15);
     CHECK(replay.stats().water_in == world.stats().water_in);
 }
 
 TEST_CASE("a log with any byte changed, cut off, of a newer version or of another level is refused, the world unchanged") {
-    const World first;
+    const Site first;
     REQUIRE(wadi_world_set_command_log(first.id, 1) == WADI_OK);
     const float image[2] = {0, 1};
     uint32_t stamp = 0;
@@ -193,11 +193,11 @@ TEST_CASE("a log with any byte changed, cut off, of a newer version or of anothe
     REQUIRE(wadi_world_write_region(first.id, WADI_FIELD_SAND_HEIGHT, &r, values, 2) == WADI_OK);
     REQUIRE(wadi_world_trim(first.id) == WADI_OK);
     const auto log = first.commands();
-    const World world;
+    const Site world;
     world.edit(brush(WADI_LAYER_TERRAIN, 5, 5, 0.4));
     world.step(1);
     world.step(1);
-    const World twin;
+    const Site twin;
     twin.edit(brush(WADI_LAYER_TERRAIN, 5, 5, 0.4));
     twin.step(2);
     for (size_t at = 0; at < log.size(); ++at) {
@@ -216,7 +216,7 @@ TEST_CASE("a log with any byte changed, cut off, of a newer version or of anothe
     CHECK(wadi_world_play_commands(world.id, nullptr, 8) == WADI_ERROR_BAD_ARGUMENT);
     CHECK(wadi_world_play_commands(world.id, log.data(), log.size()) == WADI_ERROR_BAD_ARGUMENT); // its steps are over
     CHECK(last_error().find("next step is 2") != std::string::npos);
-    const World other("cpu", with(R"(, "gravity": 1.62)"));
+    const Site other("cpu", with(R"(, "gravity": 1.62)"));
     CHECK(wadi_world_play_commands(other.id, log.data(), log.size()) == WADI_ERROR_BAD_ARGUMENT);
     CHECK(last_error().find("other settings") != std::string::npos);
     world.step(5);
@@ -232,8 +232,8 @@ TEST_CASE("a log with any byte changed, cut off, of a newer version or of anothe
 }
 
 TEST_CASE("bad edits and regions get a code and a text and change nothing") {
-    const World world("cpu", with(R"(, "effects": {"sand": "off"})"));
-    const World twin("cpu", with(R"(, "effects": {"sand": "off"})"));
+    const Site world("cpu", with(R"(, "effects": {"sand": "off"})"));
+    const Site twin("cpu", with(R"(, "effects": {"sand": "off"})"));
     const auto refused = [&](auto change, const char* text) {
         wadi_edit edits[2] = {brush(WADI_LAYER_WATER, 5, 5, 0.3), brush(WADI_LAYER_WATER, 5, 5, 0.3)};
         change(edits[1]);
@@ -293,7 +293,7 @@ TEST_CASE("bad edits and regions get a code and a text and change nothing") {
 TEST_CASE("a region read back is the field's part, and promotion shows in the effects") {
     for (const auto& name : wadi::test::abi_backends()) {
         const char* const backend = name.c_str();
-        const World world(backend);
+        const Site world(backend);
         auto info = wadi_default_world_info();
         REQUIRE(wadi_world_get_info(world.id, &info) == WADI_OK);
         CHECK(info.passes_per_water_step == 0);

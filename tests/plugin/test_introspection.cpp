@@ -28,7 +28,7 @@ TEST_CASE("the list of buffers adds up to the bytes on the device, and grows wit
                                    [](uint64_t sum, const wadi_memory_item& item) { return sum + item.bytes; });
         };
         const auto before = memory_of(world);
-        CHECK(total(before) == device_bytes(world));
+        CHECK(total(before) == device_bytes(world.id));
         std::set<std::string> labels;
         for (const auto& item : before) labels.insert(item.label);
         CHECK(labels.size() == before.size());
@@ -37,7 +37,7 @@ TEST_CASE("the list of buffers adds up to the bytes on the device, and grows wit
         uint64_t ticket = 0;
         REQUIRE(wadi_world_begin_save(world.id, &ticket) == WADI_OK);
         CHECK(memory_of(world).size() > before.size());
-        CHECK(total(memory_of(world)) == device_bytes(world));
+        CHECK(total(memory_of(world)) == device_bytes(world.id));
     }
 }
 

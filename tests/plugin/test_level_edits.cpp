@@ -19,7 +19,7 @@ const char* const EDITS = R"(, "edits": [
     {"time": 0, "layer": "terrain", "shape": "capsule", "from": [1, 1], "to": [8, 1], "radius": 1, "amount": 0.5}
 ])";
 
-AbiWorld site(const std::string& backend, const std::string& more) {
+AbiWorld site_with(const std::string& backend, const std::string& more) {
     return world_of(backend,
                     R"({"format_version": 1, "name": "site", "grid": {"nx": 24, "ny": 20, "dx": 0.5}, "dt": 0.02)" + more + "}",
                     24, 20, {}, {}, {});
@@ -71,21 +71,21 @@ void queue_by_hand(const AbiWorld& world) {
 } // namespace
 
 TEST_CASE("a level's edits are a host's edits of the same steps, in every bit, on every backend and in any rhythm") {
-    const auto by_hand = site("cpu", "");
+    const auto by_hand = site_with("cpu", "");
     queue_by_hand(by_hand);
     step(by_hand, STEPS);
     const auto hash = hash_of(by_hand);
-    const auto bare = site("cpu", ""); // the control: the edits do show
+    const auto bare = site_with("cpu", ""); // the control: the edits do show
     step(bare, STEPS);
     CHECK(hash_of(bare) != hash);
     for (const auto& backend : abi_backends()) {
         CAPTURE(backend);
         for (const unsigned at_once : {1u, 7u, STEPS}) {
-            const auto world = site(backend, EDITS);
+            const auto world = site_with(backend, EDITS);
             for (unsigned done = 0; done < STEPS; done += at_once) step(world, std::min(at_once, STEPS - done));
             CHECK(hash_of(world) == hash);
         }
-        const auto framed = site(backend, EDITS); // by host time, each step in parts
+        const auto framed = site_with(backend, EDITS); // by host time, each step in parts
         auto settings = wadi_default_update_settings();
         settings.spread = 1;
         settings.max_steps_in_flight = 0;
@@ -101,7 +101,7 @@ TEST_CASE("a level's edits are a host's edits of the same steps, in every bit, o
 TEST_CASE("a level's edits act ahead of a host's edits of their step") {
     const std::string level =
         R"(, "edits": [{"time": 0, "layer": "sand", "shape": "disc", "center": [5, 5], "radius": 2, "amount": 0.5}])";
-    const auto world = site("cpu", level);
+    const auto world = site_with("cpu", level);
     auto dig = disc(0, 5, 5, 3);
     dig.layer = WADI_LAYER_SAND;
     dig.softness = 0;
@@ -116,7 +116,7 @@ TEST_CASE("a level's edits act ahead of a host's edits of their step") {
 }
 
 TEST_CASE("the command log leaves a level's edits out, and replays to the same hash") {
-    const auto first = site("cpu", EDITS);
+    const auto first = site_with("cpu", EDITS);
     REQUIRE(wadi_world_set_command_log(first.id, 1) == WADI_OK);
     auto rain = disc(0, 6, 6, 3);
     rain.layer = WADI_LAYER_WATER;
@@ -132,13 +132,13 @@ TEST_CASE("the command log leaves a level's edits out, and replays to the same h
     CHECK(size == 48 + 5 * 112); // the host's five commands
     for (const auto& backend : abi_backends()) {
         CAPTURE(backend);
-        const auto again = site(backend, EDITS);
+        const auto again = site_with(backend, EDITS);
         REQUIRE(wadi_world_play_commands(again.id, log.data(), log.size()) == WADI_OK);
         step(again, STEPS);
         CHECK(hash_of(again) == hash_of(first));
     }
     // Of a level with other edits it would not be the same: refused.
-    const auto other = site("cpu", "");
+    const auto other = site_with("cpu", "");
     CHECK(wadi_world_play_commands(other.id, log.data(), log.size()) == WADI_ERROR_BAD_ARGUMENT);
     CHECK(error_mentions("other settings"));
 }
@@ -146,7 +146,7 @@ TEST_CASE("the command log leaves a level's edits out, and replays to the same h
 TEST_CASE("after going back in time a level's edits are due again, each once") {
     for (const auto& backend : abi_backends()) {
         CAPTURE(backend);
-        const auto straight = site(backend, EDITS);
+        const auto straight = site_with(backend, EDITS);
         step(straight, 12); // sand and water are there, more is to come
         const auto early = saved(straight);
         step(straight, STEPS - 12);
@@ -154,12 +154,12 @@ TEST_CASE("after going back in time a level's edits are due again, each once") {
         REQUIRE(wadi_world_load(straight.id, early.data(), early.size()) == WADI_OK);
         step(straight, STEPS - 12);
         CHECK(hash_of(straight) == hash);
-        const auto fresh = site(backend, EDITS);
+        const auto fresh = site_with(backend, EDITS);
         REQUIRE_MESSAGE(wadi_world_load(fresh.id, early.data(), early.size()) == WADI_OK, std::string(wadi_get_last_error()));
         step(fresh, STEPS - 12);
         CHECK(hash_of(fresh) == hash);
 
-        const auto world = site(backend, EDITS);
+        const auto world = site_with(backend, EDITS);
         REQUIRE(wadi_world_set_rollback(world.id, 4, 4) == WADI_OK);
         step(world, 17);
         uint64_t reached = 0;

@@ -1,4 +1,5 @@
 // Levels as text, with maps that come from the host: the same world as from disk, and hosts that answer badly.
+#include "tests/plugin/abi_worlds.hpp"
 #include <cstring>
 #include <doctest/doctest.h>
 #include <fstream>
@@ -6,6 +7,8 @@
 #include <map>
 #include <string>
 #include <wadi/wadi.h>
+
+using wadi::test::cpu_device;
 
 namespace {
 
@@ -40,16 +43,10 @@ int32_t read_file(void* user, const char* name, void* data, size_t* size) {
     return 1;
 }
 
-wadi_device_options cpu() {
-    auto options = wadi_default_device_options();
-    options.backend = "cpu";
-    return options;
-}
-
 } // namespace
 
 TEST_CASE("a level from memory is the level from disk") {
-    const auto options = cpu();
+    const auto options = cpu_device();
     auto overrides = wadi_default_level_overrides();
     overrides.nx = overrides.ny = 40;
     Host host;
@@ -70,7 +67,7 @@ TEST_CASE("a level from memory is the level from disk") {
 }
 
 TEST_CASE("hosts without the file, or that change their mind, and texts that are no level") {
-    const auto options = cpu();
+    const auto options = cpu_device();
     const auto text = contents(canyon + "level.json");
     wadi_world_id id{};
     Host host;

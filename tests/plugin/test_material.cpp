@@ -245,16 +245,16 @@ TEST_CASE("going back brings the material of that step, and the same changes the
 TEST_CASE("effects and memory follow the value; where they stay, no buffer is made") {
     const auto world = site("cpu");
     step(world, 3);
-    const auto bytes = device_bytes(world);
+    const auto bytes = device_bytes(world.id);
     set(world, "cohesion_wet", 3e4);
-    CHECK(device_bytes(world) == bytes);
+    CHECK(device_bytes(world.id) == bytes);
     set(world, "young_modulus", 0);
     CHECK(!has_effect(world, "elastoplastic"));
     CHECK(!has_effect(world, "cohesion"));
-    CHECK(device_bytes(world) < bytes);
+    CHECK(device_bytes(world.id) < bytes);
     set(world, "young_modulus", 2e5);
     CHECK(has_effect(world, "cohesion"));
-    CHECK(device_bytes(world) == bytes);
+    CHECK(device_bytes(world.id) == bytes);
     step(world, 3);
     uint32_t count = 0;
     REQUIRE(wadi_world_get_effects(world.id, nullptr, &count) == WADI_OK);

@@ -80,13 +80,13 @@ TEST_CASE("frames cost memory while they are kept, and bad arguments change noth
         CAPTURE(backend);
         auto world = mixed_world(backend, 16);
         step(world, 2);
-        const auto hash = hash_of(world), bytes = device_bytes(world);
+        const auto hash = hash_of(world), bytes = device_bytes(world.id);
         uint64_t reached = 0;
         CHECK(wadi_world_roll_back(world.id, 2, &reached) == WADI_ERROR_BAD_ARGUMENT);
         REQUIRE(wadi_world_set_rollback(world.id, 2, 1) == WADI_OK);
-        const auto two = device_bytes(world);
+        const auto two = device_bytes(world.id);
         REQUIRE(wadi_world_set_rollback(world.id, 4, 1) == WADI_OK);
-        CHECK(device_bytes(world) - bytes == 2 * (two - bytes));
+        CHECK(device_bytes(world.id) - bytes == 2 * (two - bytes));
         CHECK(two > bytes);
         CHECK(wadi_world_set_rollback(world.id, 4, 0) == WADI_ERROR_BAD_ARGUMENT);
         CHECK(error_mentions("interval_steps is 0"));
@@ -96,7 +96,7 @@ TEST_CASE("frames cost memory while they are kept, and bad arguments change noth
         CHECK(kept_steps(world) == Steps{2});
         CHECK(hash_of(world) == hash);
         REQUIRE(wadi_world_set_rollback(world.id, 0, 0) == WADI_OK);
-        CHECK(device_bytes(world) == bytes);
+        CHECK(device_bytes(world.id) == bytes);
         CHECK(kept_steps(world).empty());
         step(world, 3);
         CHECK(kept_steps(world).empty());

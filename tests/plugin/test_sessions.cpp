@@ -10,7 +10,7 @@ namespace {
 
 using plugin_test::backends;
 
-std::vector<std::string> levels() {
+std::vector<std::string> all_levels() {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(std::string(WADI_SOURCE_DIR) + "/samples/levels"))
         if (std::filesystem::exists(entry.path() / "level.json")) names.push_back((entry.path() / "level.json").string());
@@ -74,7 +74,7 @@ struct Session {
 } // namespace
 
 TEST_CASE("every level: frames, edits, saving, rolling back, and the log of it replayed to the same hash on every backend") {
-    for (const auto& level : levels()) {
+    for (const auto& level : all_levels()) {
         CAPTURE(level);
         std::map<std::string, std::vector<unsigned char>> logs;
         std::map<std::string, uint64_t> hashes;

@@ -7,8 +7,6 @@ using namespace plugin_test;
 
 namespace {
 
-constexpr uint64_t step_time = 10000000;
-
 std::vector<wadi_tile> tiles_of(const World& world, uint64_t* step = nullptr) {
     uint32_t count = 0;
     REQUIRE_MESSAGE(wadi_world_get_tiles(world.id, nullptr, &count, step) == WADI_OK, std::string(wadi_get_last_error()));

@@ -10,13 +10,13 @@ using namespace wadi::test;
 
 namespace {
 
-struct Host {
+struct VulkanHost {
     wadi_vulkan_host vulkan = make_device(0);
     VkSemaphore semaphore = make_timeline(&vulkan, 0);
-    Host() = default;
-    Host(const Host&) = delete;
-    Host& operator=(const Host&) = delete;
-    ~Host() {
+    VulkanHost() = default;
+    VulkanHost(const VulkanHost&) = delete;
+    VulkanHost& operator=(const VulkanHost&) = delete;
+    ~VulkanHost() {
         vkDestroySemaphore(vulkan.device, semaphore, nullptr);
         destroy_device(&vulkan);
     }
@@ -51,7 +51,7 @@ wadi_edit heap_of_sand() {
 }
 
 // Records calls into a command buffer of the host's, submits it and waits.
-template <class Calls> void record(const Host& host, wadi_world_id world, std::uint64_t value, Calls calls) {
+template <class Calls> void record(const VulkanHost& host, wadi_world_id world, std::uint64_t value, Calls calls) {
     VkCommandPoolCreateInfo pool_info{};
     pool_info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
     pool_info.queueFamilyIndex = host.vulkan.queue_family;
@@ -91,7 +91,7 @@ template <class Calls> void record(const Host& host, wadi_world_id world, std::u
 
 TEST_CASE("a host's Vulkan device is refused by name where it cannot serve") {
     if (!has_vulkan()) return;
-    const Host host;
+    const VulkanHost host;
     wadi_world_id world{};
     CHECK(create("cpu", &host.vulkan, world) == WADI_ERROR_NOT_SUPPORTED);
     CHECK(error_mentions("the backend is cpu"));
@@ -117,7 +117,7 @@ TEST_CASE("a host's Vulkan device is refused by name where it cannot serve") {
 
 TEST_CASE("semaphores and recordings refuse null handles, worlds elsewhere and each other") {
     if (!has_vulkan()) return;
-    const Host host;
+    const VulkanHost host;
     const AbiWorld here(make_world("vulkan", &host.vulkan)), elsewhere(make_world("cpu", nullptr));
     const wadi_vulkan_sync point{host.semaphore, 1}, null{VK_NULL_HANDLE, 1};
     CHECK(wadi_vulkan_wait(here.id, nullptr, 1) == WADI_ERROR_BAD_ARGUMENT);
@@ -135,7 +135,7 @@ TEST_CASE("semaphores and recordings refuse null handles, worlds elsewhere and e
 
 TEST_CASE("an edit of a new material promotes in the middle of a recording, same bits as on the CPU") {
     if (!has_vulkan()) return;
-    const Host host;
+    const VulkanHost host;
     const AbiWorld recorded(make_world("vulkan", &host.vulkan)), twin(make_world("cpu", nullptr));
     const auto edit = heap_of_sand();
     std::uint64_t value = 0;

@@ -59,6 +59,8 @@ inline double checkerboard(const Cells& c) {
            std::max(energy, 1e-300);
 }
 
+inline double sand_checkerboard(World& world) { return checkerboard(cells_of(world, "sand_height")); }
+
 /// Mean departure of a cell from the mean of its four neighbours, as a share of the mean depth. Slopes count nothing, edges
 /// little.
 inline double roughness(const Cells& c) {

@@ -77,12 +77,10 @@ Scene pond_and_pile(int nx = 160, int ny = 128) {
 
 Edit pour(EditLayer layer, double x, double y, double amount) { return brush(layer, x, y, 0.7, amount, 0); }
 
-const char* const levels[] = {"beach", "canyon", "castle", "dam_break", "flush", "letters", "piles", "seepage", "spring", "wadi"};
-
 } // namespace
 
 TEST_CASE("active tiles: every level gives the bits of the dense run, step by step") {
-    for (const char* name : levels) {
+    for (const auto& name : shipped_levels()) {
         CAPTURE(name);
         Twins twins(shipped_level(name, 96, 80), 8);
         CHECK(twins.differ(few_steps ? 10 : 40, few_steps ? 5 : 1) == -1);
@@ -94,7 +92,7 @@ TEST_CASE("active tiles: with fused stages, every level and every size of tiles,
     for (const auto& backend : available_backends()) {
         CAPTURE(backend);
         int turn = 0;
-        for (const char* name : levels) {
+        for (const auto& name : shipped_levels()) {
             CAPTURE(name);
             auto scene = shipped_level(name, 70, 50);
             scene.settings.fused_stages = FusedStages::always;

@@ -1,5 +1,5 @@
 // Edits: what they change, what they leave alone, that every quantum is in the books, and the same bits however they arrive.
-#include "tests/support/worlds.hpp"
+#include "tests/stability/quality.hpp"
 #include <cmath>
 #include <doctest/doctest.h>
 #include <random>
@@ -16,20 +16,6 @@ Edit push(double x, double y, double radius, double u, double v, double strength
     edit.velocity_x = u;
     edit.velocity_y = v;
     return edit;
-}
-
-WorldStats stats_of(World& world) {
-    auto stats = world.stats();
-    REQUIRE_MESSAGE(stats, stats.status().message);
-    return *stats;
-}
-
-void check_books(World& world) {
-    const auto s = stats_of(world);
-    CHECK(s.sand_quanta == s.sand_initial + s.ledger.sand_in - s.ledger.sand_out);
-    CHECK(s.water_quanta == s.water_initial + s.ledger.water_in - s.ledger.water_out);
-    CHECK(s.not_finite == 0);
-    CHECK(s.smallest_height >= 0);
 }
 
 // Any kind on any layer, some beyond the rim, some too high, over a grid of lx x ly metres.

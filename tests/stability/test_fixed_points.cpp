@@ -29,7 +29,7 @@ double gauss(double x, double y, double cx, double cy, double r) {
 }
 
 // A lake of surface 1 m over an uneven bed with an island, a submerged and a half-emerged dune.
-Scene lake() {
+Scene lake_over_dunes() {
     auto scene = flat_scene(64, 48, 0.25, 0.02);
     scene.fill(scene.fields.terrain, [](double x, double y) { return 1.4 * gauss(x, y, 3, 3, 1.5) + 0.02 * x; });
     // No film of sand on the island: it would rightly slide off its slopes.
@@ -54,7 +54,7 @@ Scene pile(double slope, double mu) {
 TEST_CASE("a lake over dunes, an island and a shore keeps every bit") {
     for (const auto& backend : available_backends()) {
         CAPTURE(backend);
-        auto world = make_world(lake(), {backend});
+        auto world = make_world(lake_over_dunes(), {backend});
         CHECK(unchanged_after(*world, 1));
         CHECK(unchanged_after(*world, 1));
         CHECK(unchanged_after(*world, 200));
@@ -63,10 +63,10 @@ TEST_CASE("a lake over dunes, an island and a shore keeps every bit") {
 
 TEST_CASE("negative control: a lake that is not level moves, and without quantum and rest rule it only nearly rests" *
           doctest::test_suite("long")) {
-    auto tilted = lake();
+    auto tilted = lake_over_dunes();
     for (auto& w : tilted.fields.water) w = w > 0.5F ? w + 0.001F : w;
     CHECK_FALSE(unchanged_after(*make_world(tilted), 2));
-    auto restless = lake();
+    auto restless = lake_over_dunes();
     restless.settings.method.rest_surface = restless.settings.method.rest_velocity = 0;
     restless.settings.method.quantum = 0;
     auto world = make_world(restless);

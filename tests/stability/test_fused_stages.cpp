@@ -9,8 +9,6 @@ using namespace wadi::test;
 
 namespace {
 
-const char* const levels[] = {"beach", "canyon", "castle", "dam_break", "flush", "letters", "piles", "seepage", "spring", "wadi"};
-
 /// The scene on the plain CPU, its stages one by one.
 std::unique_ptr<World> apart(Scene scene) {
     scene.settings.fused_stages = FusedStages::never;
@@ -30,7 +28,7 @@ std::unique_ptr<World> fused(Scene scene, const std::string& backend) {
 } // namespace
 
 TEST_CASE("fused stages: every level gives the bits of its stages one by one") {
-    for (const char* name : levels) {
+    for (const auto& name : shipped_levels()) {
         CAPTURE(name);
         const auto scene = shipped_level(name, 70, 50); // several groups along both axes, the last ones cut
         auto expected = apart(scene);

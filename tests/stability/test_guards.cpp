@@ -9,8 +9,6 @@ using namespace wadi::test;
 
 namespace {
 
-double sand_checkerboard(World& world) { return checkerboard(cells_of(world, "sand_height")); }
-
 /// 8 m of water in 1 m of it at dt/dx sqrt(g W) = 2.
 Scene flood() {
     auto scene = flat_scene(40, 40, 1, 2 / std::sqrt(9.81 * 8));

@@ -1,6 +1,6 @@
 // Worlds that gain and lose materials while they run: the same bits as one that could hold all from the start, and no more
 // passes and memory than what they hold calls for.
-#include "tests/support/worlds.hpp"
+#include "tests/stability/quality.hpp"
 #include <cmath>
 #include <doctest/doctest.h>
 
@@ -23,13 +23,6 @@ Scene dry_valley(bool open) {
 std::size_t passes(const World& world) {
     return world.plan().water_passes.size() +
            world.plan().substep_passes.size() * static_cast<std::size_t>(world.plan().substeps);
-}
-
-void check_books(World& world) {
-    auto s = world.stats();
-    REQUIRE_MESSAGE(s, s.status().message);
-    CHECK(s->sand_quanta == s->sand_initial + s->ledger.sand_in - s->ledger.sand_out);
-    CHECK(s->water_quanta == s->water_initial + s->ledger.water_in - s->ledger.water_out);
 }
 
 } // namespace

@@ -1,5 +1,5 @@
 // Dry sand against the laboratory: how far a column runs out (Lube et al. 2004) and how steep a poured heap stands.
-#include "tests/support/worlds.hpp"
+#include "tests/stability/quality.hpp"
 #include <cmath>
 #include <doctest/doctest.h>
 
@@ -7,14 +7,6 @@ using namespace wadi;
 using namespace wadi::test;
 
 namespace {
-
-std::vector<float> sand_of(World& world) {
-    std::vector<float> sand(static_cast<std::size_t>(world.settings().grid.nx) *
-                            static_cast<std::size_t>(world.settings().grid.ny));
-    const auto status = world.read("sand_height", sand);
-    REQUIRE_MESSAGE(status, status.message);
-    return sand;
-}
 
 /// (final - initial)/initial radius of a column of height aspect * radius, along x; the edge is 1 % of the initial height.
 double run_out(double aspect, double friction) {
@@ -30,7 +22,7 @@ double run_out(double aspect, double friction) {
     auto world = make_world(scene);
     step(*world, 500);
     CHECK(world->stats()->largest_sand_speed == 0); // at rest
-    const auto sand = sand_of(*world);
+    const auto sand = cells_of(*world, "sand_height").values;
     int edge = 0;
     for (int i = n / 2; i < n; ++i) {
         if (static_cast<double>(sand[static_cast<std::size_t>((n / 2) * n + i)]) > 0.01 * aspect * radius) edge = i;
@@ -62,9 +54,10 @@ Slopes poured_slope(double friction) {
     scene.settings.sources = {source};
     auto world = make_world(scene);
     step(*world, static_cast<int>((seconds + 8) / scene.settings.dt));
-    const auto sand = sand_of(*world);
+    const auto sand = cells_of(*world, "sand_height").values;
     step(*world, 100);
-    CHECK(sand_of(*world) == sand); // nothing moves, though a face on the brink may keep a speed too slow to move a quantum
+    CHECK(cells_of(*world, "sand_height").values ==
+          sand); // nothing moves, though a face on the brink may keep a speed too slow to move a quantum
     CHECK(world->stats()->largest_sand_speed < 2e-3);
     const auto at = [&](int i, int j) {
         return static_cast<double>(sand[static_cast<std::size_t>((n / 2 + j) * n + n / 2 + i)]);

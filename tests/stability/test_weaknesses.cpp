@@ -8,8 +8,6 @@ using namespace wadi::test;
 
 namespace {
 
-double sand_checkerboard(World& world) { return checkerboard(cells_of(world, "sand_height")); }
-
 /// An elastic disc with a cliff, on frictionless ground without gravity, and noise of 1e-6.
 Scene elastic_disc(bool gravity, double bulk_viscosity) {
     auto scene = flat_scene(40, 40, 0.1, 0.009);

@@ -1,5 +1,5 @@
 // What wet sand does once it has come to rest, and what keeps it moving: banks at a water line, piles that drain.
-#include "tests/support/worlds.hpp"
+#include "tests/stability/quality.hpp"
 #include <algorithm>
 #include <cmath>
 #include <doctest/doctest.h>
@@ -9,19 +9,11 @@ using namespace wadi::test;
 
 namespace {
 
-std::vector<float> sand_of(World& world) {
-    std::vector<float> sand(static_cast<std::size_t>(world.settings().grid.nx) *
-                            static_cast<std::size_t>(world.settings().grid.ny));
-    const auto status = world.read("sand_height", sand);
-    REQUIRE_MESSAGE(status, status.message);
-    return sand;
-}
-
 /// Volume of sand that lies elsewhere after `steps` more steps [m3].
 double moved(World& world, int steps) {
-    const auto before = sand_of(world);
+    const auto before = cells_of(world, "sand_height").values;
     step(world, steps);
-    const auto after = sand_of(world);
+    const auto after = cells_of(world, "sand_height").values;
     double sum = 0;
     for (std::size_t n = 0; n < before.size(); ++n)
         sum += std::fabs(static_cast<double>(after[n]) - static_cast<double>(before[n]));
@@ -69,7 +61,7 @@ TEST_CASE("a steeper bank slumps at the water line to the slope that buoyant fri
     CHECK(moved(*world, 2500) > 0.005); // the gentle bank's negative control
     CHECK(moved(*world, 1000) < 2e-4);
     CHECK(world->stats()->largest_sand_speed < 2e-4);
-    const auto sand = sand_of(*world);
+    const auto sand = cells_of(*world, "sand_height").values;
     const double held = FRICTION * (1 - 0.5 * 0.45 / 0.5); // full to 0.45 m of 0.5 m, sand twice as dense as water
     double steepest = 0;
     for (std::size_t i = 1; i < 120; ++i) {

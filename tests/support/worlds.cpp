@@ -1,6 +1,8 @@
 #include "tests/support/worlds.hpp"
+#include <algorithm>
 #include <cmath>
 #include <doctest/doctest.h>
+#include <filesystem>
 
 namespace wadi::test {
 
@@ -43,6 +45,14 @@ Scene mixed_scene(int nx, int ny) {
     scene.fill(scene.fields.water,
                [&](double x, double y) { return x < 0.3 * lx ? 1.1 : 0.25 * bump(x, y, 0.45 * lx, 0.5 * ly, 0.25 * lx); });
     return scene;
+}
+
+std::vector<std::string> shipped_levels() {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(WADI_SOURCE_DIR "/samples/levels"))
+        if (std::filesystem::exists(entry.path() / "level.json")) names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    return names;
 }
 
 Scene shipped_level(const std::string& name, int nx, int ny) {

@@ -28,6 +28,8 @@ struct Scene {
 Scene flat_scene(int nx, int ny, double dx, double dt);
 /// Sand, water, wet sand, a slope and a bump: everything meets. Fits any grid of at least 1 x 1.
 Scene mixed_scene(int nx, int ny);
+/// Names of all shipped levels, sorted.
+std::vector<std::string> shipped_levels();
 /// A shipped level at a test's size.
 Scene shipped_level(const std::string& name, int nx, int ny);
 

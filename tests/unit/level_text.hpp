@@ -18,7 +18,7 @@ inline wadi::Result<wadi::Level> parse(const std::string& rest, const std::strin
     return wadi::parse_level(level(rest), folder, overrides);
 }
 
-inline std::string message(const wadi::Result<wadi::Level>& result) {
+template <class T> std::string message(const wadi::Result<T>& result) {
     return result ? std::string("no error") : result.status().message;
 }
 
@@ -30,8 +30,6 @@ inline double at(const wadi::Level& level, const std::vector<float>& field, int 
         field.at(static_cast<std::size_t>(j) * static_cast<std::size_t>(level.settings.grid.nx) + static_cast<std::size_t>(i)));
 }
 
-inline std::filesystem::path samples() {
-    return std::filesystem::path(WADI_SOURCE_DIR) / "samples" / "levels";
-}
+inline std::filesystem::path samples() { return std::filesystem::path(WADI_SOURCE_DIR) / "samples" / "levels"; }
 
 } // namespace level_text

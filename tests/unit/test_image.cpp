@@ -1,5 +1,6 @@
 // engine/image: PNG, r16, NPY and ASC maps, their errors, and resampling.
 #include "engine/image/map.hpp"
+#include "tests/unit/level_text.hpp"
 #include "tests/unit/map_files.hpp"
 #include <cmath>
 #include <cstdint>
@@ -8,15 +9,10 @@
 #include <random>
 
 using namespace wadi;
+using namespace level_text;
 using namespace map_files;
 
 namespace {
-
-template <class T> std::string message(const Result<T>& result) {
-    return result ? std::string("no error") : result.status().message;
-}
-
-bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 const std::vector<float> VALUES = {1.5f, -2, 3, 4, 5, 6}; // 3 columns, 2 rows
 

@@ -1,11 +1,13 @@
 // validate() and TimeSeries of engine/include/wadi/settings.hpp.
 #include "engine/level/setting_fields.hpp"
+#include "tests/unit/level_text.hpp"
 #include <cmath>
 #include <doctest/doctest.h>
 #include <functional>
 #include <limits>
 
 using namespace wadi;
+using namespace level_text;
 
 namespace {
 
@@ -16,7 +18,7 @@ Settings good() {
     return settings;
 }
 
-std::string message(const std::function<void(Settings&)>& change) {
+std::string refusal(const std::function<void(Settings&)>& change) {
     Settings settings = good();
     change(settings);
     const Status status = validate(settings);
@@ -24,14 +26,12 @@ std::string message(const std::function<void(Settings&)>& change) {
     return status.message;
 }
 
-bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
-
 constexpr double NOT_A_NUMBER = std::numeric_limits<double>::quiet_NaN();
 
 template <class Owner, class Number, std::size_t COUNT>
 void check_limits(const SettingField<Owner, Number> (&fields)[COUNT], const std::string& path, Owner Settings::*owner) {
     for (const auto& field : fields) {
-        const auto with = [&](Number value) { return message([&](Settings& s) { s.*owner.*field.member = value; }); };
+        const auto with = [&](Number value) { return refusal([&](Settings& s) { s.*owner.*field.member = value; }); };
         const std::string name = path + field.name + ": ";
         CHECK_MESSAGE(says(with(static_cast<Number>(field.most * 2 + 1)), name), name);
         CHECK_MESSAGE(says(with(static_cast<Number>(field.least - 1)), " is outside "), name);
@@ -42,7 +42,7 @@ void check_limits(const SettingField<Owner, Number> (&fields)[COUNT], const std:
 } // namespace
 
 TEST_CASE("settings: defaults are valid") {
-    CHECK(message([](Settings&) {}).empty());
+    CHECK(refusal([](Settings&) {}).empty());
 }
 
 TEST_CASE("settings: every number of material and method is checked") {
@@ -50,56 +50,56 @@ TEST_CASE("settings: every number of material and method is checked") {
     check_limits(METHOD_FIELDS, "method.", &Settings::method);
     check_limits(METHOD_COUNTS, "method.", &Settings::method);
     for (const auto& field : MATERIAL_FIELDS)
-        CHECK(says(message([&](Settings& s) { s.material.*field.member = NOT_A_NUMBER; }), field.name));
-    CHECK(message([](Settings& s) { s.material.friction = 12; }) == "material.friction: 12 is outside 0 ... 10");
+        CHECK(says(refusal([&](Settings& s) { s.material.*field.member = NOT_A_NUMBER; }), field.name));
+    CHECK(refusal([](Settings& s) { s.material.friction = 12; }) == "material.friction: 12 is outside 0 ... 10");
 }
 
 TEST_CASE("settings: grid, time step, gravity") {
-    CHECK(message([](Settings& s) { s.grid.nx = 0; }) == "grid.nx: 0 is outside 1 ... 16384");
-    CHECK(message([](Settings& s) { s.grid.ny = 20000; }) == "grid.ny: 20000 is outside 1 ... 16384");
-    CHECK(says(message([](Settings& s) { s.grid.dx = 0; }), "grid.dx: 0 is outside 0.0001 ... 10000"));
-    CHECK(says(message([](Settings& s) { s.grid.dx = NOT_A_NUMBER; }), "grid.dx: "));
-    CHECK(says(message([](Settings& s) { s.dt = 0; }), "dt: 0 is outside 1e-07 ... 100"));
-    CHECK(says(message([](Settings& s) { s.gravity = -1; }), "gravity: -1 is outside 0 ... 1000"));
+    CHECK(refusal([](Settings& s) { s.grid.nx = 0; }) == "grid.nx: 0 is outside 1 ... 16384");
+    CHECK(refusal([](Settings& s) { s.grid.ny = 20000; }) == "grid.ny: 20000 is outside 1 ... 16384");
+    CHECK(says(refusal([](Settings& s) { s.grid.dx = 0; }), "grid.dx: 0 is outside 0.0001 ... 10000"));
+    CHECK(says(refusal([](Settings& s) { s.grid.dx = NOT_A_NUMBER; }), "grid.dx: "));
+    CHECK(says(refusal([](Settings& s) { s.dt = 0; }), "dt: 0 is outside 1e-07 ... 100"));
+    CHECK(says(refusal([](Settings& s) { s.gravity = -1; }), "gravity: -1 is outside 0 ... 1000"));
 }
 
 TEST_CASE("settings: saturation, quantum, caps, names") {
-    CHECK(says(message([](Settings& s) {
+    CHECK(says(refusal([](Settings& s) {
                    s.material.saturation = {0.3, 0.25, 0.4};
                }),
                "saturation[1]: 0.25 must be at least 0.001"));
-    CHECK(says(message([](Settings& s) { s.material.saturation = {0, 0.25, 0.4}; }), "saturation[0]: 0 must be"));
-    CHECK(says(message([](Settings& s) { s.material.saturation = {0.1, 0.25, 1.4}; }), "saturation[2]: 1.4 is outside 0 ... 1"));
-    CHECK(message([](Settings& s) { s.method.quantum = 0; }).empty());
-    CHECK(message([](Settings& s) { s.method.quantum = std::ldexp(1.0, -20); }).empty());
-    CHECK(says(message([](Settings& s) { s.method.quantum = 0.001; }), "not a power of two; the next below is 0.000976562"));
-    CHECK(says(message([](Settings& s) { s.method.quantum = std::ldexp(1.0, -30); }), "largest_height / 2^24"));
-    CHECK(says(message([](Settings& s) { s.method.quantum = -0.5; }), "neither -1"));
-    CHECK(says(message([](Settings& s) { s.method.gravity_cap_least = 0.6; }), "0.6 is outside 0 ... 0.55"));
-    CHECK(says(message([](Settings& s) {
+    CHECK(says(refusal([](Settings& s) { s.material.saturation = {0, 0.25, 0.4}; }), "saturation[0]: 0 must be"));
+    CHECK(says(refusal([](Settings& s) { s.material.saturation = {0.1, 0.25, 1.4}; }), "saturation[2]: 1.4 is outside 0 ... 1"));
+    CHECK(refusal([](Settings& s) { s.method.quantum = 0; }).empty());
+    CHECK(refusal([](Settings& s) { s.method.quantum = std::ldexp(1.0, -20); }).empty());
+    CHECK(says(refusal([](Settings& s) { s.method.quantum = 0.001; }), "not a power of two; the next below is 0.000976562"));
+    CHECK(says(refusal([](Settings& s) { s.method.quantum = std::ldexp(1.0, -30); }), "largest_height / 2^24"));
+    CHECK(says(refusal([](Settings& s) { s.method.quantum = -0.5; }), "neither -1"));
+    CHECK(says(refusal([](Settings& s) { s.method.gravity_cap_least = 0.6; }), "0.6 is outside 0 ... 0.55"));
+    CHECK(says(refusal([](Settings& s) {
                    s.method.velocity_transport = VelocityTransport::semi_lagrangian;
                    s.method.velocity_clamp = 1.5;
                }),
                "method.velocity_clamp: 1.5 is outside 0.01 ... 1 (semi_lagrangian"));
-    CHECK(message([](Settings& s) { s.method.velocity_clamp = 1.5; }).empty());
-    CHECK(message([](Settings& s) { s.method.water_transport_order = 2; }).empty());
-    CHECK(says(message([](Settings& s) { s.method.water_transport_order = 3; }),
+    CHECK(refusal([](Settings& s) { s.method.velocity_clamp = 1.5; }).empty());
+    CHECK(refusal([](Settings& s) { s.method.water_transport_order = 2; }).empty());
+    CHECK(says(refusal([](Settings& s) { s.method.water_transport_order = 3; }),
                "method.water_transport_order: 3 is outside 1 ... 2"));
-    CHECK(message([](Settings& s) { s.method.half_storage = true; }).empty());
+    CHECK(refusal([](Settings& s) { s.method.half_storage = true; }).empty());
     for (const auto& spoil :
          {+[](Method& m) { m.velocity_transport = VelocityTransport::semi_lagrangian; },
           +[](Method& m) { m.strain_transport = StrainTransport::polar; },
           +[](Method& m) { m.strain_transport = StrainTransport::direct; },
           +[](Method& m) { m.drag_friction = DragFriction::sequence; }, +[](Method& m) { m.diffusion = Diffusion::laplacian; },
           +[](Method& m) { m.water_transport_order = 2; }})
-        CHECK(says(message([&](Settings& s) {
+        CHECK(says(refusal([&](Settings& s) {
                        s.method.half_storage = true;
                        spoil(s.method);
                    }),
                    "method.half_storage: true goes only with velocity_transport"));
-    CHECK(says(message([](Settings& s) { s.method.name = "robst"; }), "did you mean \"robust\"?"));
-    CHECK(says(message([](Settings& s) { s.effects = {{"cohesoin", Force::off}}; }), "did you mean \"cohesion\"?"));
-    CHECK(message([](Settings& s) { s.effects = {{"bed_friction", Force::on}}; }).empty());
+    CHECK(says(refusal([](Settings& s) { s.method.name = "robst"; }), "did you mean \"robust\"?"));
+    CHECK(says(refusal([](Settings& s) { s.effects = {{"cohesoin", Force::off}}; }), "did you mean \"cohesion\"?"));
+    CHECK(refusal([](Settings& s) { s.effects = {{"bed_friction", Force::on}}; }).empty());
 }
 
 TEST_CASE("settings: the quantum that is chosen") {
@@ -112,7 +112,7 @@ TEST_CASE("settings: the quantum that is chosen") {
 }
 
 TEST_CASE("settings: sides") {
-    const auto west = [](const std::function<void(Side&)>& change) { return message([&](Settings& s) { change(s.sides[0]); }); };
+    const auto west = [](const std::function<void(Side&)>& change) { return refusal([&](Settings& s) { change(s.sides[0]); }); };
     CHECK(says(west([](Side& s) { s.kind = SideKind::discharge; }), "sides.west.value: missing"));
     CHECK(says(west([](Side& s) { s.value.samples = {{0, 1}}; }), "only discharge and level"));
     CHECK(says(west([](Side& s) { s.from = 5; }), "sides.west.from: 5 is outside 0 ... 5"));
@@ -128,12 +128,12 @@ TEST_CASE("settings: sides") {
                    s.kind = SideKind::discharge, s.value.samples = {{0, -1}};
                }),
                "value: -1 is outside 0 ... 1e+09"));
-    CHECK(says(message([](Settings& s) { s.sides[2].from = 10; }), "sides.south.from: 10 is outside 0 ... 10"));
+    CHECK(says(refusal([](Settings& s) { s.sides[2].from = 10; }), "sides.south.from: 10 is outside 0 ... 10"));
 }
 
 TEST_CASE("settings: sources and rain") {
     const auto with = [](const std::function<void(Source&)>& change) {
-        return message([&](Settings& s) {
+        return refusal([&](Settings& s) {
             Source source;
             source.center = {5, 2};
             source.radius = 1;
@@ -164,9 +164,9 @@ TEST_CASE("settings: sources and rain") {
                }),
                "sources[0].velocity[1]: 200000 is outside"));
     CHECK(says(with([](Source& s) { s.set_velocity = true, s.material = SourceMaterial::sand; }), "only a source of water"));
-    CHECK(says(message([](Settings& s) { s.sources.resize(33); }), "33 are more than 32"));
-    CHECK(says(message([](Settings& s) { s.rain.samples = {{0, -1}}; }), "rain: -1 is outside 0 ... 1"));
-    CHECK(says(message([](Settings& s) { s.evaporation.samples = {{0, 2}}; }), "evaporation: 2 is outside 0 ... 1"));
+    CHECK(says(refusal([](Settings& s) { s.sources.resize(33); }), "33 are more than 32"));
+    CHECK(says(refusal([](Settings& s) { s.rain.samples = {{0, -1}}; }), "rain: -1 is outside 0 ... 1"));
+    CHECK(says(refusal([](Settings& s) { s.evaporation.samples = {{0, 2}}; }), "evaporation: 2 is outside 0 ... 1"));
 }
 
 TEST_CASE("settings: a time series is linear between its samples and constant outside") {
