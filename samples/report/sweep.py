@@ -75,7 +75,7 @@ def points_of(scene, quick):
                 for dt in (1, 2) if quick else (0.5, 1, 2):
                     for ratio in (2, 3) if sand else (3,):
                         yield Point(scene.key, n, dt, ratio, choice)
-        for choice in [c for c in CHOICES_OF[scene.kind] if not quick or c in ("robust", "published", "second_order", "half_storage")]:
+        for choice in [c for c in CHOICES_OF[scene.kind] if not quick or c in ("robust", "published", "second_order")]:
             yield Point(scene.key, sizes[-1], 1, 3, choice)
             yield Point(scene.key, sizes[-1], 0.25, 3, choice)
     else:
@@ -84,7 +84,7 @@ def points_of(scene, quick):
             sizes = [scene.n // 2] if quick else [scene.n // 2, scene.n, 2 * scene.n - 1]
         for n in sizes:
             for choice in ("robust", "second_order", "published") if scene.key != "monai" or not quick else ("robust", "second_order"):
-                if choice != "second_order" or wet:
+                if choice != "second_order" or (scene.kind == "water" or scene.key == "mound" if quick else wet):
                     yield Point(scene.key, n, 1, 3, choice)
         for dt in () if quick else (0.5, 2):
             yield Point(scene.key, scene.n, dt)

@@ -47,8 +47,9 @@ std::vector<CaseSpec> list() {
                                  {{"grid", grid}, {"effects", effects_text(mask | more)}, {"scene", scene}, {"method", method}}});
             };
             add("70x50", "random", "default");
-            if (((mask | stages[stage].without) & EFFECT_OPEN_SIDES) == 0) add("33x17", "random", "default", EFFECT_OPEN_SIDES);
-            for (std::size_t n = 0; n < ((mask & EFFECT_HALF_STORAGE) != 0 ? 1 : rounds); ++n, ++turn)
+            const bool half = (mask & EFFECT_HALF_STORAGE) != 0; // the same phases with other reads and stores
+            if (!half && ((mask | stages[stage].without) & EFFECT_OPEN_SIDES) == 0) add("33x17", "random", "default", EFFECT_OPEN_SIDES);
+            for (std::size_t n = 0; n < (half ? 1 : rounds); ++n, ++turn)
                 add(grids[turn % grids.size()], scenes[turn % scenes.size()], methods[turn % methods.size()]);
         }
     }

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double PI = 3.14159265358979323846;
 
-constexpr std::array grids = {"33x17", "1x1", "1x9", "9x1", "63x5", "64x4", "65x3", "129x66"};
+constexpr std::array grids = {"33x17", "1x1", "1x9", "9x1", "63x5", "64x4", "65x3", "70x50"};
 constexpr std::array scenes = {"random", "dam_break",    "lake",      "cliff", "islands", "slope",
                                "flat",   "one_wet_cell", "thin_film", "deep",  "creep",   "brimful"};
 constexpr std::array methods = {"default", "plain", "bare", "tapered", "coarse"};

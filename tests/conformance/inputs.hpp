@@ -18,7 +18,7 @@ struct Scene {
     int pilot_steps = 3;        // steps before a stage is looked at; 0 keeps the raw fields
 };
 
-std::span<const char* const> grid_names(); // "1x1" ... "129x66"
+std::span<const char* const> grid_names(); // "1x1" ... "70x50"
 std::span<const char* const> scene_names();
 std::span<const char* const> method_names_of_cases();
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 
 namespace wadi::conformance {
 namespace {
@@ -20,6 +21,7 @@ struct Options {
     std::string stage, chosen_case, output = "console";
     bool validate = false;
     int max_cells = 0; // of a case's grid; 0 = no limit
+    int max_steps = 0; // of a case; 0 = no limit
     PerfOptions perf;
     PerfTilesOptions perf_tiles;
 };
@@ -35,6 +37,11 @@ struct Job {
 int cells_of(const CaseSpec& spec) {
     int nx = 0, ny = 0;
     return std::sscanf(spec.get("grid", "").c_str(), "%dx%d", &nx, &ny) == 2 ? nx * ny : 0;
+}
+
+void limit_steps(CaseSpec& spec, int most) {
+    for (auto& [name, value] : spec.parameters)
+        if (name == "steps" && most > 0 && std::atoi(value.c_str()) > most) value = std::to_string(most);
 }
 
 // The cases that the options choose. A case with parameters need not be a listed one: any that its layer can make is run.
@@ -60,6 +67,7 @@ Result<std::vector<Job>> choose(const Options& options) {
             if (known && !wanted.parameters.empty()) continue;
             known = true;
             jobs.push_back({layer, wanted.parameters.empty() ? std::move(spec) : wanted});
+            limit_steps(jobs.back().spec, options.max_steps);
         }
     }
     if (!known) return error(Code::bad_argument, "--case " + wanted.name + ": no such case; `conformance list` prints all");
@@ -198,6 +206,7 @@ int run(int argc, char** argv) {
     app.add_option("--case", options.chosen_case, "NAME, or NAME(key=value,...) as a failure prints it");
     app.add_option("--max-cells", options.max_cells, "only cases whose grid has at most so many cells")
         ->check(CLI::Range(1, 1 << 20));
+    app.add_option("--max-steps", options.max_steps, "no case runs longer than so many steps")->check(CLI::Range(1, 1 << 20));
     app.add_option("--output", options.output, "console or csv")->check(CLI::IsMember({"console", "csv"}));
     app.add_flag("--validate", options.validate, "validation layers on; any message fails its case");
     app.add_subcommand("test", "run the cases (the default)");

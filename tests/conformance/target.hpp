@@ -28,8 +28,7 @@ class Session {
 
     /// The shared device, opened at the first call. Errors: those of Backend::open.
     Result<compute::Device*> device();
-    /// A device that forwards to the shared one and on destruction frees what was made through it, so that a World can own it
-    /// and pipelines are built only once.
+    /// A device that forwards to the shared one, for a World to own.
     Result<std::unique_ptr<compute::Device>> borrow();
     /// A device of its own: for tests that lose or count, and for other options.
     Result<std::unique_ptr<compute::Device>> fresh(compute::DeviceOptions options);

@@ -18,7 +18,7 @@ def run(*command):
 
 with tempfile.TemporaryDirectory() as folder:
     table = pathlib.Path(folder) / "perf.csv"
-    table.write_text(run(sys.argv[1], "perf", "--backend", "cpu", "--max-size", 128, "--repeats", 3, "--output", "csv"))
+    table.write_text(run(sys.argv[1], "perf", "--backend", "cpu", "--max-size", 128, "--repeats", 2, "--output", "csv"))
     steps = [row for row in perf_table.read(table) if row["row"].startswith("step, ")]
     assert len(steps) == 5, steps
     for row in steps:

@@ -113,17 +113,22 @@ TEST_CASE("every number changed at the start is the same to the bit as a level t
         step(world, 25);
         return hash_of(world);
     }();
+    std::map<std::string, std::uint64_t> expected;
+    for (const auto& [name, other] : others) {
+        const auto level = site("cpu", other.second);
+        step(level, 25);
+        expected[name] = hash_of(level);
+    }
     for (const auto& backend : abi_backends()) {
         int telling = 0;
         for (const auto& [name, other] : others) {
             CAPTURE(name);
-            const auto level = site(backend, other.second), changed = site(backend);
+            const auto changed = site(backend);
             set(changed, name, other.first);
-            CHECK(value_of(changed, name) == value_of(level, name));
-            step(level, 25);
+            CHECK(value_of(changed, name) == value_of(site("cpu", other.second), name));
             step(changed, 25);
-            CHECK(hash_of(changed) == hash_of(level));
-            telling += hash_of(level) != plain ? 1 : 0;
+            CHECK(hash_of(changed) == expected[name]);
+            telling += hash_of(changed) != plain ? 1 : 0;
         }
         CHECK(telling >= 14); // grain_size is nothing without bed_shear, and no sand here is full enough for the others
         MESSAGE(backend << ": " << telling << " of " << others.size() << " numbers show within 25 steps");

@@ -152,7 +152,7 @@ TEST_CASE("answers are the same bits on every backend, whatever the batch, and s
 TEST_CASE("eight batches are kept; a ninth gives up the first; a full ring says so") {
     for (const auto& backend : abi_backends()) {
         CAPTURE(backend);
-        auto world = mixed_world(backend, 256);
+        auto world = mixed_world(backend, 128);
         std::vector<uint64_t> tickets;
         for (int n = 0; n < 8; ++n) tickets.push_back(ask(world, {1, 1}));
         for (const auto ticket : tickets) CHECK(answers(world, ticket).size() == 1);

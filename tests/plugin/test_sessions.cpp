@@ -116,6 +116,7 @@ TEST_CASE("every level: frames, edits, saving, rolling back, and the log of it r
         }
         for (const auto& [recorded, log] : logs) {
             for (const auto& backend : backends()) {
+                if (logs.size() > 1 && backend == recorded) continue;
                 CAPTURE(recorded);
                 CAPTURE(backend);
                 const Session replay(level, backend);

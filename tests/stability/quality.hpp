@@ -152,7 +152,7 @@ template <class Run> void on_every_backend(const Scene& scene, Run run) {
     std::uint64_t expected = 0;
     for (const auto& backend : available_backends()) {
         CAPTURE(backend);
-        auto world = make_world(scene, {backend});
+        auto world = make_world(scene, {.backend = backend, .shared_device = true});
         run(*world);
         check_books(*world);
         const auto hash = hash_of(*world);

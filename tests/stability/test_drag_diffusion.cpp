@@ -80,7 +80,7 @@ TEST_CASE("explicit drag and Laplacian diffusion, velocities in flux form or tra
         scene.settings.method.diffusion = Diffusion::laplacian;
         for (const auto& backend : available_backends()) {
             CAPTURE(backend);
-            auto world = make_world(scene, {backend});
+            auto world = make_world(scene, {.backend = backend, .shared_device = true});
             step(*world, 60);
             const auto stats = world->stats();
             REQUIRE(stats);

@@ -54,7 +54,7 @@ Scene pile(double slope, double mu) {
 TEST_CASE("a lake over dunes, an island and a shore keeps every bit") {
     for (const auto& backend : available_backends()) {
         CAPTURE(backend);
-        auto world = make_world(lake_over_dunes(), {backend});
+        auto world = make_world(lake_over_dunes(), {.backend = backend, .shared_device = true});
         CHECK(unchanged_after(*world, 1));
         CHECK(unchanged_after(*world, 1));
         CHECK(unchanged_after(*world, 200));
@@ -78,7 +78,7 @@ TEST_CASE("negative control: a lake that is not level moves, and without quantum
 TEST_CASE("a dry pile below the angle of repose keeps every bit, above it flows") {
     for (const auto& backend : available_backends()) {
         CAPTURE(backend);
-        auto world = make_world(pile(0.475, 0.5), {backend});
+        auto world = make_world(pile(0.475, 0.5), {.backend = backend, .shared_device = true});
         CHECK(unchanged_after(*world, 1));
         CHECK(unchanged_after(*world, 300));
     }

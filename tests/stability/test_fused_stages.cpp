@@ -18,11 +18,11 @@ std::unique_ptr<World> apart(Scene scene) {
 /// The scene with fused stages. Null where the device cannot run them or its floats are not exact.
 std::unique_ptr<World> fused(Scene scene, const std::string& backend) {
     scene.settings.fused_stages = FusedStages::automatic;
-    auto world = make_world(scene, {backend});
+    auto world = make_world(scene, {.backend = backend, .shared_device = true});
     const auto& device = world->device().capabilities();
     if (!device.fused_stages || !device.exact_float) return nullptr;
     scene.settings.fused_stages = FusedStages::always;
-    return make_world(scene, {backend});
+    return make_world(scene, {.backend = backend, .shared_device = true});
 }
 
 } // namespace

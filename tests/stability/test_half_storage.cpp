@@ -68,7 +68,7 @@ TEST_CASE("half storage: the same bits on every backend, fused, over active tile
                     CAPTURE(backend);
                     CAPTURE(fused);
                     CAPTURE(tiles);
-                    auto world = make_world(way, {backend});
+                    auto world = make_world(way, {.backend = backend, .shared_device = true});
                     const auto& device = world->device().capabilities();
                     if (!device.exact_float || (fused && !device.fused_stages)) continue;
                     step(*world, steps / 2);

@@ -47,7 +47,7 @@ void check_exact(World& world, const WorldStats& stats) {
 TEST_CASE("initial + in - out = now to the last bit, with every effect on, on every backend") {
     for (const auto& backend : available_backends()) {
         CAPTURE(backend);
-        auto world = make_world(everything(48, 40), {backend});
+        auto world = make_world(everything(48, 40), {.backend = backend, .shared_device = true});
         CHECK(world->plan().effects == 2047);
         step(*world, 300);
         auto stats = world->stats();

@@ -50,7 +50,8 @@ TEST_CASE("robust and published run dam_break, piles and canyon, each with the s
             std::uint64_t hash = 0;
             for (const auto& backend : available_backends()) {
                 CAPTURE(backend);
-                auto world = make_world(level_with(row.name, row.nx, row.ny, method), {backend});
+                auto world =
+                    make_world(level_with(row.name, row.nx, row.ny, method), {.backend = backend, .shared_device = true});
                 CHECK(((world->plan().effects & EFFECT_SEMI_LAGRANGIAN) != 0) == (std::string(method) == "published"));
                 step(*world, row.steps);
                 const auto stats = world->stats();

@@ -34,7 +34,8 @@ TEST_CASE("terrain, then water, then sand: the bits of a world that had every ef
                 auto scene = dry_valley(open);
                 auto all = scene;
                 all.settings.effects = {{"water", Force::on}, {"sand", Force::on}};
-                auto grown = make_world(scene, {backend}), full = make_world(all, {backend});
+                const Target target = {.backend = backend, .shared_device = true};
+                auto grown = make_world(scene, target), full = make_world(all, target);
                 const auto first = sand_first ? EditLayer::sand : EditLayer::water,
                            second = sand_first ? EditLayer::water : EditLayer::sand;
                 const std::uint32_t bare = grown->plan().effects;

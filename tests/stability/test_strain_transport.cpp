@@ -31,7 +31,7 @@ TEST_CASE("strain transports: exact mass, the same bits on every backend, other 
         std::uint64_t hash = 0;
         for (const auto& backend : available_backends()) {
             CAPTURE(backend);
-            auto world = make_world(strained_scene(transport), {backend});
+            auto world = make_world(strained_scene(transport), {.backend = backend, .shared_device = true});
             step(*world, 60);
             const auto stats = world->stats();
             REQUIRE(stats);

@@ -64,7 +64,7 @@ TEST_CASE("traced back: exact mass, the same bits on every backend, other bits t
     std::uint64_t hash = 0;
     for (const auto& backend : available_backends()) {
         CAPTURE(backend);
-        auto world = make_world(traced_scene(), {backend});
+        auto world = make_world(traced_scene(), {.backend = backend, .shared_device = true});
         step(*world, 60);
         const auto stats = world->stats();
         REQUIRE(stats);

@@ -151,7 +151,7 @@ TEST_CASE("second order of water: exact mass, no negative height, the same bits 
     std::uint64_t hash = 0;
     for (const auto& backend : available_backends()) {
         CAPTURE(backend);
-        auto world = make_world(wet_scene(2), {backend});
+        auto world = make_world(wet_scene(2), {.backend = backend, .shared_device = true});
         step(*world, 60);
         const auto stats = world->stats();
         REQUIRE(stats);

@@ -1,8 +1,10 @@
 #include "tests/support/worlds.hpp"
+#include "tests/support/borrowed_device.hpp"
 #include <algorithm>
 #include <cmath>
 #include <doctest/doctest.h>
 #include <filesystem>
+#include <map>
 
 namespace wadi::test {
 
@@ -63,10 +65,31 @@ Scene shipped_level(const std::string& name, int nx, int ny) {
     return {level->settings, level->fields};
 }
 
-std::unique_ptr<World> make_world(const Scene& scene, const Target& target) {
+namespace {
+
+// Left open: a driver may be gone by the time that static objects are destroyed.
+compute::Device& shared_device(const Target& target) {
+    static auto& devices = *new std::map<std::string, std::unique_ptr<compute::Device>>;
+    auto& device = devices[target.backend];
+    if (!device) {
+        auto opened = compute::open_device(target.backend, -1, target.options);
+        REQUIRE_MESSAGE(opened, opened.status().message);
+        device = std::move(*opened);
+    }
+    return *device;
+}
+
+std::unique_ptr<compute::Device> device_for(const Target& target) {
+    if (target.shared_device && target.backend != "cpu") return std::make_unique<BorrowedDevice>(shared_device(target));
     auto device = compute::open_device(target.backend, -1, target.options);
     REQUIRE_MESSAGE(device, device.status().message);
-    auto world = World::create(scene.settings, scene.fields, std::move(*device), target.group);
+    return std::move(*device);
+}
+
+} // namespace
+
+std::unique_ptr<World> make_world(const Scene& scene, const Target& target) {
+    auto world = World::create(scene.settings, scene.fields, device_for(target), target.group);
     REQUIRE_MESSAGE(world, world.status().message);
     return std::move(*world);
 }

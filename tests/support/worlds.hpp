@@ -37,6 +37,9 @@ struct Target {
     std::string backend = "cpu";
     compute::DeviceOptions options = {};
     compute::GroupSize group = {};
+    /// On a GPU the world is made on a device that all worlds made so share and that lives until the program ends: its pipelines
+    /// are built once, its counters count for all. `options` are those of the first one.
+    bool shared_device = false;
 };
 
 /// Fails the running test when the world cannot be made.

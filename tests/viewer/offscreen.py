@@ -92,7 +92,7 @@ def above_lowest(r, g, b):
 
 def test_views(viewer):
     """Dry ground is the lowest colour of every quantity of water, deep water the highest."""
-    depth = viewer.picture("depth", "dam_break", "--backend", "cpu", "--camera", "top", "--size", "120x120", "--view", "depth")
+    depth = viewer.picture("depth", "dam_break", "--backend", "cpu", "--camera", "top", "--grid", "96x96", "--size", "120x120", "--view", "depth")
     reds = share(depth, lambda r, g, b: r > 120 and g < 110 and b < 100)
     print(f"view depth: {reds:.3f} of the picture in the highest colour")
     assert 0.05 < reds < 0.3
@@ -111,10 +111,10 @@ def test_views(viewer):
 
 def test_qualities_and_cameras(viewer):
     for quality in ("medium", "high"):
-        viewer.run("piles", "--offscreen", "--out", quality, "--backend", "cpu", "--size", "96x54", "--quality", quality)
+        viewer.run("piles", "--offscreen", "--out", quality, "--backend", "cpu", "--grid", "84x56", "--size", "96x54", "--quality", quality)
         assert black_pixels(read_png(viewer.folder / quality / "frame_00000.png")) == 0, quality
     for camera in ("opposite", "top", "close", "low"):
-        assert black_pixels(viewer.picture(camera, "canyon", "--backend", "cpu", "--camera", camera, "--size", "96x54")) == 0, camera
+        assert black_pixels(viewer.picture(camera, "canyon", "--backend", "cpu", "--camera", camera, "--grid", "100x128", "--size", "96x54")) == 0, camera
     for grid in ("1x40", "40x1"):
         thin = viewer.picture(f"thin_{grid}", "dam_break", "--backend", "cpu", "--grid", grid, "--size", "61x47")
         assert black_pixels(thin) == 0, grid
