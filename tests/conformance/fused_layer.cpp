@@ -48,7 +48,8 @@ std::vector<CaseSpec> list() {
             };
             add("70x50", "random", "default");
             const bool half = (mask & EFFECT_HALF_STORAGE) != 0; // the same phases with other reads and stores
-            if (!half && ((mask | stages[stage].without) & EFFECT_OPEN_SIDES) == 0) add("33x17", "random", "default", EFFECT_OPEN_SIDES);
+            if (!half && ((mask | stages[stage].without) & EFFECT_OPEN_SIDES) == 0)
+                add("33x17", "random", "default", EFFECT_OPEN_SIDES);
             for (std::size_t n = 0; n < (half ? 1 : rounds); ++n, ++turn)
                 add(grids[turn % grids.size()], scenes[turn % scenes.size()], methods[turn % methods.size()]);
         }
