@@ -84,7 +84,7 @@ def points_of(scene, quick):
             sizes = [scene.n // 2] if quick else [scene.n // 2, scene.n, 2 * scene.n - 1]
         for n in sizes:
             for choice in ("robust", "second_order", "published") if scene.key != "monai" or not quick else ("robust", "second_order"):
-                if choice != "second_order" or (scene.kind == "water" or scene.key == "mound" if quick else wet):
+                if choice != "second_order" or wet:
                     yield Point(scene.key, n, 1, 3, choice)
         for dt in () if quick else (0.5, 2):
             yield Point(scene.key, scene.n, dt)

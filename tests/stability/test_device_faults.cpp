@@ -172,3 +172,15 @@ TEST_CASE("every device call fails in turn: out of memory or lost, it is told an
         session(**device, plan, [](const Status& status) { CHECK_MESSAGE(status, status.message); });
     }
 }
+
+TEST_CASE("a pipeline for effects that no world has together is refused by the CPU, which has no code for it") {
+    auto device = compute::open_device("cpu", -1, {});
+    REQUIRE(device);
+    const int stage = compute::find_stage("integrate_water_velocity");
+    const std::uint32_t second_half = EFFECT_HALF_STORAGE | EFFECT_SECOND_ORDER_WATER;
+    const auto made = (*device)->create_pipeline(stage, second_half, {});
+    CHECK(made.status().code == Code::internal);
+    CHECK(made.status().message.find("stage integrate_water_velocity has no code") != std::string::npos);
+    CHECK((*device)->create_pipeline(stage, EFFECT_HALF_STORAGE, {}));
+    CHECK((*device)->create_pipeline(stage, EFFECT_SECOND_ORDER_WATER, {}));
+}
