@@ -28,7 +28,9 @@ std::unique_ptr<World> fused(Scene scene, const std::string& backend) {
 } // namespace
 
 TEST_CASE("fused stages: every level gives the bits of its stages one by one") {
+    int turn = 0;
     for (const auto& name : shipped_levels()) {
+        if (few_steps && turn++ % 3 != 0) continue;
         CAPTURE(name);
         const auto scene = shipped_level(name, 70, 50); // several groups along both axes, the last ones cut
         auto expected = apart(scene);

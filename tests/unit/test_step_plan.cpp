@@ -10,6 +10,7 @@ using namespace wadi;
 
 namespace {
 
+// Under sanitizers a few of them.
 std::vector<std::uint32_t> legal_masks() {
     std::uint32_t all = 0;
     for (const auto& effect : effect_table()) all |= effect.bit;
@@ -18,7 +19,10 @@ std::vector<std::uint32_t> legal_masks() {
     for (std::uint32_t mask = 1; mask <= all; ++mask) {
         if (is_legal(mask) && (mask & (EFFECT_WATER | EFFECT_SAND)) != 0) masks.push_back(mask);
     }
-    return masks;
+    if (!test::few_steps) return masks;
+    std::vector<std::uint32_t> few = {masks.back()};
+    for (std::size_t n = 0; n < masks.size(); n += 17) few.push_back(masks[n]);
+    return few;
 }
 
 // Every legal mask one by one, and fused with and without active tiles.
