@@ -38,7 +38,7 @@ std::vector<CaseSpec> list() {
         if (!stages[stage].fused()) continue;
         const auto masks = stage_masks(static_cast<int>(stage));
         // Every stage meets every grid and scene, every mask some.
-        const std::size_t rounds = masks.size() < 4 ? scenes.size() : 3;
+        const std::size_t rounds = masks.size() < 4 ? scenes.size() : 2;
         std::size_t turn = 0;
         for (const std::uint32_t mask : masks) {
             const auto add = [&](const std::string& grid, const std::string& scene, const std::string& method,

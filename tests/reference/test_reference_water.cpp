@@ -120,6 +120,7 @@ TEST_CASE("reference: steady subcritical flow over a bump, discharge and level s
     for (int turn = 0; turn < 4; ++turn) {
         const int order = 1 + turn / 2, n = 100 << turn % 2;
         for (const bool along_y : {false, true}) {
+            if (along_y && turn % 2 == 1) continue; // four times the work
             Settings set = along_y ? convergence_settings(1, n, L / n) : convergence_settings(n, 1, L / n);
             set.sides[along_y ? 2 : 0] = {SideKind::discharge, 0, 1e30, {{{0, q * set.grid.dx}}}};
             set.sides[along_y ? 3 : 1] = {SideKind::level, 0, 1e30, {{{0, hl}}}};

@@ -63,7 +63,7 @@ def test_device(session):
 
 def test_painting(session):
     """Sand painted at a pixel lands there, is in the ledger, and is seen; with the tool "look" the same input changes nothing."""
-    for backend in ("cpu",) if session.window else ("cpu", "vulkan"):
+    for backend in ("cpu", "vulkan"):
         out, _, (before, looked, after), _ = session.run(
             f"0 radius 8\n0 strength 3\n1 print\n2 pointer {session.place}\n3 press left\n9 release left\n10 pointer 479 2\n11 print\n12 screenshot\n"
             f"13 tool add-sand\n13 pointer {session.place}\n14 press left\n20 release left\n21 pointer 479 2\n22 print\n23 screenshot\n", 26, backend=backend)
@@ -98,17 +98,16 @@ def test_time(session):
     """Pause, single steps, roll-back, restart, determinism, slow motion."""
     script = ("0 keep 64 1\n3 pause\n5 print\n6 print\n7 step\n9 print\n10 resume\n14 pause\n15 print\n16 back 2\n17 print\n"
               "18 determinism 4\n19 print\n20 restart\n22 print\n22 resume\n28 print\n28 restart\n28 speed 0.25\n34 print\n")
-    for backend in ("cpu", "vulkan"):
-        _, text, states, _ = session.run(script, 36, backend=backend)
-        paused, still, stepped, later, back, checked, fresh, whole, slow = states
-        assert paused == still, "a paused world went on"
-        assert int(stepped["step"]) == int(paused["step"]) + 1
-        assert int(later["step"]) > int(stepped["step"]) and int(later["kept"]) > 2
-        assert int(back["step"]) == 2 and back["hash"] != later["hash"]
-        assert checked["hash"] == back["hash"], "the determinism check changed the state"
-        assert "determinism equal" in text
-        assert int(fresh["step"]) == 0
-        assert 0 < int(slow["step"]) < 0.5 * int(whole["step"])
+    _, text, states, _ = session.run(script, 36)
+    paused, still, stepped, later, back, checked, fresh, whole, slow = states
+    assert paused == still, "a paused world went on"
+    assert int(stepped["step"]) == int(paused["step"]) + 1
+    assert int(later["step"]) > int(stepped["step"]) and int(later["kept"]) > 2
+    assert int(back["step"]) == 2 and back["hash"] != later["hash"]
+    assert checked["hash"] == back["hash"], "the determinism check changed the state"
+    assert "determinism equal" in text
+    assert int(fresh["step"]) == 0
+    assert 0 < int(slow["step"]) < 0.5 * int(whole["step"])
 
 
 def test_changes(session):
@@ -235,7 +234,7 @@ def main():
         try:
             session = Session(sys.argv[1], Path(folder), window)
             if window:
-                tests = (test_painting, test_minimised, test_real_input)
+                tests = (test_minimised, test_real_input)
             else:
                 tests = (test_painting, test_tools, test_time, test_accuracy, test_device, test_changes, test_material, test_panel, test_one_queue, test_refusals)
             chosen = [word for word in sys.argv[2:] if word != "--window"]
