@@ -1,4 +1,5 @@
 """Exact solutions: a dam at x0 with still water of depth `left` behind it and `right` before it breaks at t = 0."""
+import functools
 import math
 
 G = 9.81
@@ -18,6 +19,7 @@ def ritter_front(t, left, x0, depth):
     return x0 + t * (2 * math.sqrt(G * left) - 3 * math.sqrt(G * depth))
 
 
+@functools.cache  # asked for again in each cell
 def stoker_middle(left, right):
     """(depth, velocity, shock speed) between rarefaction and shock (Stoker 1957), by bisection on the depth."""
     def mismatch(h):
@@ -65,6 +67,7 @@ def bump(x):
     return max(0.0, BUMP_CREST - 0.05 * (x - BUMP_AT) ** 2)
 
 
+@functools.cache
 def depth_of_head(head, q, fast):
     """Depth [m] where h + q^2/(2 g h^2) = head, of the fast (supercritical) or the slow stream, by bisection."""
     critical = (q * q / G) ** (1 / 3)
@@ -91,6 +94,7 @@ def steady_over_bump(x, q, right, through_critical):
     return depth_of_head(above - bump(x), q, True) if x < jump else depth_of_head(head(right) - bump(x), q, False)
 
 
+@functools.cache
 def jump_behind_bump(q, right, above):
     """Where the fast stream of head `above` and the slow one of depth `right` downstream have the same momentum [m]."""
     below = right + q * q / (2 * G * right * right)

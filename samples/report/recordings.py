@@ -18,10 +18,10 @@ class Failed(Exception):
 
 
 class Recorder:
-    """One recorder program on one backend. Recordings live until the object is closed."""
+    """One recorder program on one backend; threads: of the CPU backend, 0 = all cores. Recordings live until the object is closed."""
 
-    def __init__(self, program, backend="cpu"):
-        self.program, self.backend = str(pathlib.Path(program).resolve()), backend
+    def __init__(self, program, backend="cpu", threads=0):
+        self.program, self.backend, self.threads = str(pathlib.Path(program).resolve()), backend, threads
         self.scratch = tempfile.TemporaryDirectory()
         self.count = 0
 
@@ -49,7 +49,7 @@ class Recorder:
                 write_npy(folder / name, nx, ny, values)
         else:
             where = LEVELS / level
-        command = [self.program, str(where), "--backend", self.backend, "--out", str(folder), "--summary", str(folder / "summary.json")]
+        command = [self.program, str(where), "--backend", self.backend, "--threads", str(self.threads), "--out", str(folder), "--summary", str(folder / "summary.json")]
         for key, value in (("method", method), ("variant", variant), ("accuracy", accuracy), ("dt", dt), ("fused-stages", fused), ("seconds", seconds)):
             if value is not None:
                 command += [f"--{key}", str(value)]

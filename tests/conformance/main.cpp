@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 
 namespace wadi::conformance {
 namespace {
@@ -22,6 +23,7 @@ struct Options {
     bool validate = false;
     int max_cells = 0; // of a case's grid; 0 = no limit
     int max_steps = 0; // of a case; 0 = no limit
+    int max_masks = 0; // of a name's cases; 0 = no limit
     PerfOptions perf;
     PerfTilesOptions perf_tiles;
 };
@@ -42,6 +44,23 @@ int cells_of(const CaseSpec& spec) {
 void limit_steps(CaseSpec& spec, int most) {
     for (auto& [name, value] : spec.parameters)
         if (name == "steps" && most > 0 && std::atoi(value.c_str()) > most) value = std::to_string(most);
+}
+
+// Leaves of each name's cases those of at most `most` masks of effects: evenly spread over the order in which they are listed, the
+// last one among them.
+void limit_masks(std::vector<Job>& jobs, int most) {
+    std::map<std::pair<const Layer*, std::string>, std::vector<std::string>> masks;
+    const auto mask_of = [](const Job& job) { return job.spec.get("effects", ""); };
+    for (const Job& job : jobs) {
+        auto& known = masks[{job.layer, job.spec.name}];
+        if (std::find(known.begin(), known.end(), mask_of(job)) == known.end()) known.push_back(mask_of(job));
+    }
+    std::erase_if(jobs, [&](const Job& job) {
+        const auto& known = masks[{job.layer, job.spec.name}];
+        const auto count = static_cast<std::ptrdiff_t>(known.size());
+        const auto n = std::find(known.begin(), known.end(), mask_of(job)) - known.begin() + 1;
+        return n * most / count == (n - 1) * most / count; // n is the last of its share or is left out
+    });
 }
 
 // The cases that the options choose. A case with parameters need not be a listed one: any that its layer can make is run.
@@ -71,6 +90,7 @@ Result<std::vector<Job>> choose(const Options& options) {
         }
     }
     if (!known) return error(Code::bad_argument, "--case " + wanted.name + ": no such case; `conformance list` prints all");
+    if (options.max_masks > 0) limit_masks(jobs, options.max_masks);
     if (jobs.empty()) return error(Code::bad_argument, "no case is left by --layer, --stage, --case and --max-cells");
     return jobs;
 }
@@ -207,6 +227,8 @@ int run(int argc, char** argv) {
     app.add_option("--max-cells", options.max_cells, "only cases whose grid has at most so many cells")
         ->check(CLI::Range(1, 1 << 20));
     app.add_option("--max-steps", options.max_steps, "no case runs longer than so many steps")->check(CLI::Range(1, 1 << 20));
+    app.add_option("--max-masks", options.max_masks, "of the masks of effects that cases of one name have at most so many, evenly spread")
+        ->check(CLI::Range(1, 1 << 20));
     app.add_option("--output", options.output, "console or csv")->check(CLI::IsMember({"console", "csv"}));
     app.add_flag("--validate", options.validate, "validation layers on; any message fails its case");
     app.add_subcommand("test", "run the cases (the default)");

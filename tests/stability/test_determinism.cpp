@@ -172,8 +172,10 @@ TEST_CASE(
             CAPTURE(backend);
             CAPTURE(scene_name);
             auto scene = shipped_level(name, nx, ny);
-            if (scene_name != "canyon") scene.settings.fused_stages = FusedStages::always;
-            if (scene_name == "dam_break") scene.settings.active_tiles = 16;
+            if (scene_name == "dam_break") {
+                scene.settings.fused_stages = FusedStages::always;
+                scene.settings.active_tiles = 16;
+            }
             Target checked{backend};
             checked.options.validate = backend == "vulkan";
             std::string messages;
