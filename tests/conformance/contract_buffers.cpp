@@ -10,8 +10,6 @@ namespace {
 using compute::Buffer;
 using compute::Device;
 
-constexpr auto bad = {Code::bad_argument};
-
 void sizes(Session&, Device& device, Expect& expect) {
     const std::uint64_t largest = device.capabilities().largest_buffer_bytes;
     expect.that(largest > 0, "largest_buffer_bytes is 0");
@@ -99,13 +97,14 @@ void many(Session&, Device& device, Expect& expect) {
     for (std::uint32_t n = 1; n < 200; n += 2) device.destroy_buffer(buffers[n]);
 }
 
-constexpr Contract contracts[] = {
-    {"buffer_sizes", sizes},   {"buffer_starts_zero", zeros}, {"buffer_round_trip", round_trip},
-    {"buffer_ranges", ranges}, {"buffer_handles", handles},   {"many_buffers", many},
-};
-
 } // namespace
 
-std::span<const Contract> buffer_contracts() { return contracts; }
+std::span<const Contract> buffer_contracts() {
+    static constexpr Contract contracts[] = {
+        {"buffer_sizes", sizes},   {"buffer_starts_zero", zeros}, {"buffer_round_trip", round_trip},
+        {"buffer_ranges", ranges}, {"buffer_handles", handles},   {"many_buffers", many},
+    };
+    return contracts;
+}
 
 } // namespace wadi::conformance

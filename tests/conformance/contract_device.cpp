@@ -219,19 +219,20 @@ void opened_again_and_again(Session& session, Device&, Expect& expect) {
     }
 }
 
-constexpr Contract contracts[] = {
-    {"opened_again_and_again", opened_again_and_again},
-    {"capabilities", capabilities},
-    {"device_lost", device_lost},
-    {"world_after_loss", world_after_loss},
-    {"two_devices", two_devices},
-    {"planned_barriers", planned_barriers},
-    {"group_sizes", group_sizes},
-    {"steps_allocate_nothing", steps_allocate_nothing},
-};
-
 } // namespace
 
-std::span<const Contract> device_contracts() { return contracts; }
+std::span<const Contract> device_contracts() {
+    static constexpr Contract contracts[] = {
+        {"opened_again_and_again", opened_again_and_again},
+        {"capabilities", capabilities},
+        {"device_lost", device_lost},
+        {"world_after_loss", world_after_loss},
+        {"two_devices", two_devices},
+        {"planned_barriers", planned_barriers},
+        {"group_sizes", group_sizes},
+        {"steps_allocate_nothing", steps_allocate_nothing},
+    };
+    return contracts;
+}
 
 } // namespace wadi::conformance

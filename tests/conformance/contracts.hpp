@@ -17,6 +17,9 @@ std::span<const Contract> program_contracts();
 std::span<const Contract> device_contracts();
 std::span<const Contract> host_contracts();
 
+/// What most bad calls must answer, for Expect::code.
+constexpr auto bad = {Code::bad_argument};
+
 /// A buffer that holds `words`; null when the device refuses.
 compute::Buffer buffer_of(compute::Device& device, const std::vector<std::uint32_t>& words);
 std::vector<std::uint32_t> words_of(compute::Device& device, compute::Buffer buffer, std::size_t count);

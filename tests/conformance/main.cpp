@@ -46,8 +46,8 @@ void limit_steps(CaseSpec& spec, int most) {
         if (name == "steps" && most > 0 && std::atoi(value.c_str()) > most) value = std::to_string(most);
 }
 
-// Leaves of each name's cases those of at most `most` masks of effects: evenly spread over the order in which they are listed, the
-// last one among them.
+// Leaves of each name's cases those of at most `most` masks of effects: evenly spread over the order in which they are listed,
+// the last one among them.
 void limit_masks(std::vector<Job>& jobs, int most) {
     std::map<std::pair<const Layer*, std::string>, std::vector<std::string>> masks;
     const auto mask_of = [](const Job& job) { return job.spec.get("effects", ""); };
@@ -227,7 +227,8 @@ int run(int argc, char** argv) {
     app.add_option("--max-cells", options.max_cells, "only cases whose grid has at most so many cells")
         ->check(CLI::Range(1, 1 << 20));
     app.add_option("--max-steps", options.max_steps, "no case runs longer than so many steps")->check(CLI::Range(1, 1 << 20));
-    app.add_option("--max-masks", options.max_masks, "of the masks of effects that cases of one name have at most so many, evenly spread")
+    app.add_option("--max-masks", options.max_masks,
+                   "of the masks of effects that cases of one name have at most so many, evenly spread")
         ->check(CLI::Range(1, 1 << 20));
     app.add_option("--output", options.output, "console or csv")->check(CLI::IsMember({"console", "csv"}));
     app.add_flag("--validate", options.validate, "validation layers on; any message fails its case");
