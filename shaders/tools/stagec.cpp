@@ -1,8 +1,7 @@
 // stagec: the build's own tool for stage files and fused files. It has no dependencies and is built first.
 //   stagec glsl  EFFECTS_H STAGE OUT.comp          GLSL wrapper: prelude, stage, main()
-//   stagec cpp   EFFECTS_H STAGE OUT.cpp ISA all|largest  every mask the stage distinguishes, for one instruction set; largest:
-//   of each
-//                                                  choice of methods the masks that no other one includes, base has the rest
+//   stagec cpp   EFFECTS_H STAGE OUT.cpp ISA all|largest  a function per mask the stage distinguishes, for one instruction set;
+//                                                  largest: of each choice of methods the masks that no other one includes
 //   stagec cuda  EFFECTS_H STAGE OUT.cu all|largest  every mask as CUDA kernels; largest: masks that no other one includes
 //   stagec nocontract IN.spv OUT.spv               decorates every float operation NoContraction
 //   stagec embed IN.spv OUT.inc                    a module as the words of a C++ array

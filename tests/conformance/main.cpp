@@ -219,7 +219,7 @@ int run(int argc, char** argv) {
     app.add_option("--backend", options.backends, "devices to test: cpu, vulkan, vulkan1, ...; without it all there are")
         ->delimiter(',');
     app.add_option("--require", options.required, "backends whose absence is a failure")->delimiter(',');
-    app.add_option("--layer", options.layers, "contract, stage, step or invariant")
+    app.add_option("--layer", options.layers, "contract, stage, step, invariant or fused")
         ->delimiter(',')
         ->check(CLI::IsMember({"contract", "stage", "step", "invariant", "fused"}));
     app.add_option("--stage", options.stage, "only the cases of this stage");
@@ -227,8 +227,7 @@ int run(int argc, char** argv) {
     app.add_option("--max-cells", options.max_cells, "only cases whose grid has at most so many cells")
         ->check(CLI::Range(1, 1 << 20));
     app.add_option("--max-steps", options.max_steps, "no case runs longer than so many steps")->check(CLI::Range(1, 1 << 20));
-    app.add_option("--max-masks", options.max_masks,
-                   "of the masks of effects that cases of one name have at most so many, evenly spread")
+    app.add_option("--max-masks", options.max_masks, "of each name only cases of so many masks of effects, evenly spread")
         ->check(CLI::Range(1, 1 << 20));
     app.add_option("--output", options.output, "console or csv")->check(CLI::IsMember({"console", "csv"}));
     app.add_flag("--validate", options.validate, "validation layers on; any message fails its case");
