@@ -13,13 +13,14 @@ from pathlib import Path
 from pictures import black_pixels, read_png, sandy, share
 
 STATE = re.compile(r"state step (\d+) sand ([\d.]+) water ([\d.]+) sand_in ([\d.]+) water_in ([\d.]+) kept (\d+) hash (\w+)")
+POINTED = "320x180" # pictures in which a script points at places
 
 
 class Session:
     def __init__(self, program, folder, window):
         self.program, self.folder, self.window, self.number = str(Path(program).resolve()), folder, window, 0
-        self.size = "640x360" if window else "320x180" # a window has the panel in it
-        # A place beside the damp column. The panel moves the middle of the picture by half its 330 pixels.
+        self.size = "640x360" if window else "96x54" # a window has the panel in it
+        # A place beside the damp column, in a window and in POINTED. The panel moves the middle of the picture by half its 330 pixels.
         self.place = "452 229" if window else "143 115"
 
     def start(self, script, frames, *arguments, backend="cpu", size=None):
@@ -66,7 +67,7 @@ def test_painting(session):
     for backend in ("cpu", "vulkan"):
         out, _, (before, looked, after), _ = session.run(
             f"0 radius 8\n0 strength 3\n1 print\n2 pointer {session.place}\n3 press left\n9 release left\n10 pointer 479 2\n11 print\n12 screenshot\n"
-            f"13 tool add-sand\n13 pointer {session.place}\n14 press left\n20 release left\n21 pointer 479 2\n22 print\n23 screenshot\n", 26, backend=backend)
+            f"13 tool add-sand\n13 pointer {session.place}\n14 press left\n20 release left\n21 pointer 479 2\n22 print\n23 screenshot\n", 26, backend=backend, size=POINTED)
         assert float(before["sand_in"]) == float(looked["sand_in"]) == 0
         poured = float(after["sand_in"])
         # 3 m/s for 6 frames of 0.1 s over a disc of 8 m whose mean is 0.3: 109 m3
@@ -86,7 +87,7 @@ def test_tools(session):
         "14 tool take-sand\n14 pointer 200 80\n15 press left\n18 release left\n19 tool push\n20 press left\n"
         "21 pointer 213 86\n22 release left\n23 tool raise\n24 press left\n25 release left\n26 print\n"
         "26 tool look\n27 pause\n29 screenshot\n31 pointer 200 100\n33 screenshot\n"
-        "34 press right\n35 pointer 240 93\n36 release right\n37 wheel 3\n38 key W\n40 screenshot\n", 42)
+        "34 press right\n35 pointer 240 93\n36 release right\n37 wheel 3\n38 key W\n40 screenshot\n", 42, size=POINTED)
     assert float(first["water_in"]) > 1 and float(second["water_in"]) > float(first["water_in"]) + 1
     assert float(third["sand"]) <= float(first["sand"])
     still, later, moved = (read_png(out / f"screenshot_0000{n}.png") for n in (0, 1, 2))

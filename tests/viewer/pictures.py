@@ -1,4 +1,5 @@
-"""PNG files as lists of rows, and what tests ask of them. Needs nothing but Python."""
+"""PNG files as rows of bytes, and what tests ask of them. Needs nothing but Python."""
+import functools
 import struct
 import zlib
 
@@ -21,7 +22,7 @@ def read_png(path):
         how, line = raw[start], raw[start + 1:start + 1 + 3 * width]
         above = line if how == 0 else sum_of_bytes(line, above) if how == 2 else unfiltered(how, line, above)
         rows.append(above)
-    return width, height, rows
+    return width, height, tuple(rows)
 
 
 def sum_of_bytes(a, b):
@@ -74,16 +75,19 @@ def black_pixels(picture):
     return sum(1 for pixel in pixels(picture) if max(pixel) == 0)
 
 
+@functools.cache # each stored picture is compared with many
 def blocks(picture, size=6):
     """Mean colours of size x size pixels: what the eye compares at a distance."""
     width, height, rows = picture
+    means = []
     for y in range(0, height - size + 1, size):
         for x in range(0, width - size + 1, size):
             sums = [0, 0, 0]
             for row in rows[y:y + size]:
                 for k in range(3):
                     sums[k] += sum(row[3 * x + k:3 * (x + size):3])
-            yield tuple(s / (size * size) for s in sums)
+            means.append(tuple(s / (size * size) for s in sums))
+    return means
 
 
 def difference(a, b):
