@@ -7,9 +7,10 @@ using namespace wadi;
 namespace {
 
 constexpr std::uint64_t step_time = 10000000; // [ns]
+constexpr int columns = 16, rows = 12;
 
 std::unique_ptr<World> make(const std::string& backend) {
-    auto scene = test::mixed_scene(40, 36);
+    auto scene = test::mixed_scene(columns, rows);
     scene.settings.dt = 0.01;
     return test::make_world(scene, {.backend = backend});
 }
@@ -17,7 +18,7 @@ std::unique_ptr<World> make(const std::string& backend) {
 // What one update of one step adds to the device's counters, once everything was recorded.
 compute::DeviceCounters cost_of_update(World& world, std::uint64_t nanoseconds = step_time) {
     Frame frame;
-    std::vector<float> wait(40 * 36);
+    std::vector<float> wait(columns * rows);
     for (int n = 0; n < 12; ++n) { // every parity with every set
         REQUIRE(world.update(step_time, frame));
         REQUIRE(world.read("terrain", wait));

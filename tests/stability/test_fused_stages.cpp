@@ -34,7 +34,7 @@ TEST_CASE("fused stages: every level gives the bits of its stages one by one") {
         CAPTURE(name);
         const auto scene = shipped_level(name, 70, 50); // several groups along both axes, the last ones cut
         auto expected = apart(scene);
-        const int steps = few_steps ? 3 : 8;
+        const int steps = few_steps ? 3 : 4;
         step(*expected, steps);
         for (const auto& backend : available_backends()) {
             CAPTURE(backend);

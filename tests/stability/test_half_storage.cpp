@@ -56,7 +56,7 @@ TEST_CASE("half storage: the same bits on every backend, fused, over active tile
         auto plain = scene;
         plain.settings.fused_stages = FusedStages::never;
         auto expected = make_world(plain), full = make_world(shipped_level(name, 70, 50));
-        const int steps = few_steps ? 4 : 12;
+        const int steps = few_steps ? 4 : 8;
         step(*expected, steps);
         step(*full, steps);
         CHECK(hash_of(*expected) != hash_of(*full)); // it does something

@@ -42,7 +42,7 @@ TEST_CASE("robust and published run dam_break, piles and canyon, each with the s
         const char* name;
         int nx, ny, steps;
     };
-    for (const Row& row : {Row{"dam_break", 64, 64, 40}, {"piles", 72, 48, 40}, {"canyon", 60, 77, 30}}) {
+    for (const Row& row : {Row{"dam_break", 64, 64, 20}, {"piles", 72, 48, 20}, {"canyon", 60, 77, 15}}) {
         std::uint64_t robust = 0;
         for (const char* method : {"robust", "published"}) {
             const std::string label = std::string(row.name) + " " + method;
