@@ -56,7 +56,7 @@ TEST_CASE("the same total time gives the same bits at any frame rate, steps spre
         }
         for (const bool spread : {false, true}) {
             for (const uint64_t hz : {15, 60, 144, 240, 0}) {
-                if (backend != "cpu" && (hz == 60 || hz == 240)) continue; // pipelines anew for each world
+                if (backend != "cpu" && hz != 144 && hz != 0) continue; // pipelines anew for each world
                 CAPTURE(spread);
                 CAPTURE(hz);
                 const World world(backend);
