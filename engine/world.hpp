@@ -1,13 +1,13 @@
 // A world: its state on a device, and the parts that step it and answer for it. Each part has a file of its own.
 #pragma once
-#include "engine/command_log.hpp"
-#include "engine/frame_driver.hpp"
-#include "engine/outputs.hpp"
-#include "engine/queries.hpp"
-#include "engine/roll_back.hpp"
-#include "engine/snapshots.hpp"
-#include "engine/state_reader.hpp"
-#include "engine/stepper.hpp"
+#include "engine/edits/command_log.hpp"
+#include "engine/frames/frame_driver.hpp"
+#include "engine/frames/outputs.hpp"
+#include "engine/reads/queries.hpp"
+#include "engine/reads/state_reader.hpp"
+#include "engine/saves/roll_back.hpp"
+#include "engine/saves/snapshots.hpp"
+#include "engine/step/stepper.hpp"
 
 namespace wadi {
 

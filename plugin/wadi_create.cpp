@@ -1,6 +1,6 @@
 // Devices, and worlds made from levels or arrays.
-#include "engine/accuracy_presets.hpp"
 #include "engine/level/level.hpp"
+#include "engine/settings/accuracy_presets.hpp"
 #include "plugin/abi.hpp"
 #include "plugin/vulkan_host.hpp"
 #include <cstdio>

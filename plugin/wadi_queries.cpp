@@ -1,5 +1,5 @@
 // The state at points of the world, and what it does to a floating body.
-#include "engine/buoyancy.hpp"
+#include "engine/reads/buoyancy.hpp"
 #include "plugin/abi.hpp"
 
 using namespace wadi;

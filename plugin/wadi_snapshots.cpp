@@ -1,5 +1,5 @@
 // Saving, loading, roll-back and the hash.
-#include "engine/snapshot_file.hpp"
+#include "engine/saves/snapshot_file.hpp"
 #include "plugin/abi.hpp"
 
 using namespace wadi;

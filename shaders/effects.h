@@ -1,6 +1,6 @@
 // Effects: the bits of the mask that decides which stages, buffers and branches exist.
 // Shared by every stage (GLSL, C++, CUDA) and by the engine: plain #defines only.
-// What each bit means to a user, and what it needs, are the tables in engine/effect_table.cpp.
+// What each bit means to a user, and what it needs, are the tables in engine/settings/effect_table.cpp.
 #ifndef WADI_EFFECTS_H
 #define WADI_EFFECTS_H
 
@@ -18,7 +18,7 @@
 #define EFFECT_BED_SHEAR 2048u // pure water drags the sand under it along
 
 
-// Choices of method: bits of the same mask, from settings.method and never from content (choice_table in engine/effect_table.cpp).
+// Choices of method: bits of the same mask, from settings.method and never from content (choice_table in engine/settings/effect_table.cpp).
 #define EFFECT_SEMI_LAGRANGIAN 4096u // velocities are traced back instead of moved by the mass fluxes
 #define EFFECT_WHOLE_STRAIN 8192u // sand keeps F with its rotation, and F follows the velocity ahead of friction
 #define EFFECT_DIRECT_STRAIN 16384u // F is moved as it is, not as angle and stretch

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Every operation that stages rely on, on random operands; the host compares with its own results bit for bit.
 layout(local_size_x_id = 1, local_size_y_id = 2, local_size_z = 1) in;
-#include "division_glsl.h"
+#include "language/division_glsl.h"
 
 layout(std430, set = 0, binding = 0) readonly buffer operands_block { vec2 operands[]; }; // any sign; positive
 layout(std430, set = 0, binding = 1) writeonly buffer results_block { float results[]; };

@@ -1,6 +1,6 @@
 #include "engine/image/map.hpp"
 #include "engine/level/layers.hpp"
-#include "engine/level/text.hpp"
+#include "engine/settings/messages.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -8,7 +8,9 @@
 namespace wadi {
 namespace {
 
-std::size_t cell_count(const LevelFrame& frame) { return static_cast<std::size_t>(frame.nx) * static_cast<std::size_t>(frame.ny); }
+std::size_t cell_count(const LevelFrame& frame) {
+    return static_cast<std::size_t>(frame.nx) * static_cast<std::size_t>(frame.ny);
+}
 
 double value_at(const std::vector<float>& field, std::size_t cell) {
     return field.empty() ? 0 : static_cast<double>(field[cell]);

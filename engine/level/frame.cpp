@@ -1,8 +1,8 @@
 #include "engine/level/frame.hpp"
-#include "engine/accuracy_presets.hpp"
-#include "engine/level/setting_fields.hpp"
-#include "engine/level/text.hpp"
-#include "engine/method_presets.hpp"
+#include "engine/settings/accuracy_presets.hpp"
+#include "engine/settings/messages.hpp"
+#include "engine/settings/method_presets.hpp"
+#include "engine/settings/setting_fields.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -1,9 +1,9 @@
 #include "engine/level/level.hpp"
-#include "engine/accuracy_presets.hpp"
 #include "engine/image/map.hpp"
 #include "engine/level/frame.hpp"
 #include "engine/level/settings_reader.hpp"
 #include "engine/level/variants.hpp"
+#include "engine/settings/accuracy_presets.hpp"
 #include <filesystem>
 #include <new>
 

@@ -1,6 +1,6 @@
 #include "engine/level/settings_reader.hpp"
-#include "engine/level/setting_fields.hpp"
-#include "engine/method_presets.hpp"
+#include "engine/settings/method_presets.hpp"
+#include "engine/settings/setting_fields.hpp"
 #include <cstddef>
 
 namespace wadi {

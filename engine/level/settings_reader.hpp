@@ -1,8 +1,8 @@
 // The settings of a level file: grid, time step, material, method, sides, sources, rain, edits, effects.
 #pragma once
 #include "engine/image/map.hpp"
-#include "engine/include/wadi/settings.hpp"
 #include "engine/level/json_reader.hpp"
+#include "engine/settings/settings.hpp"
 #include <string>
 
 namespace wadi {

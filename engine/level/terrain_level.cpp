@@ -2,8 +2,8 @@
 #include "engine/level/frame.hpp"
 #include "engine/level/layers.hpp"
 #include "engine/level/level.hpp"
-#include "engine/level/setting_fields.hpp"
-#include "engine/level/text.hpp"
+#include "engine/settings/messages.hpp"
+#include "engine/settings/setting_fields.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

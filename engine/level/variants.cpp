@@ -1,5 +1,5 @@
 #include "engine/level/variants.hpp"
-#include "engine/level/text.hpp"
+#include "engine/settings/messages.hpp"
 
 namespace wadi {
 

@@ -1,8 +1,8 @@
 // Advice on a level that loads but would not do what its author expects. Each message has the numbers and what to change.
 // Rules and constants: NUMERICS.md sections 2.4b, 2.4d, 2.7, 2.8 and 4.
 #include "engine/level/level.hpp"
-#include "engine/level/setting_fields.hpp"
-#include "engine/level/text.hpp"
+#include "engine/settings/messages.hpp"
+#include "engine/settings/setting_fields.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

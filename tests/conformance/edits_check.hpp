@@ -1,6 +1,6 @@
 // Edits for apply_edits, and what they should do by their definition.
 #pragma once
-#include "engine/edits.hpp"
+#include "engine/edits/edits.hpp"
 #include "tests/conformance/stage_checks.hpp"
 
 namespace wadi::conformance {

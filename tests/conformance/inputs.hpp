@@ -1,7 +1,7 @@
 // Inputs of the cases: grids, scenes and choices of method, by the names that case strings use.
 #pragma once
 #include "engine/compute/status.hpp"
-#include "engine/include/wadi/settings.hpp"
+#include "engine/settings/settings.hpp"
 #include <cstdint>
 #include <span>
 #include <string>

@@ -1,5 +1,5 @@
 // Layer 4: what must hold in any scene after many steps.
-#include "engine/world_params.hpp"
+#include "engine/step/world_params.hpp"
 #include "tests/conformance/compare.hpp"
 #include "tests/conformance/half_turn.hpp"
 #include "tests/conformance/masks.hpp"

@@ -1,6 +1,6 @@
 #include "tests/conformance/masks.hpp"
-#include "engine/effects.hpp"
-#include "engine/step_plan.hpp"
+#include "engine/settings/effects.hpp"
+#include "engine/step/step_plan.hpp"
 #include <algorithm>
 #include <bit>
 #include <map>

@@ -1,7 +1,7 @@
 #include "tests/conformance/pass_runner.hpp"
-#include "engine/half.hpp"
-#include "engine/step_inputs.hpp"
-#include "engine/world_params.hpp"
+#include "engine/step/half.hpp"
+#include "engine/step/step_inputs.hpp"
+#include "engine/step/world_params.hpp"
 #include <algorithm>
 #include <cmath>
 

@@ -1,7 +1,7 @@
 // What most of the suite includes, for CMake to precompile. A file includes what it uses all the same: preset dev compiles
 // without.
 #pragma once
-#include "engine/world_params.hpp"
+#include "engine/step/world_params.hpp"
 #include "tests/conformance/case.hpp"
 #include "tests/conformance/worlds.hpp"
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "engine/method_presets.hpp"
+#include "engine/settings/method_presets.hpp"
 #include "tests/fuzz/fuzz_case.hpp"
 #include "tests/fuzz/random.hpp"
 #include <algorithm>

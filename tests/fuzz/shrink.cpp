@@ -1,5 +1,5 @@
 // Greedy: whatever can go without the failure going stays away.
-#include "engine/level/setting_fields.hpp"
+#include "engine/settings/setting_fields.hpp"
 #include "tests/fuzz/checks.hpp"
 #include <chrono>
 #include <functional>

@@ -1,6 +1,6 @@
 // Half storage (NUMERICS 2.17): rounding to nearest, the same bits however a step is run, exact mass, rest, and what it costs in
 // accuracy and saves in memory.
-#include "engine/half.hpp"
+#include "engine/step/half.hpp"
 #include "tests/support/worlds.hpp"
 #include <cmath>
 #include <doctest/doctest.h>
@@ -11,7 +11,7 @@ using namespace wadi::test;
 namespace {
 
 namespace narrow {
-#include "shaders/stage_cpp.h"
+#include "shaders/language/stage_cpp.h"
 }
 
 Scene halved(Scene scene) {

@@ -11,7 +11,7 @@ using namespace wadi::test;
 namespace {
 namespace stage {
 // The prelude first.
-#include "shaders/stage_cpp.h"
+#include "shaders/language/stage_cpp.h"
 
 #include "shaders/physics/strain.glsl"
 } // namespace stage

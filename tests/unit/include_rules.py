@@ -6,12 +6,25 @@ import sys
 
 # folder -> prefixes that its files may include; the longest matching folder decides. "<...>" headers are checked by LIBRARIES.
 RULES = {
-    "shaders": ["../physics/", "effects.h", "step_params.h", "stage_", "division_", "half_"],
-    "shaders/tools": ["engine/compute/stage_table.hpp", "engine/effects.hpp"],
-    "engine": ["engine/", "shaders/step_params.h", "shaders/effects.h"],
+    "shaders": [],
+    "shaders/stages": ["../../physics/"],
+    "shaders/physics": ["../physics/"],
+    "shaders/language": ["../effects.h", "../step_params.h"],
+    "shaders/stagec": ["engine/compute/stage_table.hpp", "engine/settings/effects.hpp"],
+    # The rooms of the engine, floor by floor; the facade in the hall includes all of them.
+    "engine": ["engine/"],
+    "engine/compute": ["engine/compute/", "shaders/step_params.h", "shaders/effects.h"],
+    "engine/settings": ["engine/settings/", "engine/compute/"],
+    "engine/image": ["engine/image/", "engine/compute/"],
+    "engine/level": ["engine/level/", "engine/image/", "engine/settings/", "engine/compute/"],
+    "engine/step": ["engine/step/", "engine/settings/", "engine/compute/"],
+    "engine/saves": ["engine/saves/", "engine/step/", "engine/settings/", "engine/compute/"],
+    "engine/edits": ["engine/edits/", "engine/saves/", "engine/step/", "engine/settings/", "engine/compute/"],
+    "engine/frames": ["engine/frames/", "engine/step/", "engine/settings/", "engine/compute/"],
+    "engine/reads": ["engine/reads/", "engine/step/", "engine/settings/", "engine/compute/"],
     "backends/cpu": ["backends/cpu/", "engine/compute/"],
-    "backends/vulkan": ["backends/vulkan/", "engine/compute/", "volk.h", "self_test.inc", "division_", "half_"],
-    "backends/cuda": ["backends/cuda/", "engine/compute/", "shaders/", "stage_cuda.h"],
+    "backends/vulkan": ["backends/vulkan/", "engine/compute/", "volk.h", "self_test.inc", "language/"],
+    "backends/cuda": ["backends/cuda/", "engine/compute/", "shaders/", "language/"],
     "backends": ["backends/", "engine/compute/"],
     "plugin": ["plugin/", "engine/", "wadi/"],
     "samples/recorder": ["wadi/", "samples/recorder/", ""],
@@ -47,29 +60,89 @@ def breaches(root, path):
             if name.startswith(library) and not relative.startswith(tuple(u + "/" for u in users)):
                 yield f"{where}: only {', '.join(users)} may use it"
         if kind == '"' and folder is not None and relative.startswith(tuple(RULES)):
-            local = (path.parent / name).is_file() and "/" not in name and (relative.startswith("shaders/tools/") or not relative.startswith("shaders/"))
+            local = (path.parent / name).is_file() and "/" not in name and not relative.startswith("shaders/stages/")
             if not local and not any(name.startswith(p) for p in RULES[folder]):
                 yield f"{where}: {folder} may include only {', '.join(RULES[folder])}"
 
 
+def arrows(root, files):
+    """(including file, included file) of the project's own files."""
+    for path in files:
+        for line in path.read_text(encoding="utf-8").splitlines():
+            found = INCLUDE.match(line)
+            if not found or found.group(1) != '"':
+                continue
+            for target in (path.parent / found.group(2), root / found.group(2), root / "shaders" / found.group(2)):
+                if target.is_file():
+                    yield path.relative_to(root).as_posix(), target.resolve().relative_to(root.resolve()).as_posix()
+                    break
+
+
+def circle(edges):
+    """A circle of arrows as a list of names, or nothing."""
+    graph = {}
+    for a, b in edges:
+        if a != b:
+            graph.setdefault(a, set()).add(b)
+    done, way = set(), []
+
+    def visit(name):
+        if name in way:
+            return way[way.index(name):] + [name]
+        if name in done:
+            return None
+        way.append(name)
+        for following in sorted(graph.get(name, ())):
+            found = visit(following)
+            if found:
+                return found
+        way.pop()
+        done.add(name)
+        return None
+
+    for name in sorted(graph):
+        found = visit(name)
+        if found:
+            return found
+    return None
+
+
+def room(name):
+    """The folder of a file; a folder of stages or of one backend is a room like one of the engine."""
+    return name.rsplit("/", 1)[0]
+
+
 def check(root):
     files = [p for top in ("engine", "backends", "shaders", "plugin", "samples", "tests") for p in sorted((root / top).rglob("*")) if p.suffix in SOURCES]
-    return files, [b for p in files for b in breaches(root, p)]
+    found = [b for p in files for b in breaches(root, p)]
+    edges = list(arrows(root, files))
+    product = [(a, b) for a, b in edges if a.startswith(("engine/", "backends/", "plugin/"))]
+    for what, around in (("files", circle(edges)), ("rooms", circle((room(a), room(b)) for a, b in product))):
+        if around:
+            found.append(f"a circle of {what}: " + " > ".join(around))
+    return files, found
 
 
 def main():
     root = pathlib.Path(sys.argv[1]).resolve()
     files, found = check(root)
-    # Negative control: the checker must see a planted breach.
+    # Negative controls: planted breaches must be seen.
     import tempfile
 
     with tempfile.TemporaryDirectory() as folder:
-        planted = pathlib.Path(folder)
-        (planted / "engine").mkdir()
-        (planted / "engine" / "bad.cpp").write_text('#include "backends/cpu/cpu_device.hpp"\n#include <vulkan/vulkan.h>\n')
-        if len(check(planted)[1]) < 3:
-            print("the checker does not see a planted breach")
-            return 1
+        planted = pathlib.Path(folder).resolve()
+        for name, text in {
+            "engine/bad.cpp": '#include "backends/cpu/device.hpp"\n#include <vulkan/vulkan.h>\n',
+            "engine/settings/upward.hpp": '#include "engine/step/below.hpp"\n',
+            "engine/step/below.hpp": '#include "engine/settings/upward.hpp"\n',
+        }.items():
+            (planted / name).parent.mkdir(parents=True, exist_ok=True)
+            (planted / name).write_text(text)
+        seen = "\n".join(check(planted)[1])
+        for sign in ("only backends may name a backend", "only backends/vulkan", "engine/settings may include only", "circle of files", "circle of rooms"):
+            if sign not in seen:
+                print(f"the checker does not see a planted breach: {sign}")
+                return 1
     for breach in found:
         print(breach)
     print(f"{len(files)} files, {len(found)} breaches")

@@ -1,6 +1,6 @@
 // Inputs that a libFuzzer target of tests/fuzz/targets once failed on. The sanitizer presets see what these runs must not do.
-#include "engine/command_log.hpp"
-#include "engine/sealed_bytes.hpp"
+#include "engine/edits/command_log.hpp"
+#include "engine/saves/sealed_bytes.hpp"
 #include <doctest/doctest.h>
 
 using namespace wadi;

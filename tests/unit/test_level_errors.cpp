@@ -1,5 +1,5 @@
 // engine/level: every class of wrong level file, and random damage.
-#include "engine/level/text.hpp"
+#include "engine/settings/messages.hpp"
 #include "tests/unit/level_text.hpp"
 #include "tests/unit/map_files.hpp"
 #include <doctest/doctest.h>

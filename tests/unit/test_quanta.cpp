@@ -1,4 +1,4 @@
-#include "engine/quanta.hpp"
+#include "engine/step/quanta.hpp"
 #include <doctest/doctest.h>
 #include <limits>
 

@@ -1,5 +1,5 @@
-// validate() and TimeSeries of engine/include/wadi/settings.hpp.
-#include "engine/level/setting_fields.hpp"
+// validate() and TimeSeries of engine/settings/settings.hpp.
+#include "engine/settings/setting_fields.hpp"
 #include "tests/unit/level_text.hpp"
 #include <cmath>
 #include <doctest/doctest.h>

@@ -1,5 +1,5 @@
 // StepClock against exact division, for periods that are no whole number of nanoseconds.
-#include "engine/step_clock.hpp"
+#include "engine/frames/step_clock.hpp"
 #include <cmath>
 #include <doctest/doctest.h>
 #include <initializer_list>

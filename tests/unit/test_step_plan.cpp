@@ -1,6 +1,6 @@
 // Effects decide which passes and buffers exist: checked for every legal mask.
-#include "engine/effects.hpp"
-#include "engine/step_plan.hpp"
+#include "engine/settings/effects.hpp"
+#include "engine/step/step_plan.hpp"
 #include "tests/support/worlds.hpp"
 #include <algorithm>
 #include <doctest/doctest.h>

@@ -1,9 +1,9 @@
 // libFuzzer: whatever bytes a reader gets, it returns a value or an error. One program per reader: -DTARGET=level, png, npy, asc,
 // r16, snapshot or commands.
-#include "engine/command_log.hpp"
+#include "engine/edits/command_log.hpp"
 #include "engine/image/map.hpp"
 #include "engine/level/level.hpp"
-#include "engine/sealed_bytes.hpp"
+#include "engine/saves/sealed_bytes.hpp"
 #include "engine/world.hpp"
 #include <cstdlib>
 #include <memory>

@@ -1,0 +1,43 @@
+// Running a stage over the active tiles of a step, and finding out in which of them it changed a bit.
+#pragma once
+#include "backends/cpu/stages.hpp"
+#include "engine/compute/stage_table.hpp"
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace wadi::cpu {
+
+/// A stage with its buffers, and the lists of compute::ActiveTiles.
+struct ActiveStage {
+    /// Numbers of `size` bytes that the stage writes; a count has its low words for in and out at i and i + 2 rim
+    /// (account_sides).
+    struct Output {
+        std::byte* data;
+        std::size_t size;
+        bool count;
+    };
+    static constexpr std::size_t most_outputs = 16;
+
+    std::uint32_t* activity = nullptr; // null: no active tiles
+    const std::uint32_t* flags = nullptr;
+    const std::uint32_t* counts = nullptr;
+    bool rim = false;
+    std::vector<Output> outputs;
+};
+
+/// What a run of a stage hands to its block.
+struct StageCall {
+    StageBlock block;
+    void* const* buffers;
+    const unsigned long* sizes;
+    const WorldParams& params;
+    const StepInput& input;
+    compute::Range2 range;
+    void operator()(int i0, int i1, int j0, int j1) const { block(buffers, sizes, &params, &input, i0, i1, j0, j1); }
+};
+
+/// Rows [first, last) of the call's range, where they lie in active tiles. Threads may share a tile.
+void run_active(const ActiveStage& stage, const StageCall& call, int first, int last);
+
+} // namespace wadi::cpu

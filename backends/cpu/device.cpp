@@ -1,0 +1,403 @@
+#include "backends/cpu/device.hpp"
+#include "backends/cpu/backend.hpp"
+#include "backends/cpu/host_memory.hpp"
+#include "engine/compute/hazards.hpp"
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <exception>
+#include <functional>
+#include <new>
+
+namespace wadi::cpu {
+
+namespace {
+
+constexpr std::size_t most_in_flight = 64;
+constexpr std::size_t kept_timings = 64;
+constexpr std::int64_t small_pass = 8192; // cells below which a second thread costs more than it gives
+
+std::int64_t area(const compute::Range2& r) { return std::int64_t{std::max(0, r.i1 - r.i0)} * std::max(0, r.j1 - r.j0); }
+
+} // namespace
+
+CpuDevice::CpuDevice(const InstructionSet& set, int threads, const compute::DeviceOptions& options)
+    : set_(set), pool_(threads), full_barriers_(options.full_barriers) {
+    capabilities_.backend = "cpu";
+    capabilities_.name = processor_name();
+    capabilities_.driver = std::string(set.name) + ", " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
+    capabilities_.kind = compute::DeviceKind::cpu;
+    capabilities_.memory_bytes = physical_memory();
+    capabilities_.largest_buffer_bytes = capabilities_.memory_bytes;
+    capabilities_.exact_float = true;
+    capabilities_.timestamps = true;
+    capabilities_.half_storage = true;
+    capabilities_.fused_stages = true;
+    capabilities_.queue_depth = most_in_flight;
+    runner_ = std::thread([this] { device_thread(); });
+}
+
+CpuDevice::~CpuDevice() {
+    {
+        const std::lock_guard lock(mutex_);
+        stop_ = true;
+    }
+    changed_.notify_all();
+    runner_.join();
+}
+
+Status CpuDevice::check_lost() const {
+    return lost_ ? error(Code::device_lost, "the CPU device was lost (injected)") : ok_status();
+}
+
+CpuDevice::Memory* CpuDevice::find(compute::Buffer buffer) {
+    const auto found = buffers_.find(buffer.id);
+    return found == buffers_.end() ? nullptr : &found->second;
+}
+
+Status CpuDevice::check_range(const Memory& memory, std::uint64_t offset, std::uint64_t bytes) const {
+    if (offset > memory.bytes || bytes > memory.bytes - offset) {
+        return error(Code::bad_argument, "buffer '" + memory.label + "' has " + std::to_string(memory.bytes) + " bytes; " +
+                                             std::to_string(bytes) + " at offset " + std::to_string(offset) + " do not fit");
+    }
+    return ok_status();
+}
+
+Result<compute::Buffer> CpuDevice::create_buffer(const compute::BufferDesc& desc) {
+    if (auto status = check_lost(); !status) return status;
+    if (desc.bytes == 0) return error(Code::bad_argument, "buffer '" + desc.label + "' has 0 bytes");
+    if (capabilities_.largest_buffer_bytes != 0 && desc.bytes > capabilities_.largest_buffer_bytes) {
+        return error(Code::bad_argument, "buffer '" + desc.label + "' has " + std::to_string(desc.bytes) +
+                                             " bytes, more than the largest, " +
+                                             std::to_string(capabilities_.largest_buffer_bytes));
+    }
+    // Operating systems promise more memory than they have; refuse before a page fault kills the host.
+    const std::uint64_t limit = capabilities_.memory_bytes / 10 * 9;
+    if (capabilities_.memory_bytes != 0 && (desc.bytes > limit || allocated_ > limit - desc.bytes)) {
+        return error(Code::out_of_memory, "buffer '" + desc.label + "': " + std::to_string(desc.bytes >> 20) +
+                                              " MiB more than the " + std::to_string(limit >> 20) +
+                                              " MiB that this machine can give");
+    }
+    // Fields start 64 bytes apart modulo 4 KiB: equal offsets in many arrays would share cache sets.
+    const std::size_t stagger = 64 * (next_buffer_ % 64);
+    Memory memory;
+    memory.block.reset(new (std::nothrow) std::byte[desc.bytes + 64 + stagger]());
+    if (!memory.block)
+        return error(Code::out_of_memory, "buffer '" + desc.label + "': no memory for " + std::to_string(desc.bytes) + " bytes");
+    const auto address = reinterpret_cast<std::uintptr_t>(memory.block.get());
+    memory.data = memory.block.get() + ((64 - address % 64) % 64) + stagger;
+    memory.bytes = desc.bytes;
+    memory.label = desc.label;
+    memory.host = desc.host != compute::HostAccess::none;
+    allocated_ += desc.bytes;
+    ++counters_.allocations;
+    const compute::Buffer handle{next_buffer_++};
+    buffers_.emplace(handle.id, std::move(memory));
+    return handle;
+}
+
+std::span<std::byte> CpuDevice::mapped(compute::Buffer buffer) {
+    auto* memory = find(buffer);
+    return memory != nullptr && memory->host ? std::span(memory->data, memory->bytes) : std::span<std::byte>{};
+}
+
+Result<compute::NativeBuffer> CpuDevice::native(compute::Buffer buffer) {
+    const auto* memory = find(buffer);
+    if (memory == nullptr) return error(Code::bad_argument, "native: no buffer has the handle " + std::to_string(buffer.id));
+    return compute::NativeBuffer{compute::NativeBuffer::Kind::host_pointer, reinterpret_cast<std::uintptr_t>(memory->data),
+                                 memory->bytes};
+}
+
+void CpuDevice::destroy_buffer(compute::Buffer buffer) {
+    if (buffer.id == 0) return;
+    drain();
+    if (const auto* memory = find(buffer)) allocated_ -= memory->bytes;
+    buffers_.erase(buffer.id);
+}
+
+void CpuDevice::drain() {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return done_ == submitted_; });
+}
+
+Status CpuDevice::write(compute::Buffer buffer, std::uint64_t offset, std::span<const std::byte> bytes) {
+    if (auto status = check_lost(); !status) return status;
+    auto* memory = find(buffer);
+    if (memory == nullptr) return error(Code::bad_argument, "write to a buffer that does not exist");
+    if (auto status = check_range(*memory, offset, bytes.size()); !status) return status;
+    drain();
+    std::ranges::copy(bytes, memory->data + offset);
+    return ok_status();
+}
+
+Status CpuDevice::read(compute::Buffer buffer, std::uint64_t offset, std::span<std::byte> bytes) {
+    if (auto status = check_lost(); !status) return status;
+    const auto* memory = find(buffer);
+    if (memory == nullptr) return error(Code::bad_argument, "read of a buffer that does not exist");
+    if (auto status = check_range(*memory, offset, bytes.size()); !status) return status;
+    drain();
+    if (auto status = check_lost(); !status) return status;
+    std::copy_n(memory->data + offset, bytes.size(), bytes.data());
+    return ok_status();
+}
+
+Result<compute::Pipeline> CpuDevice::create_pipeline(int stage, std::uint32_t effects, compute::GroupSize) {
+    if (auto status = check_lost(); !status) return status;
+    const auto table = compute::stage_table();
+    if (stage < 0 || static_cast<std::size_t>(stage) >= table.size())
+        return error(Code::bad_argument, "no stage with index " + std::to_string(stage));
+    const std::uint32_t mask = effects & table[static_cast<std::size_t>(stage)].tested_effects;
+    auto& id = pipeline_ids_[{stage, mask}];
+    if (id == 0) {
+        const auto block = set_.select[stage](mask);
+        if (block == nullptr) {
+            return error(Code::internal, "stage " + std::string(table[static_cast<std::size_t>(stage)].name) +
+                                             " has no code for the effects " + std::to_string(mask));
+        }
+        pipelines_.push_back({stage, mask, block});
+        id = static_cast<std::uint32_t>(pipelines_.size());
+    }
+    return compute::Pipeline{id};
+}
+
+Result<compute::Program> CpuDevice::compile(const compute::ProgramBuilder& builder, const WorldParams& params) {
+    if (auto status = check_lost(); !status) return status;
+    if (auto status = compute::validate(builder); !status) return status;
+    auto recorded = std::make_unique<Recorded>();
+    recorded->params = params;
+    const auto barriers = compute::plan_barriers(builder.ops());
+    std::int64_t largest = 0;
+    for (std::size_t n = 0; n < builder.ops().size(); ++n) {
+        const auto& op = builder.ops()[n];
+        Step step;
+        step.barrier_before = barriers[n] || full_barriers_;
+        if (const auto* d = std::get_if<compute::Dispatch>(&op)) {
+            if (d->pipeline.id > pipelines_.size())
+                return error(Code::bad_argument, "'" + d->label + "': pipeline does not exist");
+            const auto& pipeline = pipelines_[d->pipeline.id - 1];
+            const auto& stage = compute::stage_table()[static_cast<std::size_t>(d->stage)];
+            if (pipeline.stage != d->stage || pipeline.mask != (d->effects & stage.tested_effects)) {
+                return error(Code::bad_argument, "'" + d->label + "': the pipeline is of another stage or of other effects");
+            }
+            step.block = pipeline.block;
+            const auto& bindings = stage.bindings;
+            for (std::size_t b = 0; b < bindings.size(); ++b) {
+                const bool on = (d->effects & bindings[b].condition) == bindings[b].condition;
+                auto* memory = on ? find(d->slots[b]) : nullptr;
+                if (on && memory == nullptr)
+                    return error(Code::bad_argument,
+                                 "'" + d->label + "': the buffer of " + std::string(bindings[b].name) + " does not exist");
+                if (on && memory->host)
+                    return error(Code::bad_argument, "'" + d->label + "': " + compute::only_copies(memory->label));
+                step.buffers.push_back(on ? memory->data : nullptr);
+                step.sizes.push_back(on ? memory->bytes : 0);
+            }
+            step.range = d->range;
+            step.rows_per_grab = std::max(1, (d->range.j1 - d->range.j0) / (8 * pool_.size()));
+            if (d->tiles.on()) {
+                if (auto status = set_active(*d, stage, params, step); !status) return status;
+            }
+            largest = std::max(largest, area(d->range));
+        } else if (const auto* copy = std::get_if<compute::Copy>(&op)) {
+            auto* from = find(copy->from);
+            auto* to = find(copy->to);
+            if (from == nullptr || to == nullptr)
+                return error(Code::bad_argument, "program '" + builder.label() + "': copy of a buffer that does not exist");
+            if (auto status = check_range(*from, copy->from_offset, copy->bytes); !status) return status;
+            if (auto status = check_range(*to, copy->to_offset, copy->bytes); !status) return status;
+            step.from = from->data + copy->from_offset;
+            step.to = to->data + copy->to_offset;
+            step.bytes = copy->bytes;
+        } else if (const auto* fill = std::get_if<compute::Fill>(&op)) {
+            auto* to = find(fill->buffer);
+            if (to == nullptr)
+                return error(Code::bad_argument, "program '" + builder.label() + "': fill of a buffer that does not exist");
+            if (to->host)
+                return error(Code::bad_argument, "program '" + builder.label() + "': " + compute::only_copies(to->label));
+            step.to = to->data;
+            step.bytes = to->bytes / 4 * 4;
+            step.word = fill->word;
+        } else if (const auto* stamp = std::get_if<compute::Timestamp>(&op)) {
+            step.timestamp = static_cast<int>(recorded->timestamp_labels.size());
+            recorded->timestamp_labels.push_back(stamp->label);
+        }
+        recorded->steps.push_back(std::move(step));
+    }
+    recorded->small = largest < small_pass;
+    recorded->progress = std::make_unique<Progress[]>(std::max<std::size_t>(1, recorded->steps.size()));
+    ++counters_.recordings;
+    const compute::Program handle{next_program_++};
+    programs_.emplace(handle.id, std::move(recorded));
+    return handle;
+}
+
+Status CpuDevice::set_active(const compute::Dispatch& d, const compute::StageInfo& stage, const WorldParams& params, Step& step) {
+    const auto words = [&](compute::Buffer buffer) -> std::uint32_t* {
+        auto* memory = find(buffer);
+        return memory == nullptr || memory->host ? nullptr : reinterpret_cast<std::uint32_t*>(memory->data);
+    };
+    auto& active = step.active;
+    active.activity = words(d.tiles.activity);
+    active.flags = words(d.tiles.flags);
+    active.counts = words(d.tiles.counts);
+    if (active.activity == nullptr || active.flags == nullptr || active.counts == nullptr || params.tile_size < 1)
+        return error(Code::bad_argument, "'" + d.label + "': active tiles without their lists");
+    active.rim = stage.extent == compute::Extent::rim;
+    for (std::size_t b = 0; b < stage.bindings.size(); ++b) {
+        if (stage.bindings[b].access == compute::Access::in || step.buffers[b] == nullptr) continue;
+        const bool half = stage.bindings[b].type == compute::Scalar::f32_or_f16 && (d.effects & EFFECT_HALF_STORAGE) != 0;
+        active.outputs.push_back(
+            {static_cast<std::byte*>(step.buffers[b]), half ? 2u : 4u, stage.bindings[b].type == compute::Scalar::u32});
+    }
+    if (active.outputs.size() > ActiveStage::most_outputs)
+        return error(Code::internal,
+                     "'" + d.label + "' writes more than " + std::to_string(ActiveStage::most_outputs) + " buffers");
+    step.rows_per_grab = std::min(step.rows_per_grab, params.tile_size);
+    return ok_status();
+}
+
+void CpuDevice::destroy_program(compute::Program program) {
+    if (program.id == 0) return;
+    drain();
+    programs_.erase(program.id);
+}
+
+Result<compute::Ticket> CpuDevice::submit(compute::Program program, const StepInput& input) {
+    if (auto status = check_lost(); !status) return status;
+    const auto found = programs_.find(program.id);
+    if (found == programs_.end()) return error(Code::bad_argument, "submit of a program that does not exist");
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return queue_.size() < most_in_flight; });
+    queue_.push_back({submitted_ + 1, found->second.get(), input}); // may throw: nothing is counted then
+    ++submitted_;
+    ++counters_.submits;
+    lock.unlock();
+    changed_.notify_all();
+    return compute::Ticket{submitted_};
+}
+
+bool CpuDevice::finished(compute::Ticket ticket) {
+    const std::lock_guard lock(mutex_);
+    return done_ >= ticket.value;
+}
+
+Status CpuDevice::wait(compute::Ticket ticket) {
+    {
+        std::unique_lock lock(mutex_);
+        changed_.wait(lock, [&] { return done_ >= std::min(ticket.value, submitted_); });
+    }
+    return check_lost();
+}
+
+Result<std::vector<compute::Timing>> CpuDevice::timings(compute::Ticket ticket) {
+    if (auto status = check_lost(); !status) return status;
+    const std::lock_guard lock(mutex_);
+    const auto found = timings_.find(ticket.value);
+    return found == timings_.end() ? std::vector<compute::Timing>{} : found->second;
+}
+
+void CpuDevice::device_thread() {
+    std::unique_lock lock(mutex_);
+    for (;;) {
+        changed_.wait(lock, [this] { return stop_ || !queue_.empty(); });
+        if (queue_.empty()) return;
+        const Submission next = queue_.front();
+        lock.unlock();
+        std::vector<compute::Timing> times;
+        if (!lost_) execute(*next.program, next.input, times);
+        lock.lock();
+        queue_.pop_front();
+        done_ = next.ticket;
+        if (!times.empty()) {
+            timings_[next.ticket] = std::move(times);
+            if (timings_.size() > kept_timings) timings_.erase(timings_.begin());
+        }
+        changed_.notify_all();
+    }
+}
+
+void CpuDevice::run_rows(Step& step, const WorldParams& params, const StepInput& input, int first, int last) {
+    if (step.active.activity != nullptr) {
+        run_active(step.active, {step.block, step.buffers.data(), step.sizes.data(), params, input, step.range}, first, last);
+    } else if (step.block != nullptr) {
+        step.block(step.buffers.data(), step.sizes.data(), &params, &input, step.range.i0, step.range.i1, step.range.j0 + first,
+                   step.range.j0 + last);
+    } else if (step.from != nullptr) {
+        std::memcpy(step.to, step.from, step.bytes);
+    } else if (step.to != nullptr) {
+        for (std::uint64_t at = 0; at < step.bytes; at += 4) std::memcpy(step.to + at, &step.word, 4);
+    }
+}
+
+// A barrier waits for rows, not for threads: one that the system has put aside holds nothing up but the rows it has taken.
+void CpuDevice::execute(Recorded& program, const StepInput& input, std::vector<compute::Timing>& timings) {
+    const std::size_t count = program.steps.size();
+    for (std::size_t n = 0; n < count; ++n) {
+        program.progress[n].next_row.store(0, std::memory_order_relaxed);
+        program.progress[n].rows.set(program.steps[n].rows());
+    }
+    std::vector<std::chrono::steady_clock::time_point> stamps(program.timestamp_labels.size());
+    const auto work = [&] {
+        std::size_t waited = 0; // all steps before this one are done
+        for (std::size_t n = 0; n < count; ++n) {
+            auto& step = program.steps[n];
+            auto& progress = program.progress[n];
+            // A stamp is a step of its own between two barriers: nobody works on what it would then miss.
+            const bool stamp = step.timestamp >= 0, behind_stamp = n > 0 && program.steps[n - 1].timestamp >= 0;
+            if (step.barrier_before || stamp || behind_stamp) {
+                for (; waited < n; ++waited) program.progress[waited].rows.wait();
+            }
+            const int rows = step.rows();
+            for (;;) {
+                const int first = progress.next_row.fetch_add(step.rows_per_grab, std::memory_order_relaxed);
+                if (first >= rows) break;
+                const int last = std::min(rows, first + step.rows_per_grab);
+                if (stamp) {
+                    stamps[static_cast<std::size_t>(step.timestamp)] = std::chrono::steady_clock::now();
+                } else {
+                    run_rows(step, program.params, input, first, last);
+                }
+                progress.rows.finish(last - first);
+            }
+        }
+        for (; waited < count; ++waited) program.progress[waited].rows.wait();
+    };
+    if (program.small || pool_.size() == 1) {
+        work();
+    } else {
+        pool_.run(std::ref(work)); // allocates nothing: nobody could catch it here
+    }
+    for (std::size_t n = 1; n < stamps.size(); ++n) {
+        timings.push_back(
+            {program.timestamp_labels[n], std::chrono::duration<double, std::milli>(stamps[n] - stamps[n - 1]).count()});
+    }
+}
+
+const compute::Backend& cpu_backend() {
+    static const compute::Backend backend = {
+        "cpu",
+        [](std::string&) {
+            return std::vector<compute::DeviceInfo>{{"cpu", 0, processor_name(), compute::DeviceKind::cpu, physical_memory()}};
+        },
+        [](int, const compute::DeviceOptions& options) -> Result<std::unique_ptr<compute::Device>> {
+            constexpr int most_threads = 256;
+            if (options.threads < 0 || options.threads > most_threads) {
+                return error(Code::bad_argument,
+                             "threads: " + std::to_string(options.threads) + " is outside 0 ... " + std::to_string(most_threads));
+            }
+            const auto* set = choose_instruction_set(options.instruction_set);
+            if (set == nullptr)
+                return error(Code::not_supported,
+                             "this processor or build has no instruction set '" + options.instruction_set + "'");
+            const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+            try {
+                return std::unique_ptr<compute::Device>(
+                    new CpuDevice(*set, options.threads == 0 ? std::min(cores, most_threads) : options.threads, options));
+            } catch (const std::exception& e) { // the system refuses threads or memory
+                return error(Code::out_of_memory, std::string("the CPU device cannot start: ") + e.what());
+            }
+        }};
+    return backend;
+}
+
+} // namespace wadi::cpu

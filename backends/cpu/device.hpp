@@ -1,0 +1,118 @@
+// The compute interface on the CPU's own threads. submit() queues and returns; one device thread runs the queue in order and
+// shares each pass with the pool.
+#pragma once
+#include "backends/cpu/active_tiles.hpp"
+#include "backends/cpu/thread_pool.hpp"
+#include "engine/compute/device.hpp"
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <thread>
+
+namespace wadi::cpu {
+
+class CpuDevice final : public compute::Device {
+  public:
+    CpuDevice(const InstructionSet& set, int threads, const compute::DeviceOptions& options);
+    ~CpuDevice() override;
+
+    const compute::Capabilities& capabilities() const override { return capabilities_; }
+    compute::DeviceCounters counters() const override { return counters_; }
+    Result<compute::Buffer> create_buffer(const compute::BufferDesc& desc) override;
+    std::span<std::byte> mapped(compute::Buffer buffer) override;
+    void destroy_buffer(compute::Buffer buffer) override;
+    Status write(compute::Buffer buffer, std::uint64_t offset, std::span<const std::byte> bytes) override;
+    Status read(compute::Buffer buffer, std::uint64_t offset, std::span<std::byte> bytes) override;
+    Result<compute::Pipeline> create_pipeline(int stage, std::uint32_t effects, compute::GroupSize group) override;
+    Result<compute::Program> compile(const compute::ProgramBuilder& builder, const WorldParams& params) override;
+    void destroy_program(compute::Program program) override;
+    Result<compute::Ticket> submit(compute::Program program, const StepInput& input) override;
+    bool finished(compute::Ticket ticket) override;
+    Status wait(compute::Ticket ticket) override;
+    Result<std::vector<compute::Timing>> timings(compute::Ticket ticket) override;
+    Result<compute::NativeBuffer> native(compute::Buffer buffer) override;
+    void inject_device_lost() override { lost_ = true; }
+
+  private:
+    struct Memory {
+        std::unique_ptr<std::byte[]> block;
+        std::byte* data = nullptr; // 64-byte aligned, staggered
+        std::uint64_t bytes = 0;
+        std::string label;
+        bool host = false; // for upload or readback
+    };
+    /// One operation, ready to run.
+    struct Step {
+        StageBlock block = nullptr; // null for copies and fills
+        std::vector<void*> buffers;
+        std::vector<unsigned long> sizes;
+        compute::Range2 range{};
+        ActiveStage active;
+        int rows_per_grab = 1;
+        std::byte* from = nullptr; // copy
+        std::byte* to = nullptr;   // copy and fill
+        std::uint64_t bytes = 0;
+        std::uint32_t word = 0;
+        bool barrier_before = false;
+        int timestamp = -1;
+        /// Shares of the work that threads take: rows, or one.
+        int rows() const { return block != nullptr ? range.j1 - range.j0 : 1; }
+    };
+    /// How far one execution of a step has come.
+    struct Progress {
+        std::atomic<int> next_row{0}; // the first that nobody has taken yet
+        Remaining rows;
+    };
+    struct Recorded {
+        WorldParams params{};
+        std::vector<Step> steps;
+        std::vector<std::string> timestamp_labels;
+        std::unique_ptr<Progress[]> progress; // per step
+        bool small = false;                   // not worth waking other threads for
+    };
+    struct CpuPipeline {
+        int stage;
+        std::uint32_t mask; // of the stage's tested effects
+        StageBlock block;
+    };
+    struct Submission {
+        std::uint64_t ticket;
+        Recorded* program;
+        StepInput input;
+    };
+
+    Status check_lost() const;
+    Memory* find(compute::Buffer buffer);
+    Status check_range(const Memory& memory, std::uint64_t offset, std::uint64_t bytes) const;
+    void drain();
+    void device_thread();
+    void execute(Recorded& program, const StepInput& input, std::vector<compute::Timing>& timings);
+    /// Errors: bad_argument (a list that does not exist).
+    Status set_active(const compute::Dispatch& dispatch, const compute::StageInfo& stage, const WorldParams& params, Step& step);
+    static void run_rows(Step& step, const WorldParams& params, const StepInput& input, int first, int last);
+
+    const InstructionSet& set_;
+    ThreadPool pool_;
+    const bool full_barriers_;
+    compute::Capabilities capabilities_;
+    compute::DeviceCounters counters_;
+    std::atomic<bool> lost_{false};
+    std::map<std::uint32_t, Memory> buffers_;
+    std::map<std::pair<int, std::uint32_t>, std::uint32_t> pipeline_ids_;
+    std::vector<CpuPipeline> pipelines_; // by id - 1
+    std::map<std::uint32_t, std::unique_ptr<Recorded>> programs_;
+    std::uint32_t next_buffer_ = 1, next_program_ = 1;
+    std::uint64_t allocated_ = 0;
+
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    std::deque<Submission> queue_;
+    std::uint64_t submitted_ = 0, done_ = 0;
+    bool stop_ = false;
+    std::map<std::uint64_t, std::vector<compute::Timing>> timings_; // of the last submissions that had any
+    std::thread runner_;
+};
+
+} // namespace wadi::cpu

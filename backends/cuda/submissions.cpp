@@ -1,0 +1,80 @@
+#include "backends/cuda/submissions.hpp"
+
+namespace wadi::cuda {
+
+Status Submissions::open() {
+    c_.capabilities.queue_depth = ring;
+    auto input = allocate(c_, sizeof(StepInput), "step input");
+    if (!input) return input.status();
+    input_ = std::move(*input);
+    void* staging = nullptr;
+    const cudaError_t r = cudaHostAlloc(&staging, ring * sizeof(StepInput), cudaHostAllocDefault);
+    if (Status s = c_.check(r, "cudaHostAlloc", "step inputs"); !s) return s;
+    staging_ = static_cast<StepInput*>(staging);
+    for (Slot& slot : slots_) {
+        const cudaError_t made = cudaEventCreateWithFlags(&slot.done, cudaEventDisableTiming);
+        if (Status s = c_.check(made, "cudaEventCreateWithFlags"); !s) return s;
+    }
+    return ok_status();
+}
+
+Submissions::~Submissions() {
+    const CurrentContext current(c_);
+    for (const Slot& slot : slots_) {
+        if (slot.done != nullptr) c_.note(cudaEventDestroy(slot.done), "cudaEventDestroy");
+    }
+    if (staging_ != nullptr) c_.note(cudaFreeHost(staging_), "cudaFreeHost", "step inputs");
+    release(c_, input_);
+}
+
+Result<std::size_t> Submissions::acquire() {
+    const std::size_t slot = slot_of(last_ + 1);
+    if (Status s = wait({slots_[slot].ticket}); !s) return s;
+    return slot;
+}
+
+Status Submissions::begin(std::size_t slot, const StepInput& input) {
+    staging_[slot] = input;
+    const cudaError_t r = cudaMemcpyAsync(input_.data, &staging_[slot], sizeof(input), cudaMemcpyHostToDevice, c_.stream);
+    return c_.check(r, "cudaMemcpyAsync", input_.label);
+}
+
+Result<compute::Ticket> Submissions::finish(std::size_t index, compute::Program program) {
+    Slot& slot = slots_[index];
+    if (Status s = c_.check(cudaEventRecord(slot.done, c_.stream), "cudaEventRecord"); !s) return s;
+    ++c_.counters.submits;
+    slot.ticket = ++last_;
+    slot.program = program;
+    return compute::Ticket{last_};
+}
+
+Status Submissions::check_given_out(compute::Ticket ticket) const {
+    if (ticket.value <= last_) return ok_status();
+    return error(Code::bad_argument,
+                 "ticket " + std::to_string(ticket.value) + " was never given out; the newest is " + std::to_string(last_));
+}
+
+Result<bool> Submissions::finished(compute::Ticket ticket) {
+    if (Status s = check_given_out(ticket); !s) return s;
+    if (ticket.value <= finished_) return true;
+    const cudaError_t r = cudaEventQuery(slots_[slot_of(ticket.value)].done);
+    if (r == cudaErrorNotReady) return false;
+    if (Status s = c_.check(r, "cudaEventQuery"); !s) return s;
+    finished_ = ticket.value;
+    return true;
+}
+
+Status Submissions::wait(compute::Ticket ticket) {
+    if (Status s = check_given_out(ticket); !s) return s;
+    if (ticket.value <= finished_) return ok_status();
+    if (Status s = c_.check(cudaEventSynchronize(slots_[slot_of(ticket.value)].done), "waiting for a submission"); !s) return s;
+    finished_ = ticket.value;
+    return ok_status();
+}
+
+compute::Program Submissions::program_of(compute::Ticket ticket) const {
+    const Slot& slot = slots_[slot_of(ticket.value)];
+    return ticket.value != 0 && slot.ticket == ticket.value ? slot.program : compute::Program{};
+}
+
+} // namespace wadi::cuda

@@ -1,0 +1,50 @@
+// The ring of submissions in flight: tickets, their completion, and the input of each step.
+#pragma once
+#include "backends/cuda/memory.hpp"
+#include <array>
+
+namespace wadi::cuda {
+
+class Submissions {
+  public:
+    /// Submissions in flight at most; also the number of copies of anything that one submission must own.
+    static constexpr std::size_t ring = 32;
+
+    explicit Submissions(Context& context) : c_(context) {}
+    ~Submissions();
+    Submissions(const Submissions&) = delete;
+    Submissions& operator=(const Submissions&) = delete;
+    Status open();
+
+    /// Device address of the input of the step that runs.
+    const void* input() const { return input_.data; }
+    /// The ring slot of the next submission, once its previous occupant has finished.
+    Result<std::size_t> acquire();
+    /// Brings the input to the device, after everything submitted before. The slot's work follows on the stream, then finish().
+    Status begin(std::size_t slot, const StepInput& input);
+    Result<compute::Ticket> finish(std::size_t slot, compute::Program program);
+
+    /// Errors: bad_argument (a ticket that was never given out), device_lost.
+    Result<bool> finished(compute::Ticket ticket);
+    Status wait(compute::Ticket ticket);
+    /// The program that a ticket ran; null once its slot is in use again.
+    compute::Program program_of(compute::Ticket ticket) const;
+    static std::size_t slot_of(std::uint64_t ticket) { return static_cast<std::size_t>(ticket % ring); }
+
+  private:
+    struct Slot {
+        cudaEvent_t done = nullptr;
+        compute::Program program;
+        std::uint64_t ticket = 0;
+    };
+    Status check_given_out(compute::Ticket ticket) const;
+
+    Context& c_;
+    Memory input_;
+    StepInput* staging_ = nullptr; // page-locked, one per slot
+    std::array<Slot, ring> slots_;
+    std::uint64_t last_ = 0;     // newest ticket given out
+    std::uint64_t finished_ = 0; // newest ticket known to have finished
+};
+
+} // namespace wadi::cuda

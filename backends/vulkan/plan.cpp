@@ -1,0 +1,263 @@
+#include "backends/vulkan/plan.hpp"
+#include "engine/compute/hazards.hpp"
+#include <algorithm>
+#include <map>
+
+namespace wadi::vulkan {
+namespace {
+
+using SetKey = std::pair<int, std::vector<std::uint32_t>>; // stage and the ids of its slots
+
+Kinds kinds_of(const compute::Op& op) {
+    return {std::holds_alternative<compute::Dispatch>(op),
+            std::holds_alternative<compute::Copy>(op) || std::holds_alternative<compute::Fill>(op)};
+}
+
+class Planner {
+  public:
+    Planner(const ProgramParts& parts, const compute::ProgramBuilder& builder, VkBuffer params, Plan& plan)
+        : p_(parts), c_(parts.context), builder_(builder), params_(params), plan_(plan) {}
+
+    Status run() {
+        if (Status s = create_sets(); !s) return s;
+        const auto& ops = builder_.ops();
+        const std::vector<bool> planned = compute::plan_barriers(ops);
+        Kinds before;
+        for (std::size_t n = 0; n < ops.size(); ++n) {
+            if (c_.options.full_barriers) {
+                constexpr Kinds all{.compute = true, .transfer = true};
+                plan_.commands.emplace_back(BarrierCommand{all, {.compute = true, .transfer = true, .indirect = true}});
+            } else if (planned[n] || reads_groups(ops[n])) {
+                Kinds after = kinds_until_barrier(ops, planned, n);
+                after.indirect = reads_groups(ops[n]);
+                if (!before.compute && !before.transfer) before.compute = true; // an earlier submission's
+                plan_.commands.emplace_back(BarrierCommand{before, after});
+            }
+            note_groups(ops[n]);
+            const Kinds kinds = kinds_of(ops[n]);
+            before = {before.compute || kinds.compute, before.transfer || kinds.transfer};
+            if (Status s = std::visit([&](const auto& op) { return add(op); }, ops[n]); !s) return s;
+        }
+        if (host_reads_) plan_.commands.emplace_back(BarrierCommand{{.transfer = true}, {.host = true}});
+        return ok_status();
+    }
+
+  private:
+    // A barrier names all kinds of commands ahead of it in the program, not only those since the previous barrier:
+    // so the last barrier ahead of an operation alone orders it after everything it conflicts with.
+    static Kinds kinds_until_barrier(const std::vector<compute::Op>& ops, const std::vector<bool>& planned, std::size_t first) {
+        Kinds all = kinds_of(ops[first]);
+        for (std::size_t n = first + 1; n < ops.size() && !planned[n]; ++n) {
+            const Kinds kinds = kinds_of(ops[n]);
+            all = {all.compute || kinds.compute, all.transfer || kinds.transfer};
+        }
+        return all;
+    }
+
+    static const compute::Dispatch* over_tiles(const compute::Op& op) {
+        const auto* d = std::get_if<compute::Dispatch>(&op);
+        if (d == nullptr || !d->tiles.on()) return nullptr;
+        return compute::stage_table()[static_cast<std::size_t>(d->stage)].extent == compute::Extent::rim ? nullptr : d;
+    }
+    // A barrier that lets a dispatch read its groups costs more than others: only the first behind each change of them has one.
+    bool reads_groups(const compute::Op& op) const {
+        const auto* d = over_tiles(op);
+        return d != nullptr && !(d->tiles.dispatch == groups_seen_);
+    }
+    void note_groups(const compute::Op& op) {
+        for (const auto& use : compute::buffer_uses(op)) {
+            if (use.writes && use.buffer == groups_seen_) groups_seen_ = {};
+        }
+        if (const auto* d = over_tiles(op)) groups_seen_ = d->tiles.dispatch;
+    }
+
+    Status fail(Code code, const std::string& where, const std::string& what) const {
+        return error(code, "program '" + builder_.label() + "', " + where + ": " + what);
+    }
+
+    static bool marks(int stage) { return compute::stage_table()[static_cast<std::size_t>(stage)].marks; }
+
+    static SetKey key_of(const compute::Dispatch& d) {
+        SetKey key{d.stage, {}};
+        for (const compute::Buffer b : d.slots) key.second.push_back(b.id);
+        if (marks(d.stage)) key.second.insert(key.second.end(), {d.tiles.list.id, d.tiles.activity.id});
+        return key;
+    }
+
+    Status check_dispatch(const compute::Dispatch& d) const {
+        const std::string where = "dispatch '" + d.label + "'";
+        const StagePipeline* pipeline = p_.pipelines.find(d.pipeline);
+        if (pipeline == nullptr)
+            return fail(Code::bad_argument, where, "no pipeline has the handle " + std::to_string(d.pipeline.id));
+        const compute::StageInfo& info = compute::stage_table()[static_cast<std::size_t>(d.stage)];
+        if (pipeline->stage != d.stage || pipeline->effects != (d.effects & info.tested_effects)) {
+            return fail(Code::bad_argument, where,
+                        "the pipeline was made for another stage or other effects than " + std::string(info.name));
+        }
+        if (pipeline->active_tiles != d.tiles.on())
+            return fail(Code::bad_argument, where, "the pipeline was made with or without active tiles, the dispatch is not");
+        for (const compute::Buffer b : {d.tiles.activity, d.tiles.list, d.tiles.dispatch}) {
+            if (d.tiles.on() && (p_.buffers.find(b) == nullptr || !p_.buffers.mapped(b).empty()))
+                return fail(Code::bad_argument, where, "active tiles without their lists");
+        }
+        for (std::size_t slot = 0; slot < d.slots.size(); ++slot) {
+            if (d.slots[slot].id != 0 && p_.buffers.find(d.slots[slot]) == nullptr) {
+                return fail(Code::bad_argument, where,
+                            "no buffer has the handle " + std::to_string(d.slots[slot].id) + " of binding " +
+                                std::string(info.bindings[slot].name));
+            }
+            if (!p_.buffers.mapped(d.slots[slot]).empty())
+                return fail(Code::bad_argument, where, compute::only_copies(p_.buffers.find(d.slots[slot])->label));
+        }
+        return ok_status();
+    }
+
+    // Dispatches of one stage with the same buffers share a set.
+    Status create_sets() {
+        std::uint32_t storage = 0;
+        for (const compute::Op& op : builder_.ops()) {
+            const auto* d = std::get_if<compute::Dispatch>(&op);
+            if (d == nullptr) continue;
+            if (Status s = check_dispatch(*d); !s) return s;
+            if (sets_.emplace(key_of(*d), VkDescriptorSet{VK_NULL_HANDLE}).second)
+                storage += static_cast<std::uint32_t>(key_of(*d).second.size());
+        }
+        if (sets_.empty()) return ok_status();
+        const auto count = static_cast<std::uint32_t>(sets_.size());
+        // At least one storage descriptor: a size of zero is not allowed, and a stage may have no binding.
+        const VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, first_slot_binding * count},
+                                              {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, std::max(storage, 1u)}};
+        auto info = vk_struct<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
+        info.maxSets = count;
+        info.poolSizeCount = 2;
+        info.pPoolSizes = sizes;
+        const VkResult r = c_.vk.vkCreateDescriptorPool(c_.device, &info, nullptr, &plan_.descriptors);
+        if (Status s = c_.check(r, "vkCreateDescriptorPool", builder_.label()); !s) return s;
+        std::uint64_t written = 0;
+        for (auto& [key, set] : sets_) {
+            if (Status s = write_set(key, set, p_.buffers.null_slice(written++)); !s) return s;
+        }
+        return ok_status();
+    }
+
+    Status write_set(const SetKey& key, VkDescriptorSet& set, const VkDescriptorBufferInfo& absent) {
+        auto info = vk_struct<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
+        info.descriptorPool = plan_.descriptors;
+        info.descriptorSetCount = 1;
+        info.pSetLayouts = &p_.pipelines.stage(key.first).set_layout;
+        const VkResult r = c_.vk.vkAllocateDescriptorSets(c_.device, &info, &set);
+        if (Status s = c_.check(r, "vkAllocateDescriptorSets", builder_.label()); !s) return s;
+        std::vector<VkDescriptorBufferInfo> buffers(first_slot_binding + key.second.size());
+        buffers[world_binding] = {params_, 0, sizeof(WorldParams)};
+        buffers[input_binding] = {p_.submissions.input_buffer(), 0, sizeof(StepInput)};
+        for (std::size_t slot = 0; slot < key.second.size(); ++slot) {
+            const Memory* memory = p_.buffers.find({key.second[slot]});
+            buffers[first_slot_binding + slot] =
+                memory != nullptr ? VkDescriptorBufferInfo{memory->buffer, 0, VK_WHOLE_SIZE} : absent;
+        }
+        std::vector<VkWriteDescriptorSet> writes(buffers.size());
+        for (std::uint32_t b = 0; b < writes.size(); ++b) {
+            writes[b] = vk_struct<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
+            writes[b].dstSet = set;
+            writes[b].dstBinding = b;
+            writes[b].descriptorCount = 1;
+            writes[b].descriptorType =
+                b < first_slot_binding ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+            writes[b].pBufferInfo = &buffers[b];
+        }
+        c_.vk.vkUpdateDescriptorSets(c_.device, static_cast<std::uint32_t>(writes.size()), writes.data(), 0, nullptr);
+        c_.counters.descriptor_writes += writes.size();
+        return ok_status();
+    }
+
+    Status add(const compute::Dispatch& d) {
+        if (d.range.i1 <= d.range.i0 || d.range.j1 <= d.range.j0) return ok_status();
+        if (over_tiles(d) != nullptr) return add_over_tiles(d);
+        const StagePipeline& pipeline = *p_.pipelines.find(d.pipeline);
+        const auto groups = [](int first, int last, std::uint32_t size) {
+            return (static_cast<std::uint32_t>(last - first) + size - 1) / size;
+        };
+        const compute::StageInfo& info = compute::stage_table()[static_cast<std::size_t>(d.stage)];
+        const auto columns = info.fused() ? std::uint32_t{FUSED_COLUMNS} : pipeline.group_x;
+        const auto rows = info.fused() ? std::uint32_t{FUSED_ROWS} : pipeline.group_y;
+        const std::uint32_t x = groups(d.range.i0, d.range.i1, columns), y = groups(d.range.j0, d.range.j1, rows);
+        if (x > c_.limits.group_count[0] || y > c_.limits.group_count[1]) {
+            return fail(Code::not_supported, "dispatch '" + d.label + "'",
+                        std::to_string(x) + " x " + std::to_string(y) + " groups; " + c_.capabilities.name + " allows " +
+                            std::to_string(c_.limits.group_count[0]) + " x " + std::to_string(c_.limits.group_count[1]));
+        }
+        plan_.commands.emplace_back(
+            DispatchCommand{pipeline.handle, p_.pipelines.stage(d.stage).layout, sets_.at(key_of(d)), x, y});
+        return ok_status();
+    }
+
+    Status add_over_tiles(const compute::Dispatch& d) {
+        const Memory* list = p_.buffers.find(d.tiles.list);
+        if (list->bytes / 4 > c_.limits.group_count[0]) {
+            return fail(Code::not_supported, "dispatch '" + d.label + "'",
+                        std::to_string(list->bytes / 4) + " active tiles; " + c_.capabilities.name + " allows " +
+                            std::to_string(c_.limits.group_count[0]));
+        }
+        const VkBuffer groups = p_.buffers.find(d.tiles.dispatch)->buffer;
+        const bool fused = compute::stage_table()[static_cast<std::size_t>(d.stage)].fused();
+        plan_.commands.emplace_back(DispatchCommand{p_.pipelines.find(d.pipeline)->handle, p_.pipelines.stage(d.stage).layout,
+                                                    sets_.at(key_of(d)), 0, 0, groups, fused ? VkDeviceSize{16} : 0});
+        return ok_status();
+    }
+
+    Status add(const compute::Copy& copy) {
+        const Memory* from = p_.buffers.find(copy.from);
+        const Memory* to = p_.buffers.find(copy.to);
+        if (from == nullptr || to == nullptr) {
+            return fail(Code::bad_argument, "copy",
+                        "no buffer has the handle " + std::to_string((from == nullptr ? copy.from : copy.to).id));
+        }
+        const std::string where = "copy from '" + from->label + "' to '" + to->label + "'";
+        const auto outside = [&](const Memory& m, std::uint64_t offset) {
+            return offset > m.bytes || copy.bytes > m.bytes - offset;
+        };
+        if (outside(*from, copy.from_offset) || outside(*to, copy.to_offset)) {
+            return fail(Code::bad_argument, where,
+                        std::to_string(copy.bytes) + " bytes from offset " + std::to_string(copy.from_offset) + " to " +
+                            std::to_string(copy.to_offset) + " reach past the " + std::to_string(from->bytes) + " and " +
+                            std::to_string(to->bytes) + " bytes of the buffers");
+        }
+        if (copy.bytes > 0) {
+            plan_.commands.emplace_back(CopyCommand{from->buffer, to->buffer, {copy.from_offset, copy.to_offset, copy.bytes}});
+            host_reads_ |= to->mapped != nullptr;
+        }
+        return ok_status();
+    }
+
+    Status add(const compute::Fill& fill) {
+        const Memory* memory = p_.buffers.find(fill.buffer);
+        if (memory == nullptr)
+            return fail(Code::bad_argument, "fill", "no buffer has the handle " + std::to_string(fill.buffer.id));
+        if (memory->mapped != nullptr) return fail(Code::bad_argument, "fill", compute::only_copies(memory->label));
+        plan_.commands.emplace_back(FillCommand{memory->buffer, fill.word});
+        return ok_status();
+    }
+
+    Status add(const compute::Timestamp&) {
+        plan_.commands.emplace_back(TimestampCommand{timestamps_++});
+        return ok_status();
+    }
+
+    const ProgramParts& p_;
+    Context& c_;
+    const compute::ProgramBuilder& builder_;
+    VkBuffer params_;
+    Plan& plan_;
+    std::map<SetKey, VkDescriptorSet> sets_;
+    std::uint32_t timestamps_ = 0;
+    compute::Buffer groups_seen_; // since the last barrier that lets a dispatch read them
+    bool host_reads_ = false;     // a copy goes to mapped memory
+};
+
+} // namespace
+
+Status plan_commands(const ProgramParts& parts, const compute::ProgramBuilder& builder, VkBuffer params, Plan& plan) {
+    return Planner(parts, builder, params, plan).run();
+}
+
+} // namespace wadi::vulkan

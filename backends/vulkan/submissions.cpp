@@ -1,0 +1,247 @@
+#include "backends/vulkan/submissions.hpp"
+#include <algorithm>
+
+namespace wadi::vulkan {
+namespace {
+
+// Handles that are no pointers on 32-bit systems travel as numbers.
+VkSemaphore semaphore_of(const compute::SyncPoint& point) { return reinterpret_cast<VkSemaphore>(point.semaphore); }
+
+} // namespace
+
+Status Submissions::open() {
+    c_.capabilities.queue_depth = ring;
+    auto input = allocate(c_, sizeof(StepInput), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, Place::device, "step input");
+    if (!input) return input.status();
+    input_ = std::move(*input);
+    auto pool = vk_struct<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
+    pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
+    pool.queueFamilyIndex = c_.queue_family;
+    if (Status s = c_.check(c_.vk.vkCreateCommandPool(c_.device, &pool, nullptr, &pool_), "vkCreateCommandPool"); !s) return s;
+    std::array<VkCommandBuffer, 2 * ring> commands{};
+    auto info = vk_struct<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
+    info.commandPool = pool_;
+    info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
+    info.commandBufferCount = 2 * ring;
+    const VkResult r = c_.vk.vkAllocateCommandBuffers(c_.device, &info, commands.data());
+    if (Status s = c_.check(r, "vkAllocateCommandBuffers"); !s) return s;
+    for (std::uint32_t n = 0; n < ring; ++n) {
+        slots_[n].input = commands[2 * n];
+        slots_[n].own = commands[2 * n + 1];
+    }
+    if (c_.timeline) {
+        auto type = vk_struct<VkSemaphoreTypeCreateInfo>(VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO);
+        type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
+        auto semaphore = vk_struct<VkSemaphoreCreateInfo>(VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO);
+        semaphore.pNext = &type;
+        return c_.check(c_.vk.vkCreateSemaphore(c_.device, &semaphore, nullptr, &timeline_), "vkCreateSemaphore");
+    }
+    for (Slot& slot : slots_) {
+        const auto fence = vk_struct<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
+        if (Status s = c_.check(c_.vk.vkCreateFence(c_.device, &fence, nullptr, &slot.fence), "vkCreateFence"); !s) return s;
+    }
+    return ok_status();
+}
+
+Submissions::~Submissions() {
+    if (timeline_ != VK_NULL_HANDLE) c_.vk.vkDestroySemaphore(c_.device, timeline_, nullptr);
+    for (const Slot& slot : slots_) {
+        if (slot.fence != VK_NULL_HANDLE) c_.vk.vkDestroyFence(c_.device, slot.fence, nullptr);
+    }
+    if (pool_ != VK_NULL_HANDLE) c_.vk.vkDestroyCommandPool(c_.device, pool_, nullptr);
+    release(c_, input_);
+}
+
+Result<std::uint32_t> Submissions::acquire() {
+    const std::uint32_t slot = slot_of(last_ + 1);
+    if (Status s = wait({slots_[slot].ticket}); !s) {
+        if (s.code != Code::not_ready) return s;
+        return error(Code::not_ready, "the host has not yet reached what it promised for " + std::to_string(ring) +
+                                          " recorded submissions; submit those command buffers first");
+    }
+    return slot;
+}
+
+// Also the boundary between submissions: all earlier work is done and seen before anything of this one starts.
+void Submissions::record_boundary(VkCommandBuffer commands, const StepInput& input) {
+    const Kinds all{.compute = true, .transfer = true};
+    record_barrier(c_, commands, all, all);
+    c_.vk.vkCmdUpdateBuffer(commands, input_.buffer, 0, sizeof(input), &input);
+    record_barrier(c_, commands, {.transfer = true}, {.compute = true});
+}
+
+Status Submissions::record_input(const Slot& slot, const StepInput& input) {
+    auto info = vk_struct<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
+    info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+    if (Status s = c_.check(c_.vk.vkBeginCommandBuffer(slot.input, &info), "vkBeginCommandBuffer"); !s) return s;
+    record_boundary(slot.input, input);
+    return c_.check(c_.vk.vkEndCommandBuffer(slot.input), "vkEndCommandBuffer");
+}
+
+Result<compute::Ticket> Submissions::submit(std::uint32_t index, const StepInput& input, VkCommandBuffer commands,
+                                            compute::Program program) {
+    Slot& slot = slots_[index];
+    const std::uint64_t ticket = last_ + 1;
+    if (recording()) {
+        record_boundary(host_commands_, input);
+        c_.vk.vkCmdExecuteCommands(host_commands_, 1, &commands);
+        last_recorded_ = ticket;
+    } else {
+        if (Status s = record_input(slot, input); !s) return s;
+        if (Status s = send(slot, ticket, commands); !s) return s;
+    }
+    ++c_.counters.submits;
+    last_ = ticket;
+    slot.ticket = ticket;
+    slot.program = program;
+    slot.promise = recording() ? promise_ : compute::SyncPoint{};
+    return compute::Ticket{ticket};
+}
+
+Status Submissions::send(const Slot& slot, std::uint64_t ticket, VkCommandBuffer commands) {
+    const VkCommandBuffer both[] = {slot.input, commands};
+    const std::vector<VkPipelineStageFlags> stages(wait_semaphores_.size(), VK_PIPELINE_STAGE_ALL_COMMANDS_BIT);
+    auto value = vk_struct<VkTimelineSemaphoreSubmitInfo>(VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO);
+    value.waitSemaphoreValueCount = static_cast<std::uint32_t>(wait_values_.size());
+    value.pWaitSemaphoreValues = wait_values_.data();
+    value.signalSemaphoreValueCount = 1;
+    value.pSignalSemaphoreValues = &ticket;
+    auto info = vk_struct<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
+    info.commandBufferCount = 2;
+    info.pCommandBuffers = both;
+    if (c_.timeline) {
+        info.pNext = &value;
+        info.waitSemaphoreCount = static_cast<std::uint32_t>(wait_semaphores_.size());
+        info.pWaitSemaphores = wait_semaphores_.data();
+        info.pWaitDstStageMask = stages.data();
+        info.signalSemaphoreCount = 1;
+        info.pSignalSemaphores = &timeline_;
+    } else if (Status s = c_.check(c_.vk.vkResetFences(c_.device, 1, &slot.fence), "vkResetFences"); !s) {
+        return s;
+    }
+    if (Status s = c_.check(c_.vk.vkQueueSubmit(c_.queue, 1, &info, slot.fence), "vkQueueSubmit"); !s) return s;
+    wait_semaphores_.clear();
+    wait_values_.clear();
+    return ok_status();
+}
+
+Status Submissions::check_host_semaphore(const compute::SyncPoint& point, const char* call) const {
+    if (!c_.timeline) return error(Code::not_supported, std::string(call) + ": the device has no timeline semaphores");
+    if (point.semaphore == 0) return error(Code::bad_argument, std::string(call) + ": the semaphore is null");
+    return ok_status();
+}
+
+Status Submissions::wait_before(std::span<const compute::SyncPoint> points) {
+    for (const auto& point : points) {
+        if (Status s = check_host_semaphore(point, "wait_before"); !s) return s;
+    }
+    for (const auto& point : points) {
+        wait_semaphores_.push_back(semaphore_of(point));
+        wait_values_.push_back(point.value);
+    }
+    return ok_status();
+}
+
+Status Submissions::signal_after(const compute::SyncPoint& point) {
+    if (Status s = check_host_semaphore(point, "signal_after"); !s) return s;
+    if (Status s = check_order(); !s) return s;
+    const VkSemaphore semaphore = semaphore_of(point);
+    auto value = vk_struct<VkTimelineSemaphoreSubmitInfo>(VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO);
+    value.signalSemaphoreValueCount = 1;
+    value.pSignalSemaphoreValues = &point.value;
+    auto info = vk_struct<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
+    info.pNext = &value;
+    info.signalSemaphoreCount = 1;
+    info.pSignalSemaphores = &semaphore;
+    return c_.check(c_.vk.vkQueueSubmit(c_.queue, 1, &info, VK_NULL_HANDLE), "vkQueueSubmit");
+}
+
+Status Submissions::begin_recording(VkCommandBuffer commands, const compute::SyncPoint& promise) {
+    if (Status s = check_host_semaphore(promise, "begin_recording"); !s) return s;
+    if (commands == VK_NULL_HANDLE) return error(Code::bad_argument, "begin_recording: the command buffer is null");
+    if (recording()) return error(Code::bad_argument, "begin_recording: a recording is under way; end it first");
+    host_commands_ = commands;
+    promise_ = promise;
+    return ok_status();
+}
+
+Status Submissions::end_recording() {
+    if (!recording()) return error(Code::bad_argument, "end_recording: no recording is under way");
+    // The host's own commands behind ours see what we wrote.
+    const Kinds all{.compute = true, .transfer = true};
+    record_barrier(c_, host_commands_, all, all);
+    host_commands_ = VK_NULL_HANDLE;
+    return ok_status();
+}
+
+Status Submissions::check_order() {
+    if (recording()) return error(Code::not_ready, "a recording into the host's command buffer is under way");
+    auto done = finished({last_recorded_});
+    if (!done) return done.status();
+    if (*done) return ok_status();
+    return error(Code::not_ready, "work recorded into the host's command buffer has not run yet: its promised semaphore is not "
+                                  "reached, and what is asked for would overtake it");
+}
+
+Result<std::uint64_t> Submissions::value_of(VkSemaphore semaphore) {
+    std::uint64_t value = 0;
+    const VkResult r = c_.vk.vkGetSemaphoreCounterValueKHR(c_.device, semaphore, &value);
+    if (Status s = c_.check(r, "vkGetSemaphoreCounterValueKHR"); !s) return s;
+    return value;
+}
+
+Result<bool> Submissions::finished(compute::Ticket ticket) {
+    if (ticket.value > last_) {
+        return error(Code::bad_argument,
+                     "ticket " + std::to_string(ticket.value) + " was never given out; the newest is " + std::to_string(last_));
+    }
+    if (ticket.value <= finished_) return true;
+    const Slot& slot = slots_[slot_of(ticket.value)];
+    if (slot.promise.semaphore != 0) {
+        auto value = value_of(semaphore_of(slot.promise));
+        if (!value) return value.status();
+        if (*value >= slot.promise.value) finished_ = ticket.value;
+    } else if (c_.timeline) {
+        auto value = value_of(timeline_);
+        if (!value) return value.status();
+        // Drivers may report the largest value once the device is lost.
+        if (*value > last_) return c_.check(VK_ERROR_DEVICE_LOST, "vkGetSemaphoreCounterValueKHR");
+        finished_ = std::max(finished_, *value);
+    } else {
+        const VkResult r = c_.vk.vkGetFenceStatus(c_.device, slot.fence);
+        if (r == VK_NOT_READY) return false;
+        if (Status s = c_.check(r, "vkGetFenceStatus"); !s) return s;
+        finished_ = ticket.value;
+    }
+    return ticket.value <= finished_;
+}
+
+Status Submissions::wait(compute::Ticket ticket) {
+    auto done = finished(ticket);
+    if (!done) return done.status();
+    if (*done) return ok_status();
+    const Slot& slot = slots_[slot_of(ticket.value)];
+    if (slot.promise.semaphore != 0)
+        return error(Code::not_ready, "ticket " + std::to_string(ticket.value) +
+                                          " was recorded into the host's command buffer, which has not run yet");
+    VkResult r = VK_SUCCESS;
+    if (c_.timeline) {
+        auto info = vk_struct<VkSemaphoreWaitInfo>(VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO);
+        info.semaphoreCount = 1;
+        info.pSemaphores = &timeline_;
+        info.pValues = &ticket.value;
+        r = c_.vk.vkWaitSemaphoresKHR(c_.device, &info, UINT64_MAX);
+    } else {
+        r = c_.vk.vkWaitForFences(c_.device, 1, &slot.fence, VK_TRUE, UINT64_MAX);
+    }
+    if (Status s = c_.check(r, "waiting for a submission"); !s) return s;
+    finished_ = std::max(finished_, ticket.value);
+    return ok_status();
+}
+
+compute::Program Submissions::program_of(compute::Ticket ticket) const {
+    const Slot& slot = slots_[slot_of(ticket.value)];
+    return ticket.value != 0 && slot.ticket == ticket.value ? slot.program : compute::Program{};
+}
+
+} // namespace wadi::vulkan

@@ -1,0 +1,77 @@
+// The ring of submissions in flight: tickets, their completion, the commands that bring each step's input, the host's semaphores,
+// and recording into the host's command buffer.
+#pragma once
+#include "backends/vulkan/memory.hpp"
+#include <array>
+#include <vector>
+
+namespace wadi::vulkan {
+
+class Submissions {
+  public:
+    /// Submissions in flight at most; also the number of copies of anything that one submission must own.
+    static constexpr std::uint32_t ring = 32;
+
+    explicit Submissions(Context& context) : c_(context) {}
+    ~Submissions();
+    Submissions(const Submissions&) = delete;
+    Submissions& operator=(const Submissions&) = delete;
+    Status open();
+
+    /// The uniform buffer that holds the input of the step that runs.
+    VkBuffer input_buffer() const { return input_.buffer; }
+    /// The ring slot of the next submission, once its previous occupant has finished.
+    Result<std::uint32_t> acquire();
+    /// The slot's own command buffer, for programs that are recorded anew.
+    VkCommandBuffer own_commands(std::uint32_t slot) const { return slots_[slot].own; }
+    /// Brings the input, then runs `commands`, after everything submitted before.
+    Result<compute::Ticket> submit(std::uint32_t slot, const StepInput& input, VkCommandBuffer commands,
+                                   compute::Program program);
+
+    Status wait_before(std::span<const compute::SyncPoint> points);
+    Status signal_after(const compute::SyncPoint& point);
+    /// Until end_recording() submit() records into `commands`; its programs' command buffers must then be secondary ones.
+    Status begin_recording(VkCommandBuffer commands, const compute::SyncPoint& promise);
+    Status end_recording();
+    bool recording() const { return host_commands_ != VK_NULL_HANDLE; }
+    /// not_ready while recorded work has not run: what goes to the queue now would overtake it.
+    Status check_order();
+
+    /// Errors: bad_argument (a ticket that was never given out), device_lost.
+    Result<bool> finished(compute::Ticket ticket);
+    /// A recorded ticket that has not finished is not_ready: only the host can bring it about.
+    Status wait(compute::Ticket ticket);
+    /// The program that a ticket ran; null once its slot is in use again.
+    compute::Program program_of(compute::Ticket ticket) const;
+    static std::uint32_t slot_of(std::uint64_t ticket) { return static_cast<std::uint32_t>(ticket % ring); }
+
+  private:
+    struct Slot {
+        VkCommandBuffer input = VK_NULL_HANDLE;
+        VkCommandBuffer own = VK_NULL_HANDLE;
+        VkFence fence = VK_NULL_HANDLE; // only without timeline semaphores
+        compute::Program program;
+        std::uint64_t ticket = 0;
+        compute::SyncPoint promise; // of recorded work; semaphore 0 = went to the queue
+    };
+    Status record_input(const Slot& slot, const StepInput& input);
+    Status send(const Slot& slot, std::uint64_t ticket, VkCommandBuffer commands);
+    void record_boundary(VkCommandBuffer commands, const StepInput& input);
+    Status check_host_semaphore(const compute::SyncPoint& point, const char* call) const;
+    Result<std::uint64_t> value_of(VkSemaphore semaphore);
+
+    Context& c_;
+    VkCommandPool pool_ = VK_NULL_HANDLE;
+    VkSemaphore timeline_ = VK_NULL_HANDLE; // its value is the newest finished ticket
+    Memory input_;
+    std::array<Slot, ring> slots_;
+    std::vector<VkSemaphore> wait_semaphores_; // of the next submission
+    std::vector<std::uint64_t> wait_values_;
+    VkCommandBuffer host_commands_ = VK_NULL_HANDLE; // while recording
+    compute::SyncPoint promise_;
+    std::uint64_t last_recorded_ = 0; // newest ticket that was recorded
+    std::uint64_t last_ = 0;          // newest ticket given out
+    std::uint64_t finished_ = 0;      // newest ticket known to have finished
+};
+
+} // namespace wadi::vulkan

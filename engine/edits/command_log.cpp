@@ -1,0 +1,123 @@
+#include "engine/edits/command_log.hpp"
+#include "engine/settings/material_keys.hpp"
+#include <algorithm>
+
+namespace wadi {
+
+std::uint64_t step_of(const Command& command) {
+    return std::visit([](const auto& c) { return c.step; }, command);
+}
+
+void CommandLog::note(const Command& command) {
+    if (remember_) remembered_.push_back(command);
+}
+
+Status CommandLog::edit(std::span<const Edit> edits) {
+    if (auto status = edits_.check("wadi_world_edit", edits, edits_.stamps()); !status) return status;
+    for (Edit edit : edits) {
+        if (edit.step == 0) edit.step = edits_.next_step();
+        note(edit);
+        edits_.schedule(edit);
+    }
+    return ok_status();
+}
+
+Status CommandLog::write_region(EditLayer layer, const Region& region, std::span<const float> values) {
+    auto status = wadi::write_region(state_, stepper_, layer, region, values);
+    if (status && remember_) note(RegionWrite{state_.steps, layer, region, {values.begin(), values.end()}});
+    return status;
+}
+
+Status CommandLog::trim() {
+    auto status = wadi::trim(state_, stepper_);
+    if (status) note(Trim{state_.steps});
+    return status;
+}
+
+Status CommandLog::set_material(int key, double value) {
+    if (auto status = check_material_change("set_material", state_.settings(), key, value); !status) return status;
+    Material material = state_.settings().material;
+    set_material_value(material, key, value);
+    auto status = stepper_.set_material(material);
+    if (status) note(MaterialChange{state_.steps, key, value});
+    return status;
+}
+
+void CommandLog::remember(bool on) {
+    remember_ = on;
+    remembered_.clear();
+}
+
+std::vector<std::byte> CommandLog::bytes() const { return write_commands(state_.level(), edits_.stamps(), remembered_); }
+
+Status CommandLog::check(const CommandList& list) const {
+    if (list.level != state_.level())
+        return error(Code::bad_argument, "play_commands: the log is of a level with other settings");
+    for (const auto& stamp : list.stamps) {
+        if (auto status = check_stamp("play_commands", stamp.nx, stamp.ny, stamp.values); !status) return status;
+    }
+    Settings settings = state_.settings(); // as the commands before leave them
+    for (const auto& command : list.commands) {
+        if (step_of(command) < edits_.next_step()) {
+            return error(Code::bad_argument, "play_commands: the log has a command for step " + std::to_string(step_of(command)) +
+                                                 ", but the world's next step is " + std::to_string(edits_.next_step()));
+        }
+        if (const auto* edit = std::get_if<Edit>(&command)) {
+            if (auto status = edits_.check("play_commands", std::span(edit, 1), list.stamps); !status) return status;
+        } else if (const auto* write = std::get_if<RegionWrite>(&command)) {
+            const auto& grid = state_.settings().grid;
+            if (auto status = check_region("play_commands", write->region, grid, write->values.size()); !status) return status;
+        } else if (const auto* change = std::get_if<MaterialChange>(&command)) {
+            if (auto status = check_material_change("play_commands", settings, change->key, change->value); !status)
+                return status;
+            set_material_value(settings.material, change->key, change->value);
+        }
+    }
+    return ok_status();
+}
+
+Status CommandLog::play(std::span<const std::byte> bytes) {
+    auto list = read_commands(bytes);
+    if (!list) return list.status();
+    if (auto status = check(*list); !status) return status;
+    const auto stamps = static_cast<std::uint32_t>(edits_.stamps().size()); // the log's come behind the world's own
+    for (const auto& stamp : list->stamps) {
+        if (auto made = edits_.create_stamp(stamp.nx, stamp.ny, stamp.values); !made) return made.status();
+    }
+    for (const auto& command : list->commands) {
+        if (const auto* found = std::get_if<Edit>(&command)) {
+            Edit edit = *found;
+            if (edit.kind == EditKind::stamp) edit.stamp += stamps;
+            note(edit);
+            edits_.schedule(edit);
+        } else {
+            const auto later = std::find_if(played_.begin(), played_.end(),
+                                            [&](const Command& waiting) { return step_of(waiting) > step_of(command); });
+            played_.insert(later, command);
+        }
+    }
+    return stepper_.parts_done() == 0 ? at_boundary() : ok_status();
+}
+
+Status CommandLog::run(const Command& command) {
+    if (const auto* write = std::get_if<RegionWrite>(&command)) return write_region(write->layer, write->region, write->values);
+    if (const auto* change = std::get_if<MaterialChange>(&command)) return set_material(change->key, change->value);
+    return trim();
+}
+
+Status CommandLog::at_boundary() {
+    while (!played_.empty() && step_of(played_.front()) <= state_.steps) {
+        const Command command = std::move(played_.front());
+        played_.erase(played_.begin());
+        if (auto status = run(command); !status) return status;
+    }
+    return ok_status();
+}
+
+void CommandLog::went_to(std::uint64_t step) {
+    edits_.forget();
+    played_.clear();
+    std::erase_if(remembered_, [&](const Command& command) { return step_of(command) >= step; });
+}
+
+} // namespace wadi

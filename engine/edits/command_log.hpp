@@ -1,0 +1,75 @@
+// Everything that a host does to a running world, with its step: remembered, written as bytes, and played into another world of
+// the same level, which then goes through the same states to the bit.
+#pragma once
+#include "engine/edits/regions.hpp"
+#include <variant>
+
+namespace wadi {
+
+struct RegionWrite {
+    std::uint64_t step = 0;
+    EditLayer layer = EditLayer::terrain;
+    Region region;
+    std::vector<float> values;
+};
+struct Trim {
+    std::uint64_t step = 0;
+};
+struct MaterialChange {
+    std::uint64_t step = 0;
+    int key = 0; // of material_keys()
+    double value = 0;
+};
+/// A command and the step ahead of which it counts. Edits run with that step, the others as soon as the one before is done.
+using Command = std::variant<Edit, RegionWrite, Trim, MaterialChange>;
+std::uint64_t step_of(const Command& command);
+
+/// What the bytes of a log hold.
+struct CommandList {
+    std::uint64_t level = 0; // level_digest()
+    std::vector<Stamp> stamps;
+    std::vector<Command> commands;
+};
+std::vector<std::byte> write_commands(std::uint64_t level, std::span<const Stamp> stamps, std::span<const Command> commands);
+/// Errors: bad_file (no command log, a newer version, truncated, changed).
+Result<CommandList> read_commands(std::span<const std::byte> bytes);
+
+/// The way for commands into a world: runs or queues them and remembers them where that was asked for.
+class CommandLog {
+  public:
+    CommandLog(WorldState& state, Stepper& stepper, Edits& edits) : state_(state), stepper_(stepper), edits_(edits) {}
+
+    /// Errors: bad_argument, and nothing is queued.
+    Status edit(std::span<const Edit> edits);
+    /// Between two steps only; errors: regions.hpp.
+    Status write_region(EditLayer layer, const Region& region, std::span<const float> values);
+    Status trim();
+    /// Errors, nothing changed: check_material_change(), Stepper::set_material().
+    Status set_material(int key, double value);
+
+    /// Begins an empty log, or drops it.
+    void remember(bool on);
+    std::vector<std::byte> bytes() const;
+    /// Queues the commands of a log. Errors: bad_file (read_commands), bad_argument (of another level, or with a command that
+    /// this world would refuse), out_of_memory; nothing is queued then.
+    Status play(std::span<const std::byte> bytes);
+
+    /// Runs what was played for this boundary between two steps.
+    Status at_boundary();
+    /// The world went to another step: forgets what waits and what was remembered of later steps.
+    void went_to(std::uint64_t step);
+
+  private:
+    void note(const Command& command);
+    Status check(const CommandList& list) const;
+    Status run(const Command& command);
+
+    WorldState& state_;
+    Stepper& stepper_;
+    Edits& edits_;
+    bool remember_ = false;
+    std::vector<Command> remembered_;
+    std::vector<Command> played_; // all but edits: they wait for their step, in order
+};
+
+} // namespace wadi

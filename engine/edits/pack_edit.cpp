@@ -1,0 +1,40 @@
+// Edits as apply_edits reads them.
+#include "engine/edits/edits.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace wadi {
+
+bool pack_edit(const Edit& edit, std::span<const Stamp> stamps, const Grid& grid, vec4* to) {
+    const auto f = [](double x) { return static_cast<float>(x); };
+    // Whole 1/256 cells: distances to cell centres are then exact (shaders/physics/edit.glsl).
+    const auto cells = [&](double metres) { return std::nearbyint(metres / grid.dx * 256) / 256; };
+    const bool is_stamp = edit.kind == EditKind::stamp, line = is_stamp || edit.capsule;
+    const double x = cells(edit.x0), y = cells(edit.y0), along_x = line ? cells(edit.x1) - x : 0,
+                 along_y = line ? cells(edit.y1) - y : 0;
+    const double radius = is_stamp ? 0 : edit.radius / grid.dx;
+    if (std::max(x, x + along_x) + radius < 0 || std::min(x, x + along_x) - radius > grid.nx ||
+        std::max(y, y + along_y) + radius < 0 || std::min(y, y + along_y) - radius > grid.ny)
+        return false;
+    const float kind = static_cast<float>(edit.kind), layer = static_cast<float>(edit.layer);
+    to[0] = {f(x), f(y), f(along_x), f(along_y)};
+    if (is_stamp) {
+        if (along_x <= 0 || along_y <= 0) return false; // narrower than 1/256 cell
+        const auto& stamp = stamps[edit.stamp - 1];
+        to[1] = {f(stamp.nx), f(stamp.ny), static_cast<float>(stamp.page), kind};
+        to[2] = {f(edit.amount), layer, f(stamp.nx / along_x), f(stamp.ny / along_y)};
+        return true;
+    }
+    const double length2 = along_x * along_x + along_y * along_y;
+    constexpr double sharp = 1e30; // no falloff: weight 1 up to the radius
+    to[1] = {f(radius), edit.softness > 0 ? f(std::min(sharp, 1 / (edit.softness * radius))) : f(sharp),
+             length2 > 0 ? f(1 / length2) : 0.0F, kind};
+    if (edit.kind == EditKind::brush) {
+        to[2] = {f(edit.amount), layer, 0, 0};
+    } else {
+        to[2] = {f(edit.strength), f(edit.velocity_x), f(edit.velocity_y), 0};
+    }
+    return true;
+}
+
+} // namespace wadi

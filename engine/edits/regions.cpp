@@ -1,0 +1,178 @@
+#include "engine/edits/regions.hpp"
+#include "engine/settings/messages.hpp"
+#include "engine/step/ledger.hpp"
+#include "engine/step/quanta.hpp"
+#include "engine/step/world_params.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace wadi {
+
+namespace {
+
+// Whole rows of a field, padding and ghost columns included; zero where the plan lacks the field.
+class Rows {
+  public:
+    Rows(WorldState& state, const char* field, int first, int end)
+        : state_(state), field_(field),
+          offset_(static_cast<std::size_t>(first + GHOST) * static_cast<std::size_t>(state.layout().pitch())),
+          values_(static_cast<std::size_t>(end - first) * static_cast<std::size_t>(state.layout().pitch())) {}
+
+    Status read() { return state_.read_field(field_, offset_, values_); }
+    Status write() { return state_.write_field(field_, offset_, values_); }
+    float& at(int i, int j) { return values_[state_.layout().index(i, j) - offset_]; }
+
+  private:
+    WorldState& state_;
+    const char* const field_;
+    const std::size_t offset_;
+    std::vector<float> values_;
+};
+
+// What a region is written into.
+struct Bands {
+    Bands(WorldState& state, int first, int end)
+        : terrain(state, "terrain", first, end), sand(state, "sand_height", first, end), water(state, "water_height", first, end),
+          xx(state, "stretch_xx", first, end), xy(state, "stretch_xy", first, end), yy(state, "stretch_yy", first, end),
+          turn(state, "rotation", first, end) {}
+    Status read() {
+        for (Rows* rows : {&terrain, &sand, &water, &xx, &xy, &yy, &turn}) {
+            if (auto status = rows->read(); !status) return status;
+        }
+        return ok_status();
+    }
+    Rows& of(EditLayer layer) { return layer == EditLayer::terrain ? terrain : layer == EditLayer::sand ? sand : water; }
+
+    Rows terrain, sand, water, xx, xy, yy, turn;
+};
+
+const char* layer_name(EditLayer layer) {
+    return layer == EditLayer::terrain ? "terrain" : layer == EditLayer::sand ? "sand" : "water";
+}
+
+// Rounds the values and checks them against the columns they come into.
+Status round_and_check(EditLayer layer, const Region& region, Bands& bands, const Method& method, std::vector<float>& values) {
+    const double quantum = height_quantum(method), most = method.largest_height;
+    for (int b = 0; b < region.ny; ++b) {
+        for (int a = 0; a < region.nx; ++a) {
+            float& value =
+                values[static_cast<std::size_t>(b) * static_cast<std::size_t>(region.nx) + static_cast<std::size_t>(a)];
+            const int i = region.i0 + a, j = region.j0 + b;
+            const std::string cell = " in cell (" + std::to_string(i) + ", " + std::to_string(j) + ")";
+            const double least = layer == EditLayer::terrain ? -most : 0, given = static_cast<double>(value);
+            if (!(given >= least && given <= most))
+                return error(Code::bad_argument,
+                             outside_text(std::string("write_region: ") + layer_name(layer), given, least, most) + cell);
+            if (quantum > 0) value = static_cast<float>(std::nearbyint(given / quantum) * quantum);
+            double column = static_cast<double>(value);
+            for (const auto other : {EditLayer::terrain, EditLayer::sand, EditLayer::water})
+                if (other != layer) column += static_cast<double>(bands.of(other).at(i, j));
+            if (column > most)
+                return error(Code::bad_argument, "write_region: the column of terrain, sand and water" + cell + " would be " +
+                                                     number_text(column) + " m high, above method.largest_height, " +
+                                                     number_text(most) + " m");
+        }
+    }
+    return ok_status();
+}
+
+// Terrain repeats its edge in the ghosts, in the rows of the band and in the ghost rows that belong to it.
+void repeat_edges(const FieldLayout& layout, Rows& terrain, int first, int end) {
+    for (int j = first; j < end; ++j) {
+        const int row = std::clamp(j, 0, layout.ny - 1);
+        for (int i = -GHOST; i < layout.nx + 1 + GHOST; ++i) terrain.at(i, j) = terrain.at(std::clamp(i, 0, layout.nx - 1), row);
+    }
+}
+
+Status write_sand(Bands& bands) {
+    for (Rows* rows : {&bands.sand, &bands.xx, &bands.xy, &bands.yy, &bands.turn}) {
+        if (auto status = rows->write(); !status) return status;
+    }
+    return ok_status();
+}
+
+} // namespace
+
+Status write_region(WorldState& state, Stepper& stepper, EditLayer layer, const Region& region, std::span<const float> values) {
+    const auto& layout = state.layout();
+    const auto& method = state.settings().method;
+    if (auto status = check_region("write_region", region, state.settings().grid, values.size()); !status) return status;
+    const bool terrain = layer == EditLayer::terrain, sand = layer == EditLayer::sand;
+    // Rows at the rim bring their ghost rows with them.
+    const int first = terrain && region.j0 == 0 ? -GHOST : region.j0;
+    const int end = terrain && region.j0 + region.ny == layout.ny ? layout.ny + 1 + GHOST : region.j0 + region.ny;
+    std::vector<float> rounded(values.begin(), values.end());
+    {
+        Bands before(state, first, end);
+        if (auto status = before.read(); !status) return status;
+        if (auto status = round_and_check(layer, region, before, method, rounded); !status) return status;
+    }
+    const bool some = std::any_of(rounded.begin(), rounded.end(), [](float h) { return h > 0.0F; });
+    const Content brought{some && sand, some && !sand && !terrain};
+    if (auto status = check_allowed(state.settings(), brought); !status)
+        return error(Code::bad_argument, "write_region: " + status.message);
+    const Content content{state.content.sand || brought.sand, state.content.water || brought.water};
+    if (content != state.content) {
+        if (auto status = stepper.hold(content); !status) return status;
+    }
+    Bands bands(state, first, end);
+    if (auto status = bands.read(); !status) return status;
+    Rows& written = bands.of(layer);
+    const double quantum = ledger_quantum(method);
+    std::int64_t in = 0, out = 0;
+    for (int b = 0; b < region.ny; ++b) {
+        for (int a = 0; a < region.nx; ++a) {
+            const int i = region.i0 + a, j = region.j0 + b;
+            const float value =
+                rounded[static_cast<std::size_t>(b) * static_cast<std::size_t>(region.nx) + static_cast<std::size_t>(a)];
+            const float held = written.at(i, j);
+            const std::int64_t change =
+                add_quanta(to_quanta(static_cast<double>(value), quantum), -to_quanta(static_cast<double>(held), quantum));
+            auto& moved = change > 0 ? in : out;
+            moved = add_quanta(moved, std::abs(change));
+            if (sand && value > held) {
+                for (Rows* rows : {&bands.xx, &bands.xy, &bands.yy, &bands.turn}) {
+                    const float stretch = rows->at(i, j) * (held / value);
+                    rows->at(i, j) = std::abs(stretch) < 1e-20F ? 0.0F : stretch; // as the stages do: no denormals
+                }
+            }
+            written.at(i, j) = value;
+        }
+    }
+    state.wake_all();
+    if (terrain) {
+        repeat_edges(layout, written, first, end);
+        return written.write();
+    }
+    if (auto status = sand ? write_sand(bands) : written.write(); !status) return status;
+    if (auto status = book(state, sand ? LEDGER_SAND_IN : LEDGER_WATER_IN, in); !status) return status;
+    return book(state, sand ? LEDGER_SAND_OUT : LEDGER_WATER_OUT, out);
+}
+
+Status trim(WorldState& state, Stepper& stepper) {
+    const auto holds = [&](const char* field) -> Result<bool> {
+        Rows rows(state, field, 0, state.layout().ny);
+        if (auto status = rows.read(); !status) return status;
+        for (int j = 0; j < state.layout().ny; ++j)
+            for (int i = 0; i < state.layout().nx; ++i)
+                if (rows.at(i, j) > 0.0F) return true;
+        return false;
+    };
+    const auto sand = holds("sand_height");
+    if (!sand) return sand.status();
+    const auto water = holds("water_height");
+    if (!water) return water.status();
+    auto sand_sides = read_side_ledger(state, "sand_side_ledger"), water_sides = read_side_ledger(state, "water_side_ledger");
+    if (!sand_sides) return sand_sides.status();
+    if (!water_sides) return water_sides.status();
+    if (auto status = stepper.hold({*sand, *water}); !status) return status;
+    const auto keep = [&](const char* field, const auto& sides, int in, int out) {
+        if (state.plan().find(field) != nullptr) return ok_status();
+        auto status = book(state, in, sides.first);
+        return status ? book(state, out, sides.second) : status;
+    };
+    if (auto status = keep("sand_side_ledger", *sand_sides, LEDGER_SAND_IN, LEDGER_SAND_OUT); !status) return status;
+    return keep("water_side_ledger", *water_sides, LEDGER_WATER_IN, LEDGER_WATER_OUT);
+}
+
+} // namespace wadi

@@ -1,0 +1,95 @@
+#include "engine/frames/frame_driver.hpp"
+#include <algorithm>
+
+namespace wadi {
+
+namespace {
+
+constexpr std::uint32_t most_steps_per_update = 1024;
+// What an update may submit behind its steps: published outputs, their copies for the host, the interpolated set.
+constexpr std::uint64_t reserved_submissions = 3;
+
+Status check(const char* name, std::uint32_t value, std::uint32_t least, std::uint32_t most) {
+    if (value >= least && value <= most) return ok_status();
+    return error(Code::bad_argument, std::string("update settings: ") + name + ": " + std::to_string(value) + " is outside " +
+                                         std::to_string(least) + " ... " + std::to_string(most));
+}
+
+// Sums of host time end at the largest number instead of wrapping.
+std::uint64_t add(std::uint64_t a, std::uint64_t b) { return a + std::min(b, ~a); }
+
+} // namespace
+
+Status FrameDriver::set(const UpdateSettings& settings) {
+    if (auto s = check("max_steps_per_update", settings.max_steps_per_update, 1, most_steps_per_update); !s) return s;
+    if (auto s = check("max_steps_in_flight", settings.max_steps_in_flight, 0, most_steps_in_flight); !s) return s;
+    settings_ = settings;
+    return ok_status();
+}
+
+// Tickets count up from 1 and finish in order, so the one that has to be done before another submission fits has a known number.
+bool FrameDriver::queue_has_room() const {
+    auto& device = state_.device();
+    const std::uint64_t newest = device.counters().submits + 1 + reserved_submissions;
+    const std::uint64_t depth = device.capabilities().queue_depth;
+    return newest <= depth || device.finished({newest - depth});
+}
+
+bool FrameDriver::device_keeps_up() {
+    if (settings_.max_steps_in_flight == 0) return true;
+    while (oldest_ < newest_ && state_.device().finished(tickets_[oldest_ % most_steps_in_flight])) ++oldest_;
+    return newest_ - oldest_ < settings_.max_steps_in_flight && queue_has_room();
+}
+
+// The next whole step, or what is left of one begun in parts; not taken where the device is too far behind.
+Status FrameDriver::take_step(bool& taken) {
+    taken = false;
+    while (stepper_.parts_done() > 0) {
+        if (!device_keeps_up()) return ok_status();
+        if (auto status = stepper_.step_part(); !status) return status;
+        taken = stepper_.parts_done() == 0;
+    }
+    if (!taken) {
+        if (!device_keeps_up()) return ok_status();
+        if (auto status = stepper_.step(); !status) return status;
+        taken = true;
+    }
+    if (settings_.max_steps_in_flight != 0) tickets_[newest_++ % most_steps_in_flight] = stepper_.ticket();
+    return ok_status();
+}
+
+Status FrameDriver::take_steps(std::uint64_t nanoseconds, Frame& frame) {
+    if (!state_.lost()) return state_.lost();
+    frame = {};
+    frame.dropped = clock_.add(nanoseconds);
+    while (clock_.due()) {
+        bool taken = ahead_;
+        if (ahead_) {
+            ahead_ = false;
+        } else if (frame.steps < settings_.max_steps_per_update) {
+            if (auto status = take_step(taken); !status) return status;
+            frame.steps += taken ? 1 : 0;
+        }
+        if (!taken) break;
+        clock_.take();
+    }
+    frame.dropped = add(frame.dropped, clock_.drop());
+    dropped_total_ = add(dropped_total_, frame.dropped);
+    frame.dropped_total = dropped_total_;
+    frame.total_steps = state_.steps;
+    frame.time = static_cast<double>(state_.steps) * state_.settings().dt;
+    frame.interpolation = clock_.phase();
+    return ok_status();
+}
+
+Status FrameDriver::begin_parts() {
+    if (!settings_.spread || ahead_) return ok_status();
+    // The last part falls due with the step itself.
+    const int due = std::min(stepper_.parts() - 1, static_cast<int>(clock_.phase() * stepper_.parts()));
+    while (stepper_.parts_done() < due && device_keeps_up()) {
+        if (auto status = stepper_.step_part(); !status) return status;
+    }
+    return ok_status();
+}
+
+} // namespace wadi

@@ -1,0 +1,130 @@
+#include "engine/saves/roll_back.hpp"
+#include <algorithm>
+
+namespace wadi {
+
+Status RollBack::set(std::uint32_t frames, std::uint32_t interval) {
+    if (frames > most_frames) {
+        return error(Code::bad_argument,
+                     "set_rollback: frames is " + std::to_string(frames) + ", allowed are 0 ... " + std::to_string(most_frames));
+    }
+    if (frames > 0 && interval == 0) return error(Code::bad_argument, "set_rollback: interval_steps is 0, allowed are 1 or more");
+    if (!state_.lost()) return state_.lost();
+    clear();
+    frames_ = std::vector<Frame>(frames);
+    interval_ = interval;
+    recording_ = state_.recording();
+    auto status = ok_status();
+    for (std::size_t n = 0; n < frames_.size() && status; ++n) status = fit(frames_[n], n);
+    if (status) return restart();
+    clear();
+    return status;
+}
+
+void RollBack::clear() {
+    for (auto& frame : frames_) {
+        frame.keep.reset();
+        frame.restore.reset();
+        for (const auto& [name, item] : frame.fields) state_.free_buffer(item.buffer, item.bytes);
+    }
+    frames_.clear();
+}
+
+// Gives a frame the buffers of the plan. A new one is zero, as the field was when the plan lacked it.
+Status RollBack::fit(Frame& frame, std::size_t number) {
+    const auto planned = state_.kept_fields();
+    std::erase_if(frame.fields, [&](const auto& entry) {
+        if (std::any_of(planned.begin(), planned.end(), [&](const KeptField& f) { return f.name == entry.first; })) return false;
+        state_.free_buffer(entry.second.buffer, entry.second.bytes);
+        return true;
+    });
+    for (const auto& field : planned) {
+        if (frame.fields.contains(field.name)) continue;
+        const std::string label = "roll-back " + std::to_string(number) + " " + field.name;
+        auto made = state_.make_buffer({field.bytes, label});
+        if (!made) return state_.note(made.status());
+        frame.fields[field.name] = {*made, label, field.bytes};
+    }
+    const auto program = [&](bool back) {
+        const auto build = [this, &frame, back](compute::ProgramBuilder& builder, const Parity& parity) {
+            for (const auto& [name, item] : frame.fields) {
+                const auto now = state_.buffer(name, parity);
+                builder.copy({back ? item.buffer : now, back ? now : item.buffer, 0, 0, item.bytes});
+            }
+            return ok_status();
+        };
+        return std::make_unique<StateProgram>(state_, back ? "roll back" : "keep for roll-back", build);
+    };
+    frame.keep = program(false);
+    frame.restore = program(true);
+    return ok_status();
+}
+
+// After a promotion old frames go on with the new plan; what a smaller plan cannot hold is forgotten.
+Status RollBack::fit() {
+    if (recording_ == state_.recording()) return ok_status();
+    for (std::size_t n = 0; n < frames_.size(); ++n) {
+        if ((frames_[n].effects & ~state_.plan().effects) != 0) frames_[n].kept = false;
+        if (auto status = fit(frames_[n], n); !status) {
+            clear();
+            return status;
+        }
+    }
+    recording_ = state_.recording();
+    return ok_status();
+}
+
+std::vector<std::uint64_t> RollBack::steps() const {
+    std::vector<std::uint64_t> steps;
+    for (const auto& frame : frames_) {
+        if (frame.kept && (frame.effects & ~state_.plan().effects) == 0) steps.push_back(frame.totals.steps);
+    }
+    std::sort(steps.begin(), steps.end());
+    return steps;
+}
+
+Result<std::uint64_t> RollBack::go_back(std::uint64_t step) {
+    if (auto status = fit(); !status) return status;
+    Frame* newest = nullptr;
+    for (auto& frame : frames_) {
+        if (!frame.kept || frame.totals.steps > step) continue;
+        if (newest == nullptr || frame.totals.steps > newest->totals.steps) newest = &frame;
+    }
+    if (newest == nullptr) {
+        const auto kept = steps();
+        return error(Code::bad_argument, "roll_back: no step up to " + std::to_string(step) + " is kept" +
+                                             (kept.empty() ? "" : "; the oldest is " + std::to_string(kept.front())));
+    }
+    if (newest->material != state_.settings().material) {
+        if (auto status = stepper_.set_material(newest->material); !status) return status;
+        if (auto status = fit(); !status) return status; // effects may have changed with it
+    }
+    if (auto ticket = newest->restore->submit(); !ticket) return ticket.status();
+    stepper_.set_totals(newest->totals);
+    for (auto& frame : frames_) frame.kept &= frame.totals.steps <= newest->totals.steps;
+    return newest->totals.steps;
+}
+
+Status RollBack::keep() {
+    if (frames_.empty()) return ok_status();
+    if (auto status = fit(); !status) return status;
+    const auto age = [](const Frame& frame) { return frame.kept ? frame.totals.steps + 1 : 0; }; // free ones first
+    auto& frame =
+        *std::min_element(frames_.begin(), frames_.end(), [&](const Frame& a, const Frame& b) { return age(a) < age(b); });
+    frame.kept = false;
+    if (auto ticket = frame.keep->submit(); !ticket) return ticket.status();
+    frame.totals = stepper_.totals();
+    frame.effects = state_.plan().effects;
+    frame.material = state_.settings().material;
+    frame.kept = true;
+    return ok_status();
+}
+
+Status RollBack::after_step() { return frames_.empty() || state_.steps % interval_ != 0 ? ok_status() : keep(); }
+
+Status RollBack::restart() {
+    for (auto& frame : frames_) frame.kept = false;
+    return keep();
+}
+
+} // namespace wadi

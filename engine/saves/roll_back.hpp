@@ -1,0 +1,50 @@
+// A ring of earlier states on the device, to go back to.
+#pragma once
+#include "engine/step/state_program.hpp"
+#include "engine/step/stepper.hpp"
+
+namespace wadi {
+
+class RollBack {
+  public:
+    static constexpr std::uint32_t most_frames = 256;
+
+    RollBack(WorldState& state, Stepper& stepper) : state_(state), stepper_(stepper) {}
+
+    /// Keeps the newest `frames` of: the state now, and every step that is a multiple of `interval`. 0 frames frees everything.
+    /// Earlier frames are forgotten. Errors: bad_argument, out_of_memory (roll-back is then off).
+    Status set(std::uint32_t frames, std::uint32_t interval);
+    /// Steps that can be gone back to, oldest first.
+    std::vector<std::uint64_t> steps() const;
+    /// Goes to the newest kept step <= `step`, which it returns, and forgets the later ones. Parts of a step are given up.
+    /// Waits only where the material was another then. Errors: bad_argument (nothing so old is kept), those of
+    /// Stepper::set_material().
+    Result<std::uint64_t> go_back(std::uint64_t step);
+    /// Keeps the state if its step is due.
+    Status after_step();
+    /// The state has another past now: forgets all frames and keeps the state as it is.
+    Status restart();
+
+  private:
+    struct Frame {
+        bool kept = false;
+        std::uint32_t effects = 0;
+        Material material;
+        HostTotals totals;
+        std::map<std::string, MemoryItem> fields;
+        std::unique_ptr<StateProgram> keep, restore;
+    };
+
+    Status fit();
+    Status fit(Frame& frame, std::size_t number);
+    Status keep();
+    void clear();
+
+    WorldState& state_;
+    Stepper& stepper_;
+    std::vector<Frame> frames_;
+    std::uint32_t interval_ = 1;
+    std::uint64_t recording_ = 0; // that the frames' buffers fit
+};
+
+} // namespace wadi

@@ -1,0 +1,78 @@
+#include "engine/saves/snapshot_format.hpp"
+#include "engine/settings/material_keys.hpp"
+#include <cstring>
+
+namespace wadi {
+
+namespace {
+
+constexpr char magic[] = "WADISNAP";
+constexpr std::size_t fields_at = 12, material_at = 80, name_bytes = 32, field_bytes = name_bytes + 8, total_bytes = 16;
+
+std::size_t fixed_bytes() { return material_at + 8 * material_keys().size(); }
+
+} // namespace
+
+std::uint64_t SnapshotHeader::begin_of(std::size_t field) const {
+    std::uint64_t at = fixed_bytes() + total_bytes * totals.inputs.size() + field_bytes * fields.size();
+    for (std::size_t n = 0; n < field; ++n) at += fields[n].bytes;
+    return at;
+}
+
+void write_header(const SnapshotHeader& header, std::span<std::byte> to) {
+    begin_sealed(to.first(header.bytes()), magic, snapshot_version);
+    std::size_t at = fields_at;
+    put(to, at, static_cast<std::uint32_t>(header.fields.size()));
+    at = sealed_header_bytes;
+    put(to, at, header.nx);
+    put(to, at, header.ny);
+    put(to, at, header.effects);
+    put(to, at, static_cast<std::uint32_t>(header.totals.inputs.size()));
+    put(to, at, header.level);
+    put(to, at, header.totals.steps);
+    put(to, at, header.totals.sand_initial);
+    put(to, at, header.totals.water_initial);
+    for (int key = 0; key < static_cast<int>(material_keys().size()); ++key) put(to, at, material_value(header.material, key));
+    for (const auto& total : header.totals.inputs) {
+        put(to, at, total.metres);
+        put(to, at, total.quanta);
+    }
+    for (const auto& field : header.fields) {
+        char name[name_bytes] = {};
+        field.name.copy(name, name_bytes - 1);
+        std::memcpy(to.data() + at, name, name_bytes);
+        at += name_bytes;
+        put(to, at, field.bytes);
+    }
+}
+
+Result<SnapshotHeader> read_header(std::span<const std::byte> snapshot) {
+    const auto broken = [](const std::string& what) { return error(Code::bad_file, "snapshot: " + what); };
+    if (auto status = check_sealed("snapshot", snapshot, magic, snapshot_version, fixed_bytes()); !status) return status;
+    const std::uint64_t bytes = snapshot.size();
+    SnapshotHeader header;
+    header.nx = get<std::int32_t>(snapshot, 32);
+    header.ny = get<std::int32_t>(snapshot, 36);
+    header.effects = get<std::uint32_t>(snapshot, 40);
+    header.level = get<std::uint64_t>(snapshot, 48);
+    header.totals = {get<std::uint64_t>(snapshot, 56), get<std::int64_t>(snapshot, 64), get<std::int64_t>(snapshot, 72), {}};
+    const std::uint64_t totals = get<std::uint32_t>(snapshot, 44), fields = get<std::uint32_t>(snapshot, fields_at);
+    std::size_t at = material_at;
+    for (int key = 0; key < static_cast<int>(material_keys().size()); ++key, at += 8)
+        set_material_value(header.material, key, get<double>(snapshot, at));
+    if (auto status = validate(header.material); !status) return broken(status.message);
+    if (at + totals * total_bytes + fields * field_bytes > bytes) return broken("its lists pass its end");
+    for (std::uint64_t n = 0; n < totals; ++n, at += total_bytes)
+        header.totals.inputs.push_back({get<double>(snapshot, at), get<double>(snapshot, at + 8)});
+    std::uint64_t end = at + fields * field_bytes;
+    for (std::uint64_t n = 0; n < fields; ++n, at += field_bytes) {
+        const char* name = reinterpret_cast<const char*>(snapshot.data() + at);
+        header.fields.push_back({std::string(name, strnlen(name, name_bytes)), get<std::uint64_t>(snapshot, at + name_bytes)});
+        if (header.fields.back().bytes > bytes - end) return broken("field '" + header.fields.back().name + "' passes its end");
+        end += header.fields.back().bytes;
+    }
+    if (end != bytes) return broken("bytes follow its last field");
+    return header;
+}
+
+} // namespace wadi

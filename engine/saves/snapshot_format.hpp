@@ -1,0 +1,47 @@
+// A snapshot as bytes: what lies where, the checksum, and for which level it is.
+//
+// Little-endian, version 2:
+//      0  char[8]  "WADISNAP"
+//      8  u32      version
+//     12  u32      number of fields
+//     16  u64      bytes in all
+//     24  u64      checksum of all other bytes
+//     32  i32[2]   cells along x and y
+//     40  u32      effects mask
+//     44  u32      number of running totals
+//     48  u64      digest of the level's settings
+//     56  u64      steps
+//     64  i64[2]   quanta of sand and water that the books began with
+//     80  f64      per number of material_keys(): its value
+//      .  f64[2]   per running total: metres, whole quanta
+//      .  per field: char[32] name, u64 bytes
+//      .  the fields in that order, as they lie on the device, ghosts included
+#pragma once
+#include "engine/saves/sealed_bytes.hpp"
+#include "engine/step/stepper.hpp"
+#include <cstddef>
+#include <span>
+
+namespace wadi {
+
+constexpr std::uint32_t snapshot_version = 2;
+
+struct SnapshotHeader {
+    int nx = 0, ny = 0;
+    std::uint32_t effects = 0;
+    std::uint64_t level = 0; // level_digest()
+    Material material;       // the level's, as the host changed it since
+    HostTotals totals;
+    std::vector<KeptField> fields;
+
+    /// Bytes of the snapshot and where the contents of a field begin.
+    std::uint64_t bytes() const { return begin_of(fields.size()); }
+    std::uint64_t begin_of(std::size_t field) const;
+};
+
+/// Writes all but the fields' contents and the checksum, which seal() sets in the end; `to` has header.bytes().
+void write_header(const SnapshotHeader& header, std::span<std::byte> to);
+/// Errors: bad_file (no snapshot, a newer version, truncated, changed).
+Result<SnapshotHeader> read_header(std::span<const std::byte> snapshot);
+
+} // namespace wadi

@@ -1,0 +1,202 @@
+#include "engine/saves/snapshots.hpp"
+#include <algorithm>
+#include <cstring>
+
+namespace wadi {
+
+namespace {
+
+// What a world with these effects may hold.
+Content content_under(std::uint32_t effects) { return {(effects & EFFECT_SAND) != 0, (effects & EFFECT_WATER) != 0}; }
+
+Content operator|(Content a, Content b) { return {a.sand || b.sand, a.water || b.water}; }
+
+} // namespace
+
+SnapshotHeader Snapshots::header() const {
+    return {state_.layout().nx,         state_.layout().ny, state_.plan().effects, state_.level(),
+            state_.settings().material, stepper_.totals(),  state_.kept_fields()};
+}
+
+Status Snapshots::save(std::span<std::byte> to) {
+    const auto header = this->header();
+    if (to.size() < header.bytes()) {
+        return error(Code::bad_argument, "save: size is " + std::to_string(to.size()) + ", the snapshot needs " +
+                                             std::to_string(header.bytes()) + " bytes");
+    }
+    to = to.first(header.bytes());
+    write_header(header, to);
+    for (std::size_t n = 0; n < header.fields.size(); ++n) {
+        const auto& field = header.fields[n];
+        const auto from = state_.buffer(field.name, state_.parity());
+        auto status = state_.note(state_.device().read(from, 0, to.subspan(header.begin_of(n), field.bytes)));
+        if (!status) return status;
+    }
+    seal(to);
+    return ok_status();
+}
+
+Status Snapshots::check(const SnapshotHeader& header) const {
+    const auto& layout = state_.layout();
+    if (header.nx != layout.nx || header.ny != layout.ny) {
+        return error(Code::bad_argument, "load: the snapshot is of " + std::to_string(header.nx) + " x " +
+                                             std::to_string(header.ny) + " cells, the world has " + std::to_string(layout.nx) +
+                                             " x " + std::to_string(layout.ny));
+    }
+    if (header.level != state_.level())
+        return error(Code::bad_argument, "load: the snapshot is of a level with other settings (dt, material, method, sides or "
+                                         "sources)");
+    Settings settings = state_.settings();
+    settings.material = header.material;
+    auto effects = effects_required(settings, content_under(header.effects) | state_.content);
+    if (!effects) return effects.status();
+    if (const auto lacking = header.effects & ~(effects->mask | state_.plan().effects); lacking != 0) {
+        return error(Code::bad_argument,
+                     "load: the snapshot has effects that this world's level does not allow: " + effect_names(lacking));
+    }
+    const auto kept = state_.kept_fields(make_step_plan(header.effects, state_.plan().substeps));
+    for (const auto& field : header.fields) {
+        const auto found = std::find_if(kept.begin(), kept.end(), [&](const KeptField& k) { return k.name == field.name; });
+        if (found == kept.end() || found->bytes != field.bytes) {
+            return error(Code::bad_file, "snapshot: field '" + field.name + "' of " + std::to_string(field.bytes) +
+                                             " bytes is not one of this world");
+        }
+    }
+    if (header.totals.inputs.size() != stepper_.totals().inputs.size())
+        return error(Code::bad_file, "snapshot: it has " + std::to_string(header.totals.inputs.size()) + " running totals");
+    return ok_status();
+}
+
+// A field that the snapshot lacks was zero there, but without mixture the water in the sand moved with the rest of the water.
+Status Snapshots::write_fields(const SnapshotHeader& header, std::span<const std::byte> from) {
+    const auto find = [&](const std::string& name) {
+        std::span<const std::byte> contents;
+        for (std::size_t n = 0; n < header.fields.size(); ++n) {
+            if (header.fields[n].name == name) contents = from.subspan(header.begin_of(n), header.fields[n].bytes);
+        }
+        return contents;
+    };
+    const bool one_layer = (header.effects & (EFFECT_WATER | EFFECT_SAND)) == (EFFECT_WATER | EFFECT_SAND);
+    std::vector<std::byte> zeros;
+    for (const auto& field : state_.kept_fields()) {
+        auto contents = find(field.name);
+        if (contents.empty() && one_layer && field.name.starts_with("mixed_")) contents = find("water_" + field.name.substr(6));
+        if (contents.empty()) {
+            zeros.resize(std::max<std::size_t>(zeros.size(), field.bytes));
+            contents = std::span(zeros).first(field.bytes);
+        }
+        auto status = state_.note(state_.device().write(state_.buffer(field.name, state_.parity()), 0, contents));
+        if (!status) return status;
+    }
+    return ok_status();
+}
+
+Status Snapshots::load(std::span<const std::byte> from) {
+    auto header = read_header(from);
+    if (!header) return header.status();
+    if (auto status = check(*header); !status) return status;
+    if (!state_.lost()) return state_.lost();
+    const Material before = state_.settings().material;
+    if (auto status = stepper_.set_material(header->material); !status) return status;
+    if ((header->effects & ~state_.plan().effects) != 0) {
+        auto status = stepper_.hold(content_under(header->effects) | state_.content);
+        if (!status) {
+            if (auto back = stepper_.set_material(before); !back) return back;
+            return status;
+        }
+    }
+    stepper_.set_totals(header->totals);
+    return write_fields(*header, from);
+}
+
+Status Snapshots::make_buffers() {
+    if (copies_ && recording_ == state_.recording()) return ok_status();
+    copies_.reset();
+    for (const auto& [name, copy] : readback_) state_.free_buffer(copy.buffer, copy.memory.size());
+    readback_.clear();
+    for (const auto& field : state_.kept_fields()) {
+        auto made = state_.make_buffer({field.bytes, "save " + field.name, compute::HostAccess::readback});
+        if (!made) return state_.note(made.status());
+        readback_[field.name] = {*made, state_.device().mapped(*made)};
+    }
+    recording_ = state_.recording();
+    copies_.emplace(state_, "save", [this](compute::ProgramBuilder& builder, const Parity& parity) {
+        for (const auto& [name, copy] : readback_)
+            builder.copy({state_.buffer(name, parity), copy.buffer, 0, 0, copy.memory.size()});
+        return ok_status();
+    });
+    return ok_status();
+}
+
+Status Snapshots::submit_copies() {
+    saved_ = header();
+    auto ticket = copies_->submit();
+    if (!ticket) return ticket.status();
+    copied_ = *ticket;
+    phase_ = Phase::device;
+    return ok_status();
+}
+
+Result<std::uint64_t> Snapshots::begin_save() {
+    if (!state_.lost()) return state_.lost();
+    const bool at_work = phase_ == Phase::step || (phase_ == Phase::device && !state_.device().finished(copied_)) ||
+                         (phase_ == Phase::worker && worker_.busy());
+    if (at_work) return error(Code::not_ready, "begin_save: an earlier save is still in flight");
+    phase_ = Phase::none;
+    if (auto status = make_buffers(); !status) return status;
+    ++ticket_;
+    phase_ = Phase::step;
+    if (stepper_.parts_done() > 0) return ticket_;
+    if (auto status = at_boundary(); !status) return status;
+    return ticket_;
+}
+
+Status Snapshots::at_boundary() {
+    if (phase_ != Phase::step) return ok_status();
+    auto status = make_buffers();
+    if (status) status = submit_copies();
+    if (!status) phase_ = Phase::none;
+    return status;
+}
+
+Result<std::uint64_t> Snapshots::saved_bytes(std::uint64_t ticket) const {
+    if (phase_ == Phase::none || ticket != ticket_)
+        return error(Code::bad_argument, "end_save: ticket " + std::to_string(ticket) +
+                                             " is not of the last begin_save, or its snapshot was fetched");
+    return phase_ == Phase::step ? bytes() : saved_.bytes();
+}
+
+Status Snapshots::end_save(std::uint64_t ticket, std::span<std::byte> to) {
+    auto bytes = saved_bytes(ticket);
+    if (!bytes) return bytes.status();
+    if (to.size() < *bytes) {
+        return error(Code::bad_argument, "end_save: size is " + std::to_string(to.size()) + ", the snapshot needs " +
+                                             std::to_string(*bytes) + " bytes");
+    }
+    if (!state_.lost()) return state_.lost();
+    if (phase_ == Phase::device && state_.device().finished(copied_)) {
+        if (auto status = state_.note(state_.device().wait(copied_)); !status) return status;
+        to_ = to.first(*bytes);
+        phase_ = Phase::worker;
+        worker_.start([this] { assemble(); });
+    } else if (phase_ == Phase::worker) {
+        if (to.data() != to_.data()) return error(Code::bad_argument, "end_save: data differs from that of the earlier calls");
+        if (!worker_.busy()) {
+            phase_ = Phase::none;
+            return ok_status();
+        }
+    }
+    return error(Code::not_ready, "end_save: the snapshot is not finished; ask again later");
+}
+
+// On the worker's thread: touches nothing but the header, memory that the device has finished with, and the host's.
+void Snapshots::assemble() {
+    write_header(saved_, to_);
+    for (std::size_t n = 0; n < saved_.fields.size(); ++n) {
+        const auto& field = saved_.fields[n];
+        std::memcpy(to_.data() + saved_.begin_of(n), readback_.at(field.name).memory.data(), field.bytes);
+    }
+    seal(to_);
+}
+
+} // namespace wadi

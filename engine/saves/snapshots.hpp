@@ -1,0 +1,63 @@
+// Saving and loading a world's state, to the bit: at once, or copied by the device and put together beside the host's thread.
+#pragma once
+#include "engine/saves/snapshot_format.hpp"
+#include "engine/saves/worker.hpp"
+#include "engine/step/state_program.hpp"
+#include <optional>
+
+namespace wadi {
+
+class Snapshots {
+  public:
+    Snapshots(WorldState& state, Stepper& stepper) : state_(state), stepper_(stepper) {}
+
+    /// Bytes of a snapshot of the world as it is planned now.
+    std::uint64_t bytes() const { return header().bytes(); }
+    /// Writes bytes() bytes; between two steps only. Waits for the device.
+    Status save(std::span<std::byte> to);
+    /// Goes to the state of a snapshot of the same level; between two steps only. The world is promoted to the snapshot's
+    /// effects; what those lacked is zero, as it was there. Waits. Errors: bad_file (not a whole, unchanged snapshot of a known
+    /// version), bad_argument (of another level, or with effects that this world's level forces off), out_of_memory; the world is
+    /// then unchanged.
+    Status load(std::span<const std::byte> from);
+
+    /// Has the device copy the state as it is after the steps asked for so far; never waits but allocates at its first call.
+    /// In the middle of a step: as it will be after that step. An earlier save that nobody fetched is forgotten.
+    /// Errors: not_ready while the device or the worker is still at an earlier save.
+    Result<std::uint64_t> begin_save();
+    /// Bytes that end_save() wants. Errors: bad_argument (the ticket is not of the last begin_save, or was fetched).
+    Result<std::uint64_t> saved_bytes(std::uint64_t ticket) const;
+    /// not_ready until the snapshot lies in `to`, which a worker fills from some call on: it must stay the same until then.
+    Status end_save(std::uint64_t ticket, std::span<std::byte> to);
+    /// To be called when the state is that between two steps again.
+    Status at_boundary();
+
+  private:
+    enum class Phase { none, step, device, worker }; // what the save in flight waits for
+    struct Readback {
+        compute::Buffer buffer;
+        std::span<const std::byte> memory;
+    };
+
+    SnapshotHeader header() const;
+    Status check(const SnapshotHeader& header) const;
+    Status write_fields(const SnapshotHeader& header, std::span<const std::byte> from);
+    Status make_buffers();
+    Status submit_copies();
+    void assemble();
+
+    WorldState& state_;
+    Stepper& stepper_;
+
+    Phase phase_ = Phase::none;
+    std::uint64_t ticket_ = 0;
+    SnapshotHeader saved_;
+    compute::Ticket copied_;
+    std::span<std::byte> to_;
+    std::map<std::string, Readback> readback_; // by field
+    std::optional<StateProgram> copies_;
+    std::uint64_t recording_ = 0;
+    Worker worker_; // last: it ends before what it reads
+};
+
+} // namespace wadi

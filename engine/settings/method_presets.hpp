@@ -1,0 +1,16 @@
+// Method presets: names for sets of choices in settings.method.
+#pragma once
+#include "engine/settings/settings.hpp"
+#include <string>
+#include <vector>
+
+namespace wadi {
+
+/// "robust", "published": as level files, --method and the plugin's override write them.
+const std::vector<std::string>& method_names();
+
+/// Sets method.name and everything that tells the presets apart. What a scene needs of either (substeps, largest_height,
+/// dry_threshold) stays. An unknown name sets the name alone, for validate() to refuse.
+void choose_method(Method& method, const std::string& name);
+
+} // namespace wadi

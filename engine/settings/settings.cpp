@@ -1,0 +1,275 @@
+#include "engine/compute/params.hpp"
+#include "engine/settings/effects.hpp"
+#include "engine/settings/messages.hpp"
+#include "engine/settings/method_presets.hpp"
+#include "engine/settings/scripted_edits.hpp"
+#include "engine/settings/setting_fields.hpp"
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace wadi {
+namespace {
+
+constexpr double LEVEL_MOST = 1e6; // [m], as largest_height
+constexpr double COORDINATE_MOST = double{GRID_MOST} * DX_MOST;
+
+Status refuse(std::string message) { return error(Code::bad_argument, std::move(message)); }
+
+Status check_range(const std::string& path, double value, double least, double most) {
+    if (value >= least && value <= most) return ok_status();
+    return refuse(outside_text(path, value, least, most));
+}
+
+template <class Owner, class Number, std::size_t COUNT>
+Status check_fields(const std::string& path, const Owner& owner, const SettingField<Owner, Number> (&fields)[COUNT]) {
+    for (const auto& field : fields)
+        if (Status status = check_range(path + field.name, owner.*field.member, field.least, field.most); !status) return status;
+    return ok_status();
+}
+
+Status check_series(const std::string& path, const TimeSeries& series, double least, double most) {
+    for (std::size_t n = 0; n < series.samples.size(); ++n) {
+        const std::string at = series.samples.size() == 1 ? path : path + "[" + std::to_string(n) + "]";
+        const auto [time, value] = series.samples[n];
+        if (!std::isfinite(time)) return refuse(at + ": the time is not a finite number");
+        if (n > 0 && !(time > series.samples[n - 1].first))
+            return refuse(at + ": the time " + number_text(time) + " s does not come after " +
+                          number_text(series.samples[n - 1].first) + " s");
+        if (Status status = check_range(at, value, least, most); !status) return status;
+    }
+    return ok_status();
+}
+
+Status check_grid(const Settings& settings) {
+    const Grid& grid = settings.grid;
+    if (Status status = check_range("grid.nx", grid.nx, 1, GRID_MOST); !status) return status;
+    if (Status status = check_range("grid.ny", grid.ny, 1, GRID_MOST); !status) return status;
+    if (Status status = check_range("grid.dx", grid.dx, DX_LEAST, DX_MOST); !status) return status;
+    if (Status status = check_range("dt", settings.dt, DT_LEAST, DT_MOST); !status) return status;
+    return check_range("gravity", settings.gravity, 0, GRAVITY_MOST);
+}
+
+Status check_method(const Method& method) {
+    const auto& names = method_names();
+    if (std::find(names.begin(), names.end(), method.name) == names.end())
+        return refuse("method.name: \"" + method.name + "\" is not a method" + suggestion(method.name, names));
+    if (Status status = check_fields("method.", method, METHOD_FIELDS); !status) return status;
+    if (Status status = check_fields("method.", method, METHOD_COUNTS); !status) return status;
+    if (method.gravity_cap > 0 && method.gravity_cap_least > method.gravity_cap)
+        return refuse(outside_text("method.gravity_cap_least", method.gravity_cap_least, 0, method.gravity_cap) +
+                      " (at most gravity_cap)");
+    if (method.velocity_transport == VelocityTransport::semi_lagrangian && method.velocity_clamp > SEMI_LAGRANGIAN_CLAMP_MOST)
+        return refuse(outside_text("method.velocity_clamp", method.velocity_clamp, 0.01, SEMI_LAGRANGIAN_CLAMP_MOST) +
+                      " (semi_lagrangian looks one cell back)");
+    const bool other = method.velocity_transport != VelocityTransport::flux_form ||
+                       method.strain_transport != StrainTransport::left_stretch || method.drag_friction != DragFriction::joint ||
+                       method.diffusion != Diffusion::limited || method.water_transport_order != 1;
+    if (method.half_storage && other)
+        return refuse("method.half_storage: true goes only with velocity_transport \"flux_form\", strain_transport "
+                      "\"left_stretch\", drag_friction \"joint\", diffusion \"limited\" and water_transport_order 1");
+    if (method.quantum < 0 && method.quantum > -1)
+        return refuse("method.quantum: " + number_text(method.quantum) +
+                      " is neither -1 (chosen), nor 0 (off), nor a positive height");
+    if (method.quantum > 0) {
+        int exponent = 0;
+        if (std::frexp(method.quantum, &exponent) > 0.5)
+            return refuse("method.quantum: " + number_text(method.quantum) + " is not a power of two; the next below is " +
+                          number_text(std::ldexp(1.0, exponent - 1)));
+        const double least = std::ldexp(method.largest_height, -24);
+        if (method.quantum < least || method.quantum > method.largest_height)
+            return refuse(outside_text("method.quantum", method.quantum, least, method.largest_height) +
+                          " (largest_height / 2^24 ... largest_height)");
+    }
+    return ok_status();
+}
+
+Status check_side(const Settings& settings, std::size_t index) {
+    const Side& side = settings.sides[index];
+    const std::string path = "sides." + side_names()[index];
+    const bool along_y = index == static_cast<std::size_t>(SideName::west) || index == static_cast<std::size_t>(SideName::east);
+    const double extent = (along_y ? settings.grid.ny : settings.grid.nx) * settings.grid.dx;
+    if (!(side.from >= 0 && side.from < extent)) return refuse(outside_text(path + ".from", side.from, 0, extent));
+    if (!(side.to > side.from))
+        return refuse(path + ".to: " + number_text(side.to) + " is not greater than from, " + number_text(side.from));
+    const bool has_value = side.kind == SideKind::discharge || side.kind == SideKind::level;
+    if (has_value == side.value.samples.empty())
+        return refuse(
+            path + ".value: " + (has_value ? "missing; discharge in m3/s or level in m" : "only discharge and level have one"));
+    if (side.kind == SideKind::discharge) return check_series(path + ".value", side.value, 0, DISCHARGE_MOST);
+    return check_series(path + ".value", side.value, -LEVEL_MOST, LEVEL_MOST);
+}
+
+Status check_source(const Settings& settings, std::size_t index) {
+    const Source& source = settings.sources[index];
+    const std::string path = "sources[" + std::to_string(index) + "]";
+    const double extent[2] = {settings.grid.nx * settings.grid.dx, settings.grid.ny * settings.grid.dx};
+    const bool box = source.shape == SourceShape::box;
+    const double reach = source.shape == SourceShape::disc ? source.radius : 0;
+    if (source.shape == SourceShape::disc && !(source.radius > 0 && source.radius <= COORDINATE_MOST))
+        return refuse(path + ".radius: " + number_text(source.radius) + " is not a positive length");
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        const double low = box ? source.box[axis] : source.center[axis];
+        const double high = box ? source.box[axis + 2] : low;
+        const std::string at = path + (box ? ".from" : ".center") + "[" + std::to_string(axis) + "]";
+        if (Status status = check_range(at, low, -COORDINATE_MOST, COORDINATE_MOST); !status) return status;
+        if (Status status = check_range(path + ".to[" + std::to_string(axis) + "]", high, -COORDINATE_MOST, COORDINATE_MOST);
+            box && !status)
+            return status;
+        if (box && !(high > low))
+            return refuse(path + ".to[" + std::to_string(axis) + "]: " + number_text(high) + " is not greater than from, " +
+                          number_text(low));
+        if (high + reach < 0 || low - reach >= extent[axis])
+            return refuse(path + ": lies outside the grid, which spans 0 ... " + number_text(extent[axis]) + " m in " +
+                          (axis == 0 ? "x" : "y"));
+    }
+    if (source.rate.samples.empty()) return refuse(path + ".rate: missing");
+    if (Status status = check_series(path + ".rate", source.rate, -RATE_MOST, RATE_MOST); !status) return status;
+    if (!source.set_velocity) return ok_status();
+    if (source.material != SourceMaterial::water) return refuse(path + ".velocity: only a source of water sets one");
+    for (std::size_t axis = 0; axis < 2; ++axis)
+        if (Status status =
+                check_range(path + ".velocity[" + std::to_string(axis) + "]", source.velocity[axis], -SPEED_MOST, SPEED_MOST);
+            !status)
+            return status;
+    return ok_status();
+}
+
+/// "name: ... in cell (i, j)" for the first value outside least ... most.
+Status check_field(const char* name, const std::vector<float>& field, const Grid& grid, double least, double most) {
+    const std::size_t cells = static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny);
+    if (!field.empty() && field.size() != cells)
+        return refuse(std::string(name) + ": " + std::to_string(field.size()) + " values for a grid of " +
+                      std::to_string(grid.nx) + " x " + std::to_string(grid.ny));
+    for (std::size_t n = 0; n < field.size(); ++n) {
+        const double value = static_cast<double>(field[n]);
+        if (value >= least && value <= most) continue;
+        const auto width = static_cast<std::size_t>(grid.nx);
+        return refuse(outside_text(name, value, least, most) + " in cell (" + std::to_string(n % width) + ", " +
+                      std::to_string(n / width) + ")");
+    }
+    return ok_status();
+}
+
+} // namespace
+
+const std::vector<std::string>& effect_names() {
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> found;
+        for (const Effect& effect : effect_table()) found.emplace_back(effect.name);
+        return found;
+    }();
+    return names;
+}
+
+const std::vector<std::string>& side_names() {
+    static const std::vector<std::string> names = {"west", "east", "south", "north"};
+    return names;
+}
+
+const std::vector<std::string>& velocity_transport_names() {
+    static const std::vector<std::string> names = {"flux_form", "semi_lagrangian"};
+    return names;
+}
+
+const std::vector<std::string>& strain_transport_names() {
+    static const std::vector<std::string> names = {"left_stretch", "polar", "direct"};
+    return names;
+}
+
+const std::vector<std::string>& drag_friction_names() {
+    static const std::vector<std::string> names = {"joint", "sequence"};
+    return names;
+}
+
+const std::vector<std::string>& diffusion_names() {
+    static const std::vector<std::string> names = {"limited", "laplacian"};
+    return names;
+}
+
+double height_quantum(const Method& method) {
+    if (method.quantum >= 0) return method.quantum;
+    return std::exp2(std::ceil(std::log2(method.largest_height)) - 24);
+}
+
+double TimeSeries::at(double time) const {
+    if (samples.empty()) return 0;
+    const auto next = std::upper_bound(samples.begin(), samples.end(), time,
+                                       [](double t, const std::pair<double, double>& sample) { return t < sample.first; });
+    if (next == samples.begin()) return samples.front().second;
+    if (next == samples.end()) return samples.back().second;
+    const auto [t0, v0] = *(next - 1);
+    const auto [t1, v1] = *next;
+    return v0 + (v1 - v0) * ((time - t0) / (t1 - t0));
+}
+
+Status validate(const Material& material) {
+    if (Status status = check_fields("material.", material, MATERIAL_FIELDS); !status) return status;
+    double below = 0;
+    for (std::size_t n = 0; n < material.saturation.size(); ++n) {
+        const std::string path = "material.saturation[" + std::to_string(n) + "]";
+        const double value = material.saturation[n];
+        if (Status status = check_range(path, value, 0, 1); !status) return status;
+        if (!(value - below >= SATURATION_GAP))
+            return refuse(path + ": " + number_text(value) + " must be at least " + number_text(SATURATION_GAP) + " above " +
+                          (n == 0 ? "0" : "saturation[" + std::to_string(n - 1) + "], " + number_text(below)));
+        below = value;
+    }
+    return ok_status();
+}
+
+Status validate(const Settings& settings) {
+    if (Status status = check_grid(settings); !status) return status;
+    if (Status status = validate(settings.material); !status) return status;
+    if (Status status = check_method(settings.method); !status) return status;
+    for (std::size_t n = 0; n < settings.sides.size(); ++n)
+        if (Status status = check_side(settings, n); !status) return status;
+    if (settings.sources.size() > MAX_SOURCES)
+        return refuse("sources: " + std::to_string(settings.sources.size()) + " are more than " + std::to_string(MAX_SOURCES));
+    for (std::size_t n = 0; n < settings.sources.size(); ++n)
+        if (Status status = check_source(settings, n); !status) return status;
+    if (Status status = check_series("rain", settings.rain, 0, RAIN_MOST); !status) return status;
+    if (Status status = check_series("evaporation", settings.evaporation, 0, RAIN_MOST); !status) return status;
+    if (settings.edits.size() > EDITS_MOST)
+        return refuse("edits: " + std::to_string(settings.edits.size()) + " are more than " + std::to_string(EDITS_MOST));
+    for (std::size_t n = 0; n < settings.edits.size(); ++n)
+        if (Status status = check_scripted_edit(settings, n); !status) return status;
+    if (const int side = settings.active_tiles; side != 0 && side != 8 && side != 16 && side != 32 && side != 64)
+        return refuse("active_tiles: " + std::to_string(side) + " is not 0 (off), 8, 16, 32 or 64");
+    if (Status status = check_range("active_tiles_most", settings.active_tiles_most, 0, 1); !status) return status;
+    for (const auto& [name, force] : settings.effects) {
+        const auto& names = effect_names();
+        if (std::find(names.begin(), names.end(), name) == names.end())
+            return refuse("effects." + name + ": unknown effect" + suggestion(name, names));
+    }
+    return ok_status();
+}
+
+Status validate(const InitialFields& fields, const Settings& settings) {
+    const Grid& grid = settings.grid;
+    const double most = settings.method.largest_height;
+    if (Status status = check_field("terrain", fields.terrain, grid, -most, most); !status) return status;
+    if (Status status = check_field("sand", fields.sand, grid, 0, most); !status) return status;
+    if (Status status = check_field("water", fields.water, grid, 0, most); !status) return status;
+    const std::pair<const char*, const std::vector<float>*> velocities[] = {{"velocity_x", &fields.velocity_x},
+                                                                            {"velocity_y", &fields.velocity_y},
+                                                                            {"sand_velocity_x", &fields.sand_velocity_x},
+                                                                            {"sand_velocity_y", &fields.sand_velocity_y}};
+    for (const auto& [name, field] : velocities)
+        if (Status status = check_field(name, *field, grid, -SPEED_MOST, SPEED_MOST); !status) return status;
+
+    const std::size_t cells = static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny);
+    for (std::size_t n = 0; n < cells; ++n) {
+        double column = 0;
+        for (const std::vector<float>* part : {&fields.terrain, &fields.sand, &fields.water})
+            if (!part->empty()) column += static_cast<double>((*part)[n]);
+        if (column <= most) continue;
+        const auto width = static_cast<std::size_t>(grid.nx);
+        return refuse("the column of terrain, sand and water in cell (" + std::to_string(n % width) + ", " +
+                      std::to_string(n / width) + ") is " + number_text(column) + " m high, above method.largest_height, " +
+                      number_text(most) + " m");
+    }
+    return ok_status();
+}
+
+} // namespace wadi

@@ -1,0 +1,165 @@
+// What a world is made of: grid, material, method, sides, sources. Plain data in SI units with defaults; the level
+// loader fills it from JSON, hosts fill it by hand. validate() checks every field and names field and range.
+#pragma once
+#include "engine/compute/status.hpp"
+#include "engine/settings/edit.hpp"
+#include <array>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace wadi {
+
+/// Cell-centred grid. Row j = 0 is the south side, column i = 0 the west side.
+struct Grid {
+    int nx = 0;    // cells along x, 1 ... 16384
+    int ny = 0;    // cells along y, 1 ... 16384
+    double dx = 0; // side of the square cells [m], 1e-4 ... 1e4
+};
+
+/// Sand and water properties. Sources: paper Table 1 and section 3.3; values NUMERICS.md section 4.
+struct Material {
+    double water_density = 1000;                          // [kg/m3], 1 ... 1e5
+    double sand_density = 2000;                           // [kg/m3], 1 ... 1e5
+    double friction = 0.5;                                // mu, Coulomb friction of sand on the ground, 0 ... 10
+    double young_modulus = 2e5;                           // E [Pa], 0 ... 1e12; 0 = friction-only sand
+    double poisson_ratio = 0.3;                           // nu, 0 ... 0.49
+    double yield_friction = 0.4;                          // c_f of the Drucker-Prager yield surface, 0.01 ... 10
+    double cohesion_dry = 0;                              // c0 [Pa], 0 ... 1e12
+    double cohesion_wet = 2e4;                            // c1 at saturation phi1 [Pa]
+    double cohesion_capillary = 2e4;                      // c2 at saturation phi2 [Pa]
+    std::array<double, 3> saturation = {0.2, 0.25, 0.33}; // phi1 < phi2 < phi3, 0 ... 1
+    double exchange_rate = 1e5;   // c_e [kg/(m3 s)], 0 ... 1e15: momentum exchange between mixed water and sand
+    double diffusion_rate = 0.01; // c_d [m2/s], 0 ... 1e6
+    double bed_shear = 0;         // c of the stress rho_w c |u|^2 of pure water on sand, 0 ... 10; 0 = off
+    double grain_size = 1e-3;     // [m], 1e-6 ... 1: how much stress bed load needs
+    double bed_friction = 0;      // c of u/(1 + dt c |u|/h) for pure water, dimensionless, 0 ... 10; 0 = off
+    friend bool operator==(const Material&, const Material&) = default;
+};
+
+/// How velocities move with the flow (NUMERICS 2.3): by the mass fluxes, or traced back along the velocity as the paper does.
+enum class VelocityTransport : std::uint8_t { flux_form, semi_lagrangian };
+
+/// What moves with the sand of its deformation gradient F (NUMERICS 2.5, 2.13): the left stretch V (F = V R), the angle of R and
+/// the right stretch P apart (F = R P, the paper's choice), or F as it is.
+enum class StrainTransport : std::uint8_t { left_stretch, polar, direct };
+
+/// Drag and friction (NUMERICS 2.8, 2.14): one implicit solve, or explicit drag and then friction, as the paper has it.
+enum class DragFriction : std::uint8_t { joint, sequence };
+
+/// Diffusion of mixed water (NUMERICS 2.1, 2.15): a limited flux, zero in a lake at rest, or the Laplacian of the paper.
+enum class Diffusion : std::uint8_t { limited, laplacian };
+
+/// How water and sand are stepped. Every guard is off at a neutral value, so that any one can be studied alone.
+struct Method {
+    std::string name = "robust";
+    int substeps = 3;             // T, sand substeps per water step, 1 ... 64
+    bool outflow_limiter = true;  // NUMERICS 2.2
+    double quantum = -1;          // [m]; -1 = chosen from largest_height, 0 = plain float
+    double largest_height = 16;   // declared largest column H + hs + W [m], 1e-3 ... 1e6
+    double dry_threshold = 1e-5;  // eps [m], 1e-12 ... 1
+    double velocity_clamp = 0.35; // alpha: |u| <= alpha dx/dt, 0.01 ... 1e6
+    double gravity_cap = 0.55;    // NUMERICS 2.4b; 0 = off
+    double gravity_cap_least = 0.15;
+    double sand_gravity_cap = 0.25; // NUMERICS 2.7; 0 = off
+    double elastic_cap = 0.2;       // lambda + 2 mu <= elastic_cap rho_s dx^2/dts^2; 0 = off
+    double shock_viscosity = 0;     // c1 of NUMERICS 2.3, damps the ripples behind a bore; 0 = off
+    double bulk_viscosity = 0;      // beta of NUMERICS 2.7, damps elastic waves; 0 = off
+    double rest_surface = 1e-5;     // eta_rest [m]; 0 with rest_velocity 0 = off
+    double rest_velocity = 1e-3;    // v_rest [m/s]
+    double passive_pressure = 1;    // K of the compression cap, NUMERICS 2.7; 0 = off
+    double gradient_clamp = 0.4;    // largest |dts grad v| entry; 0 = off
+    double cohesion_cap = 0.9;      // c <= 2 c_f cohesion_cap rho_s g hs; 0 = off
+    double stress_taper = 0;        // h_el [m]: stress fades in between h_el and 2 h_el; 0 = off
+    int saturation_smoothing = 2;   // radius in cells of the low-pass before the cohesion lookup: 0, 1, 2
+    VelocityTransport velocity_transport = VelocityTransport::flux_form; // semi_lagrangian: velocity_clamp at most 1
+    StrainTransport strain_transport = StrainTransport::left_stretch;
+    DragFriction drag_friction = DragFriction::joint;
+    Diffusion diffusion = Diffusion::limited;
+    bool half_storage = false;     // velocities and stretch lie in memory as 16-bit floats (NUMERICS 2.17)
+    int water_transport_order = 1; // of heights and flux-form velocities of water (NUMERICS 2.2, 2.3, 2.16): 1, 2
+};
+
+/// A value over time: linear between samples, constant outside. One sample = constant.
+struct TimeSeries {
+    std::vector<std::pair<double, double>> samples; // (time [s], value), times increasing
+    double at(double time) const;
+};
+
+enum class SideKind : std::uint8_t { wall, discharge, level, outflow };
+enum class SideName : std::uint8_t { west, east, south, north };
+
+/// One side of the domain; open between `from` and `to` along it, wall elsewhere.
+struct Side {
+    SideKind kind = SideKind::wall;
+    double from = 0;  // [m] from the side's south or west end
+    double to = 1e30; // [m]
+    TimeSeries value; // discharge [m3/s] into the domain, or free surface [m]
+};
+
+enum class SourceShape : std::uint8_t { point, disc, box };
+enum class SourceMaterial : std::uint8_t { water, sand };
+
+/// A source (or sink, where the rate is negative) of water or sand.
+struct Source {
+    SourceShape shape = SourceShape::disc;
+    SourceMaterial material = SourceMaterial::water;
+    std::array<double, 2> center = {0, 0};    // point and disc [m]
+    double radius = 0;                        // disc [m]
+    std::array<double, 4> box = {0, 0, 0, 0}; // x0, y0, x1, y1 [m]
+    TimeSeries rate;                          // depth per time [m/s]
+    bool set_velocity = false;
+    std::array<double, 2> velocity = {0, 0}; // forced on the water's faces inside while the rate is positive [m/s]
+};
+
+/// What the level wants of one effect: derived from content, or forced.
+enum class Force : std::uint8_t { automatic, on, off };
+
+/// Everything but the fields themselves.
+enum class FusedStages : std::uint8_t { automatic, always, never };
+
+struct Settings {
+    Grid grid;
+    double dt = 0;         // water time step [s], 1e-7 ... 100
+    double gravity = 9.81; // [m/s2], 0 ... 1000
+    Material material;
+    Method method;
+    std::array<Side, 4> sides;                          // indexed by SideName
+    std::vector<Source> sources;                        // at most MAX_SOURCES (32)
+    TimeSeries rain;                                    // [m/s]
+    TimeSeries evaporation;                             // [m/s]
+    std::vector<ScriptedEdit> edits;                    // at most 1000; the world queues them itself
+    std::vector<std::pair<std::string, Force>> effects; // names of engine/settings/effect_table.cpp
+    /// Side of the active tiles [cells]: 8, 16, 32 or 64, 0 = off. Tiles in which nothing changes any more are left out of a
+    /// step. How a world is run, not what it is: every bit stays, also in snapshots and between worlds that have it and that do
+    /// not.
+    int active_tiles = 0;
+    /// Whether a step's stages run fused, several in a pass over tiles, or one by one: every bit stays. Left to the engine: where
+    /// the device gains from it (engine/README.md).
+    FusedStages fused_stages = FusedStages::automatic;
+    /// Share of active tiles above which the log is told, once per crossing, 0 ... 1; 1 = never.
+    double active_tiles_most = 1;
+};
+
+/// Initial fields in row-major nx * ny order, row 0 in the south; empty = zero everywhere.
+struct InitialFields {
+    std::vector<float> terrain;    // H [m]
+    std::vector<float> sand;       // hs, depth of sand on the terrain [m]
+    std::vector<float> water;      // W, depth of all water [m]
+    std::vector<float> velocity_x; // of water and mixed water at cell centres [m/s]
+    std::vector<float> velocity_y;
+    std::vector<float> sand_velocity_x; // [m/s]
+    std::vector<float> sand_velocity_y;
+};
+
+/// Q: the height quantum the settings ask for [m]; 0 = plain float (NUMERICS 2.2).
+double height_quantum(const Method& method);
+
+/// Checks every number; the message names the field as the level file writes it, its value and its range.
+Status validate(const Settings& settings);
+Status validate(const Material& material);
+/// Checks sizes and finiteness (the message gives the first bad cell), non-negative depths, the declared largest height.
+Status validate(const InitialFields& fields, const Settings& settings);
+
+} // namespace wadi

@@ -1,0 +1,33 @@
+// How many active tiles a step ran over, as the host learns it: a step or more late, and without waiting. A world in which none
+// is active any more is asleep: its steps submit nothing.
+#pragma once
+#include "engine/step/world_state.hpp"
+
+namespace wadi {
+
+class ActiveCount {
+  public:
+    explicit ActiveCount(WorldState& state) : state_(state) {}
+    /// Appends the copy of the count to the program of a turn, behind the passes that make the list.
+    Status append(compute::ProgramBuilder& builder, int turn);
+    /// A step was submitted, `woken` with tiles that its input wakes.
+    void submitted(int turn, compute::Ticket ticket, bool woken);
+    /// A submission that nothing has woken since has finished and ran over no tile. Tells the log where the share of active tiles
+    /// passes settings.active_tiles_most.
+    bool asleep();
+
+  private:
+    struct Slot {
+        compute::Buffer buffer;
+        compute::Ticket ticket; // of the newest submission; 0 = none
+    };
+    void report(std::uint32_t count);
+
+    WorldState& state_;
+    std::array<Slot, 2> slots_{};
+    std::uint64_t woken_ = 0, seen_ = 0; // tickets: of the newest submission that woke tiles, and of the newest count
+    std::uint32_t newest_ = 1;
+    bool above_ = false;
+};
+
+} // namespace wadi

@@ -1,0 +1,93 @@
+#include "engine/step/step_inputs.hpp"
+#include "engine/step/half.hpp"
+#include "engine/step/world_params.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace wadi {
+
+StepInputs::StepInputs(const Settings& settings)
+    : settings_(settings), quantum_(height_quantum(settings.method)), totals_(settings.sources.size() + 2) {}
+
+float StepInputs::advance(Total& total, double rate) const {
+    const double depth = rate * settings_.dt;
+    if (quantum_ <= 0) return static_cast<float>(depth);
+    total.metres += depth;
+    const double quanta = std::floor(total.metres / quantum_);
+    const double difference = quanta - total.quanta;
+    total.quanta = quanta;
+    return static_cast<float>(difference * quantum_);
+}
+
+void StepInputs::set_sides(StepInput& input, double time) const {
+    const double k = settings_.dt / settings_.grid.dx;
+    for (std::size_t n = 0; n < 4; ++n) {
+        const auto& side = settings_.sides[n];
+        const int cells = n == SIDE_WEST || n == SIDE_EAST ? settings_.grid.ny : settings_.grid.nx;
+        // Cells whose centre lies in the span.
+        const double dx = settings_.grid.dx;
+        const int first = static_cast<int>(std::clamp(std::ceil(side.from / dx - 0.5), 0.0, double(cells)));
+        const int last = static_cast<int>(std::clamp(std::floor(side.to / dx - 0.5), -1.0, double(cells - 1)));
+        double value = side.value.at(time), least_depth = 0;
+        if (side.kind == SideKind::discharge) {
+            value = last >= first ? std::max(0.0, value) / ((last - first + 1) * dx) : 0.0;
+            // Deep enough that the flow into a dry cell is critical and within the velocity clamp.
+            least_depth =
+                std::max(std::cbrt(value * value / std::max(1e-9, settings_.gravity)),
+                         settings_.method.half_storage ? value / static_cast<double>(velocity_limit(settings_.method, k))
+                                                       : value * k / settings_.method.velocity_clamp);
+        }
+        input.side[n] = {static_cast<float>(value), static_cast<float>(least_depth), static_cast<float>(first),
+                         static_cast<float>(last)};
+    }
+}
+
+StepInput StepInputs::next(int step) {
+    before_ = totals_;
+    StepInput input{};
+    const double time = step * settings_.dt;
+    input.step = step;
+    const std::size_t sources = settings_.sources.size();
+    input.rain = advance(totals_[sources], settings_.rain.at(time));
+    input.evaporation = advance(totals_[sources + 1], settings_.evaporation.at(time));
+    for (std::size_t n = 0; n < sources; ++n) {
+        const auto& source = settings_.sources[n];
+        const double rate = source.rate.at(time);
+        const bool velocity = source.set_velocity && rate > 0;
+        const auto stored = [&](double v) {
+            const auto speed = static_cast<float>(std::abs(v));
+            return std::copysign(settings_.method.half_storage ? half_at_most(speed) : speed, static_cast<float>(v));
+        };
+        input.source[n] = {advance(totals_[n], rate), stored(source.velocity[0]), stored(source.velocity[1]),
+                           velocity ? 1.0F : 0.0F};
+    }
+    set_sides(input, time);
+    return input;
+}
+
+std::vector<vec4> source_shapes(const Settings& settings) {
+    std::vector<vec4> shapes(2 * MAX_SOURCES, vec4{0, 0, 0, 0});
+    const double dx = settings.grid.dx;
+    for (std::size_t n = 0; n < settings.sources.size(); ++n) {
+        const auto& s = settings.sources[n];
+        auto& shape = shapes[2 * n];
+        const auto set = [&](double x, double y, double z, double w) {
+            shape = {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), static_cast<float>(w)};
+        };
+        float kind = SOURCE_BOX;
+        if (s.shape == SourceShape::disc) {
+            kind = SOURCE_DISC;
+            set(s.center[0], s.center[1], s.radius * s.radius, 0);
+        } else if (s.shape == SourceShape::box) {
+            set(s.box[0], s.box[1], s.box[2], s.box[3]);
+        } else { // the cell that holds the point and its four faces: a quarter cell of margin, clear of every other centre
+            const double x = std::floor(s.center[0] / dx) * dx, y = std::floor(s.center[1] / dx) * dx;
+            set(x - 0.25 * dx, y - 0.25 * dx, x + 1.25 * dx, y + 1.25 * dx);
+        }
+        shapes[2 * n + 1] = {kind, static_cast<float>(s.material == SourceMaterial::water ? MATERIAL_WATER : MATERIAL_SAND), 0,
+                             0};
+    }
+    return shapes;
+}
+
+} // namespace wadi

@@ -1,0 +1,40 @@
+// What changes with every water step: sources, rain and sides over time, in whole quanta.
+#pragma once
+#include "engine/compute/params.hpp"
+#include "engine/settings/settings.hpp"
+#include <vector>
+
+namespace wadi {
+
+/// Produces the StepInput of each step in turn. A rate below one quantum per step is not lost: the running total is rounded
+/// down to whole quanta and each step gets the difference.
+class StepInputs {
+  public:
+    /// Running total of one rate.
+    struct Total {
+        double metres = 0, quanta = 0;
+    };
+    /// Of every source, then rain, then evaporation.
+    using Totals = std::vector<Total>;
+
+    explicit StepInputs(const Settings& settings);
+    /// The input of step `step`, which must be one more than at the last call.
+    StepInput next(int step);
+    /// Takes the last next() back: its step could not be submitted.
+    void undo() { totals_ = before_; }
+    const Totals& totals() const { return totals_; }
+    void set_totals(const Totals& totals) { totals_ = totals; }
+
+  private:
+    float advance(Total& total, double rate) const;
+    void set_sides(StepInput& input, double time) const;
+
+    const Settings settings_;
+    const double quantum_;
+    Totals totals_, before_; // before the last next()
+};
+
+/// Shapes as apply_sources reads them: two vec4 per source, MAX_SOURCES of them.
+std::vector<vec4> source_shapes(const Settings& settings);
+
+} // namespace wadi

@@ -1,0 +1,358 @@
+#include "engine/step/step_plan.hpp"
+#include <algorithm>
+#include <array>
+#include <set>
+#include <string_view>
+
+namespace wadi {
+
+namespace {
+
+constexpr std::string_view next_suffix = "_next";
+
+// What a list of active tiles consists of: the dispatches of a pass over tiles name them too.
+constexpr std::array tile_fields = {"activity", "active_tiles", "active_counts", "active_list", "active_dispatch"};
+
+bool is_next(const std::string& name) { return name.ends_with(next_suffix); }
+
+std::string base_name(const std::string& name) { return is_next(name) ? name.substr(0, name.size() - next_suffix.size()) : name; }
+
+const std::set<std::string> state_fields = {
+    "terrain",          "sand_height",      "water_height",    "stretch_xx",       "stretch_xy",
+    "stretch_yy",       "sand_velocity_x",  "sand_velocity_y", "water_velocity_x", "water_velocity_y",
+    "mixed_velocity_x", "mixed_velocity_y", "rotation",
+};
+
+FieldRole role_of(const std::string& name) {
+    if (state_fields.contains(name)) return FieldRole::state;
+    if (name.ends_with("ledger")) return FieldRole::ledger;
+    if (name.starts_with("activ")) return FieldRole::tiles;
+    return name == "source_shapes" ? FieldRole::shapes : FieldRole::scratch;
+}
+
+using Names = std::map<std::string, std::string>; // a stage's binding name -> the plan's field name
+
+class Builder {
+  public:
+    Builder(const StepPlan& plan, std::vector<PlanPass>& passes, bool in_substep)
+        : effects_(plan.effects), passes_(passes), in_substep_(in_substep), fused_(plan.fused),
+          by_material_(plan.tiles_by_material) {}
+
+    bool has(std::uint32_t bits) const { return (effects_ & bits) == bits; }
+
+    /// Whether the plan has fused stages and the mask allows this one.
+    bool can_fuse(const char* stage) const {
+        const auto& info = compute::stage_table()[static_cast<std::size_t>(compute::find_stage(stage))];
+        return fused_ && has(info.needs) && (effects_ & info.without) == 0;
+    }
+    bool fuse(const char* stage, std::vector<std::string> flips, const Names& names = {}) {
+        if (!can_fuse(stage)) return false;
+        run(stage, std::move(flips), names);
+        return true;
+    }
+    /// In one pass with what accelerates the sand. That pass moves the water's velocities to their other buffers, which tiles
+    /// without sand would have to do as well.
+    bool fuses_momentum_exchange() const { return !by_material_ && can_fuse("accelerate_mixture"); }
+    /// Whether active tiles have a list for each material.
+    bool tiles_by_material() const { return by_material_; }
+
+    void run(const char* stage, std::vector<std::string> flips = {}, const Names& names = {}) {
+        PlanPass pass;
+        pass.stage = compute::find_stage(stage);
+        pass.in_substep = in_substep_;
+        pass.flips = std::move(flips);
+        for (const auto& binding : compute::stage_table()[static_cast<std::size_t>(pass.stage)].bindings) {
+            const bool exists = (effects_ & binding.condition) == binding.condition;
+            const std::string name(binding.name);
+            const auto renamed = names.find(base_name(name));
+            const std::string field =
+                renamed == names.end() ? name : renamed->second + (is_next(name) ? std::string(next_suffix) : "");
+            pass.fields.push_back(exists ? field : std::string());
+        }
+        passes_.push_back(std::move(pass));
+    }
+
+  private:
+    std::uint32_t effects_;
+    std::vector<PlanPass>& passes_;
+    bool in_substep_, fused_, by_material_;
+};
+
+// Semi-Lagrangian transport of one layer's velocities, by the boundary types from before its height moved (NUMERICS 2.12).
+void plan_backtrace(Builder& b, const std::string& layer, const char* backtrace) {
+    const std::string velocity = layer + "_velocity_", type = layer + "_face_type_";
+    const Names names = {
+        {"velocity_x", velocity + "x"}, {"velocity_y", velocity + "y"}, {"face_type_x", type + "x"}, {"face_type_y", type + "y"}};
+    b.run("extrapolate_velocity", {}, names);
+    b.run(backtrace, {velocity + "x", velocity + "y"}, names);
+}
+
+void account_water(Builder& b) {
+    b.run("account_sides", {}, {{"flux_x", "water_flux_x"}, {"flux_y", "water_flux_y"}, {"side_ledger", "water_side_ledger"}});
+    if (!b.has(EFFECT_MIXTURE)) return;
+    b.run("account_sides", {}, {{"flux_x", "mixed_flux_x"}, {"flux_y", "mixed_flux_y"}, {"side_ledger", "water_side_ledger"}});
+}
+
+// Both layers' fluxes and the new height.
+void plan_water_transport(Builder& b) {
+    if (b.has(EFFECT_DIFFUSION)) b.run("diffuse_mixed_water");
+    b.run("limit_water_outflow");
+    b.run("compute_water_flux");
+    if (b.has(EFFECT_OPEN_SIDES)) account_water(b);
+    b.run("integrate_water_height", {"water_height"});
+}
+
+// Height and velocities of the water.
+void plan_water_motion(Builder& b) {
+    std::vector<std::string> moved = {"water_velocity_x", "water_velocity_y"};
+    if (b.has(EFFECT_MIXTURE)) moved.insert(moved.end(), {"mixed_velocity_x", "mixed_velocity_y"});
+    std::vector<std::string> all = moved;
+    all.push_back("water_height");
+    if (b.fuse("step_water", all) || b.fuse("step_mixed_water", all)) {
+        if (b.has(EFFECT_OPEN_SIDES)) account_water(b);
+        return;
+    }
+    plan_water_transport(b);
+    if (b.has(EFFECT_SEMI_LAGRANGIAN)) {
+        plan_backtrace(b, "water", "backtrace_water_velocity");
+        if (b.has(EFFECT_MIXTURE)) plan_backtrace(b, "mixed", "backtrace_water_velocity");
+    }
+    b.run("integrate_water_velocity", moved);
+}
+
+void plan_water(Builder b) {
+    if (b.has(EFFECT_SOURCES)) b.run("apply_sources");
+    if (b.has(EFFECT_RAIN)) b.run("apply_rain");
+    if (!b.has(EFFECT_WATER)) return;
+    if (b.has(EFFECT_OPEN_SIDES)) b.run("open_sides");
+    const bool traced = b.has(EFFECT_SEMI_LAGRANGIAN);
+    if (traced) b.run("update_water_boundary_types");
+    // In flux form the diffusive flux carries its momentum; traced velocities need a pass for it.
+    if (traced && b.has(EFFECT_LAPLACE_DIFFUSION)) b.run("diffuse_mixed_velocity", {"mixed_velocity_x", "mixed_velocity_y"});
+    plan_water_motion(b);
+    if (b.has(EFFECT_BED_SHEAR)) b.run("compute_bed_load");
+    if (b.has(EFFECT_COHESION)) b.run("compute_saturation");
+}
+
+// Stretch and sand height move.
+void plan_sand_transport(Builder& b) {
+    const std::vector<std::string> stretch = {"stretch_xx", "stretch_xy", "stretch_yy"};
+    const Names side = {{"flux_x", "sand_flux_x"}, {"flux_y", "sand_flux_y"}, {"side_ledger", "sand_side_ledger"}};
+    if (b.fuse("transport_sand", stretch)) {
+        if (b.has(EFFECT_OPEN_SIDES)) b.run("account_sides", {}, side);
+        return;
+    }
+    b.run("limit_sand_outflow");
+    b.run("compute_sand_flux");
+    if (b.has(EFFECT_OPEN_SIDES)) b.run("account_sides", {}, side);
+    b.run("integrate_sand_height");
+    if (b.has(EFFECT_WHOLE_STRAIN))
+        b.run("advect_deformation_gradient", {"stretch_xx", "stretch_xy", "stretch_yy", "rotation"});
+    else if (b.has(EFFECT_ELASTOPLASTIC))
+        b.run("evolve_deformation_gradient", stretch);
+}
+
+void plan_sand(Builder b) {
+    if (!b.has(EFFECT_SAND)) return;
+    if (b.has(EFFECT_OPEN_SIDES)) b.run("open_sand_sides");
+    if (b.has(EFFECT_SEMI_LAGRANGIAN)) b.run("update_sand_boundary_types");
+    plan_sand_transport(b);
+    // Touches only the water's velocities, which the sand's velocity stage does not read: here both sand heights are at hand.
+    if (b.has(EFFECT_MIXTURE) && !b.fuses_momentum_exchange()) b.run("compute_momentum_exchange");
+}
+
+// After the sand height has become current.
+void plan_sand_forces(Builder b) {
+    if (!b.has(EFFECT_SAND)) return;
+    if (b.has(EFFECT_ELASTOPLASTIC) && !b.can_fuse("transport_sand")) b.run("project_deformation_gradient");
+    const std::vector<std::string> sand = {"sand_velocity_x", "sand_velocity_y"};
+    std::vector<std::string> moved = sand;
+    if (b.fuses_momentum_exchange()) {
+        moved.insert(moved.end(), {"water_velocity_x", "water_velocity_y", "mixed_velocity_x", "mixed_velocity_y"});
+        b.run("accelerate_mixture", moved);
+        return;
+    }
+    Names drag;
+    if (b.has(EFFECT_DRAG)) {
+        const std::string layer = b.has(EFFECT_MIXTURE) ? "mixed_velocity_" : "water_velocity_";
+        drag = {{"drag_velocity_x", layer + "x"}, {"drag_velocity_y", layer + "y"}};
+        moved.insert(moved.end(), {layer + "x", layer + "y"});
+    }
+    if (b.fuse("accelerate_sand", moved, drag)) return;
+    if (b.has(EFFECT_SEMI_LAGRANGIAN)) plan_backtrace(b, "sand", "backtrace_sand_velocity");
+    b.run("integrate_sand_velocity", sand);
+    if (b.has(EFFECT_WHOLE_STRAIN)) b.run("stretch_deformation_gradient");
+    if (b.has(EFFECT_EXPLICIT_DRAG)) b.run("apply_drag", {}, drag);
+    b.run("apply_friction", moved, drag);
+}
+
+// One list of tiles, or one for the water's passes and one for the sand's.
+void plan_active_tiles(Builder b) {
+    if (!b.tiles_by_material()) {
+        for (const char* stage : {"mark_active_tiles", "count_active_tiles", "list_active_tiles"}) b.run(stage);
+        return;
+    }
+    b.run("choose_active_tiles");
+    b.run("look_into_tiles");
+    for (const char* stage : {"count_active_tiles", "list_active_tiles"}) {
+        for (const std::string material : {"_water", "_sand"}) {
+            Names names;
+            for (const char* name : tile_fields) names[name] = name + material;
+            b.run(stage, {}, names);
+        }
+    }
+}
+
+// Two lists, unless the substeps move the water's velocities to their other buffers, as single-layer drag does: they would have
+// to in tiles without sand, too.
+bool tells_materials_apart(std::uint32_t effects) {
+    constexpr std::uint32_t both = EFFECT_WATER | EFFECT_SAND, drag = EFFECT_DRAG | EFFECT_MIXTURE;
+    return (effects & both) == both && (effects & drag) != EFFECT_DRAG;
+}
+
+// What a pass reads on one side carries changes to the other: the sums along each direction count, and the largest of them.
+int reach_of(const StepPlan& plan) {
+    compute::Reach sum;
+    const auto add = [&](const std::vector<PlanPass>& passes, int times) {
+        for (const auto& pass : passes) {
+            const auto& stage = compute::stage_table()[static_cast<std::size_t>(pass.stage)];
+            const bool far = stage.fused() || (plan.effects & stage.far_effects) == stage.far_effects;
+            const auto most = [&](int n) { return times * (far ? n : std::min(n, 1)); };
+            sum.west += most(stage.reach.west);
+            sum.south += most(stage.reach.south);
+            sum.east += most(stage.reach.east);
+            sum.north += most(stage.reach.north);
+        }
+    };
+    add(plan.water_passes, 1);
+    add(plan.substep_passes, plan.substeps);
+    return std::max({sum.west, sum.south, sum.east, sum.north});
+}
+
+// Scratch fields whose lives do not overlap share memory. A life runs from the first to the last pass that names the field;
+// what is written before the substeps and read in them lives through all of them.
+void share_scratch(StepPlan& plan) {
+    std::vector<const PlanPass*> order;
+    for (const auto& pass : plan.water_passes) order.push_back(&pass);
+    for (const auto& pass : plan.substep_passes) order.push_back(&pass);
+    struct Life {
+        PlanField* field;
+        std::size_t first, last;
+    };
+    std::vector<Life> lives;
+    for (auto& field : plan.fields) {
+        if (field.role != FieldRole::scratch) continue;
+        Life life{&field, order.size(), 0};
+        for (std::size_t n = 0; n < order.size(); ++n) {
+            if (std::find(order[n]->fields.begin(), order[n]->fields.end(), field.name) == order[n]->fields.end()) continue;
+            life.first = std::min(life.first, n);
+            life.last = std::max(life.last, n);
+        }
+        if (life.first < plan.water_passes.size() && life.last >= plan.water_passes.size()) life.last = order.size();
+        lives.push_back(life);
+    }
+    std::sort(lives.begin(), lives.end(), [](const Life& a, const Life& b) { return a.first < b.first; });
+    std::vector<std::size_t> busy_until; // per block
+    for (auto& life : lives) {
+        if (plan.active_tiles) life.last = order.size();
+        std::size_t block = 0;
+        while (block < busy_until.size() && busy_until[block] >= life.first) ++block;
+        if (block == busy_until.size()) busy_until.push_back(0);
+        busy_until[block] = life.last;
+        life.field->memory = static_cast<int>(block);
+    }
+    plan.scratch_blocks = static_cast<int>(busy_until.size());
+}
+
+} // namespace
+
+int StepPlan::field_buffers() const {
+    int count = scratch_blocks;
+    for (const auto& field : fields) {
+        if (field.role == FieldRole::state) count += field.ping_pong ? 2 : 1;
+    }
+    return count;
+}
+
+double StepPlan::bytes_per_cell() const {
+    int bytes = 4 * scratch_blocks;
+    for (const auto& field : fields)
+        if (field.role == FieldRole::state) bytes += field.element_bytes() * (field.ping_pong ? 2 : 1);
+    return bytes;
+}
+
+double StepPlan::traffic_per_cell() const {
+    double moved = 0;
+    const auto add = [&](const PlanPass& pass, int times) {
+        const auto& stage = compute::stage_table()[static_cast<std::size_t>(pass.stage)];
+        using enum compute::Extent;
+        if (stage.extent != cells && stage.extent != faces && stage.extent != strips) return;
+        for (std::size_t n = 0; n < pass.fields.size(); ++n) {
+            const auto* field = pass.fields[n].empty() ? nullptr : find(base_name(pass.fields[n]));
+            if (field == nullptr || (field->role != FieldRole::state && field->role != FieldRole::scratch)) continue;
+            moved += times * field->element_bytes() * (stage.bindings[n].access == compute::Access::inout ? 2 : 1);
+        }
+    };
+    for (const auto& pass : water_passes) add(pass, 1);
+    for (const auto& pass : substep_passes) add(pass, substeps);
+    return moved;
+}
+
+double StepPlan::least_traffic_per_cell() const {
+    double moved = 0;
+    for (const auto& field : fields)
+        if (field.role == FieldRole::state) moved += field.element_bytes() * (field.name == "terrain" ? 1 : 2);
+    return moved;
+}
+
+std::vector<std::string> StepPlan::tile_list(bool of_substeps) const {
+    std::vector<std::string> names(tile_fields.begin(), tile_fields.end());
+    for (auto& name : names)
+        if (tiles_by_material) name += of_substeps ? "_sand" : "_water";
+    return names;
+}
+
+const PlanField* StepPlan::find(const std::string& name) const {
+    const auto found = std::find_if(fields.begin(), fields.end(), [&](const PlanField& f) { return f.name == name; });
+    return found == fields.end() ? nullptr : &*found;
+}
+
+StepPlan make_step_plan(std::uint32_t effects, int substeps, PlanChoice choice) {
+    StepPlan plan;
+    plan.active_tiles = choice.active_tiles;
+    plan.fused = choice.fused;
+    plan.effects = effects;
+    plan.substeps = substeps;
+    plan.tiles_by_material = choice.active_tiles && tells_materials_apart(effects);
+    const Builder water(plan, plan.water_passes, false), substep(plan, plan.substep_passes, true);
+    if (choice.active_tiles) plan_active_tiles(water);
+    plan_water(water);
+    plan_sand(substep);
+    if (!plan.substep_passes.empty()) plan.substep_passes.back().flips.push_back("sand_height");
+    plan_sand_forces(substep);
+
+    plan.fields.push_back({"terrain", FieldRole::state});
+    plan.fields.push_back({"source_ledger", FieldRole::ledger}); // edits count there in any world
+    for (const auto* passes : {&plan.water_passes, &plan.substep_passes}) {
+        for (const auto& pass : *passes) {
+            const auto& bindings = compute::stage_table()[static_cast<std::size_t>(pass.stage)].bindings;
+            for (std::size_t n = 0; n < pass.fields.size(); ++n) {
+                const auto& name = pass.fields[n];
+                if (name.empty()) continue;
+                const std::string base = base_name(name);
+                auto found =
+                    std::find_if(plan.fields.begin(), plan.fields.end(), [&](const PlanField& f) { return f.name == base; });
+                if (found == plan.fields.end()) found = plan.fields.insert(plan.fields.end(), {base, role_of(base)});
+                found->half = (effects & EFFECT_HALF_STORAGE) != 0 && bindings[n].type == compute::Scalar::f32_or_f16;
+                found->ping_pong |= is_next(name);
+            }
+        }
+    }
+    // By name, so that a snapshot's bytes do not tell how a world was run.
+    std::sort(plan.fields.begin(), plan.fields.end(), [](const PlanField& a, const PlanField& b) { return a.name < b.name; });
+    share_scratch(plan);
+    plan.reach = reach_of(plan);
+    return plan;
+}
+
+} // namespace wadi

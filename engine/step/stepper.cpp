@@ -1,0 +1,273 @@
+#include "engine/step/stepper.hpp"
+#include <algorithm>
+
+namespace wadi {
+
+int Stepper::parts() const { return state_.plan().substep_passes.empty() ? 1 : 1 + state_.plan().substeps; }
+
+void Stepper::drop_programs() {
+    const auto drop = [&](auto& programs) {
+        for (auto& program : programs) state_.device().destroy_program(program);
+    };
+    drop(programs_);
+    drop(timed_programs_);
+    programs_ = timed_programs_ = {};
+    for (auto& programs : part_programs_) {
+        drop(programs);
+        programs.clear();
+    }
+}
+
+Result<compute::Program> Stepper::record_step(int turn, Parity& parity, bool timestamps) {
+    compute::ProgramBuilder builder(timestamps ? "timed step" : "step");
+    if (timestamps) builder.timestamp("start");
+    const auto add = [&](const PlanPass& pass) {
+        auto status = state_.append(builder, pass, parity);
+        if (status && timestamps)
+            builder.timestamp(std::string(compute::stage_table()[static_cast<std::size_t>(pass.stage)].name));
+        return status;
+    };
+    for (const auto& pass : state_.plan().water_passes) {
+        if (auto status = add(pass); !status) return status;
+    }
+    if (state_.plan().active_tiles) {
+        if (auto status = active_.append(builder, turn); !status) return status;
+    }
+    for (int t = 0; t < state_.plan().substeps; ++t) {
+        for (const auto& pass : state_.plan().substep_passes) {
+            if (auto status = add(pass); !status) return status;
+        }
+    }
+    return state_.device().compile(builder, state_.params());
+}
+
+// A step flips each ping-pong field a fixed number of times, so two steps bring every field back: two programs suffice.
+Status Stepper::record() {
+    std::array<compute::Program, 2> fresh{};
+    Parity parity;
+    for (int turn = 0; turn < 2; ++turn) {
+        state_.set_start_parity(turn, parity);
+        auto program = record_step(turn, parity, false);
+        if (!program) {
+            state_.device().destroy_program(fresh[0]);
+            return state_.note(program.status());
+        }
+        fresh[static_cast<std::size_t>(turn)] = *program;
+    }
+    drop_programs();
+    programs_ = fresh;
+    if (!profiling_) return ok_status();
+    profiling_ = false;
+    return set_profiling(true);
+}
+
+Status Stepper::hold(Content content) {
+    auto choice = effects_required(state_.settings(), content);
+    if (!choice) return choice.status();
+    if (choice->mask != state_.effects().mask) {
+        const EffectChoice before = state_.effects();
+        auto status = state_.adopt(*choice);
+        if (!status) return state_.note(status);
+        status = record();
+        if (!status) {
+            if (auto back = state_.adopt(before); !back) return state_.note(back);
+            if (auto back = record(); !back) return back;
+            return status;
+        }
+        if (state_.log) state_.log(2, "step " + std::to_string(state_.steps) + ": effects " + effect_names(choice->mask));
+    }
+    state_.content = content;
+    return ok_status();
+}
+
+Status Stepper::set_material(const Material& material) {
+    const Material before = state_.settings().material;
+    if (material == before) return ok_status();
+    state_.set_material(material);
+    auto choice = effects_required(state_.settings(), state_.content);
+    if (!choice) {
+        state_.set_material(before);
+        return choice.status();
+    }
+    const bool same = choice->mask == state_.effects().mask;
+    const auto status = same ? record() : hold(state_.content);
+    if (status) {
+        state_.set_reasons(*choice);
+        return status;
+    }
+    state_.set_material(before);
+    if (!same) { // hold() went back to the effects, but recorded them with the new numbers
+        if (auto back = record(); !back) return back;
+    }
+    return status;
+}
+
+Status Stepper::prepare() {
+    for (const bool sand : {false, true}) {
+        for (const bool water : {false, true}) {
+            const Content content{sand, water};
+            auto choice = check_allowed(state_.settings(), content) ? effects_required(state_.settings(), content)
+                                                                    : Result<EffectChoice>(state_.effects());
+            if (!choice) return choice.status();
+            if (auto status = state_.prepare(choice->mask); !status) return state_.note(status);
+        }
+    }
+    return ok_status();
+}
+
+Status Stepper::record_parts(std::size_t turn) {
+    Parity parity = state_.parity_of(static_cast<int>(turn));
+    for (int part = 0; part < parts(); ++part) {
+        compute::ProgramBuilder builder(part == 0 ? "water part" : "sand part");
+        for (const auto& pass : part == 0 ? state_.plan().water_passes : state_.plan().substep_passes) {
+            if (auto status = state_.append(builder, pass, parity); !status) return status;
+        }
+        if (part == 0 && state_.plan().active_tiles) {
+            if (auto status = active_.append(builder, static_cast<int>(turn)); !status) return status;
+        }
+        auto program = state_.device().compile(builder, state_.params());
+        if (!program) return program.status();
+        part_programs_[turn].push_back(*program);
+    }
+    return ok_status();
+}
+
+// Submits parts until `parts` of the step are done; the last one makes the step whole.
+Status Stepper::finish(int parts) {
+    const auto turn = static_cast<std::size_t>(state_.turn());
+    if (asleep_) parts_done_ = parts;
+    if (!asleep_ && part_programs_[turn].empty()) {
+        if (auto status = record_parts(turn); !status) return state_.note(status);
+    }
+    for (; parts_done_ < parts; ++parts_done_) {
+        auto ticket = state_.device().submit(part_programs_[turn][static_cast<std::size_t>(parts_done_)], input_);
+        if (!ticket) {
+            if (parts_done_ == 0) inputs_.undo();
+            return state_.note(ticket.status());
+        }
+        ticket_ = *ticket;
+        if (parts_done_ == 0) note_submitted(input_);
+    }
+    return parts_done_ < this->parts() ? ok_status() : complete_step();
+}
+
+Status Stepper::begin_step() { return before_step_ ? before_step_() : ok_status(); }
+
+Status Stepper::complete_step() {
+    parts_done_ = 0;
+    asleep_ = false;
+    state_.set_turn(1 - state_.turn());
+    ++state_.steps;
+    return after_step_ ? after_step_() : ok_status();
+}
+
+StepInput Stepper::next_input() {
+    StepInput input = inputs_.next(static_cast<int>(state_.steps));
+    wakes_.wake(input);
+    state_.put_wakes(input);
+    return input;
+}
+
+bool Stepper::may_sleep(const StepInput& input) {
+    return state_.plan().active_tiles && !profiling_ && active_.asleep() && input.wake_count == 0;
+}
+
+void Stepper::note_submitted(const StepInput& input) {
+    active_.submitted(state_.turn(), ticket_, input.wake_count > 0);
+    state_.forget_wakes();
+}
+
+HostTotals Stepper::totals() const { return {state_.steps, state_.sand_initial, state_.water_initial, inputs_.totals()}; }
+
+void Stepper::set_totals(const HostTotals& totals) {
+    parts_done_ = 0;
+    asleep_ = false;
+    state_.wake_all();
+    state_.steps = totals.steps;
+    state_.sand_initial = totals.sand_initial;
+    state_.water_initial = totals.water_initial;
+    inputs_.set_totals(totals.inputs);
+}
+
+Status Stepper::step_part() {
+    if (!state_.lost()) return state_.lost();
+    if (parts_done_ == 0) {
+        if (auto status = begin_step(); !status) return status;
+        input_ = next_input();
+        asleep_ = may_sleep(input_);
+    }
+    return finish(parts_done_ + 1);
+}
+
+Status Stepper::step() {
+    if (!state_.lost()) return state_.lost();
+    if (parts_done_ > 0) return finish(parts());
+    if (auto status = begin_step(); !status) return status;
+    const auto turn = static_cast<std::size_t>(state_.turn());
+    const StepInput input = next_input();
+    if (may_sleep(input)) return complete_step();
+    auto ticket = state_.device().submit(profiling_ ? timed_programs_[turn] : programs_[turn], input);
+    if (!ticket) {
+        inputs_.undo();
+        return state_.note(ticket.status());
+    }
+    ticket_ = *ticket;
+    note_submitted(input);
+    if (profiling_) {
+        pending_timings_.push_back(*ticket);
+        if (auto status = collect_timings(false); !status) return state_.note(status);
+    }
+    return complete_step();
+}
+
+Status Stepper::set_profiling(bool on) {
+    if (auto status = collect_timings(true); !status) return state_.note(status);
+    if (on && timed_programs_[0].id == 0) {
+        for (int turn = 0; turn < 2; ++turn) {
+            Parity parity = state_.parity_of(turn);
+            auto program = record_step(turn, parity, true);
+            if (!program) return state_.note(program.status());
+            timed_programs_[static_cast<std::size_t>(turn)] = *program;
+        }
+    }
+    if (on && !profiling_) {
+        stage_milliseconds_.clear();
+        timed_steps_ = 0;
+    }
+    profiling_ = on;
+    return ok_status();
+}
+
+// The device keeps the timings of a few submissions only: fetch them as they finish.
+Status Stepper::collect_timings(bool all) {
+    constexpr std::size_t most_pending = 4;
+    while (!pending_timings_.empty() && (all || pending_timings_.size() > most_pending)) {
+        const auto ticket = pending_timings_.front();
+        pending_timings_.erase(pending_timings_.begin());
+        if (auto status = state_.device().wait(ticket); !status) return status;
+        auto timings = state_.device().timings(ticket);
+        if (!timings) return timings.status();
+        for (const auto& timing : *timings) stage_milliseconds_[timing.label] += timing.milliseconds;
+        ++timed_steps_;
+    }
+    return ok_status();
+}
+
+Result<std::vector<StageTime>> Stepper::stage_times() {
+    if (auto status = collect_timings(true); !status) return state_.note(status);
+    std::vector<StageTime> times;
+    const auto add = [&](const PlanPass& pass, int repeats) {
+        const std::string name(compute::stage_table()[static_cast<std::size_t>(pass.stage)].name);
+        auto found = std::find_if(times.begin(), times.end(), [&](const StageTime& t) { return t.stage == name; });
+        if (found == times.end()) {
+            const double total = stage_milliseconds_.contains(name) ? stage_milliseconds_[name] : 0;
+            found = times.insert(times.end(), {name, timed_steps_ > 0 ? total / static_cast<double>(timed_steps_) : 0, 0});
+        }
+        found->passes += repeats;
+    };
+    for (const auto& pass : state_.plan().water_passes) add(pass, 1);
+    for (const auto& pass : state_.plan().substep_passes) add(pass, state_.plan().substeps);
+    return times;
+}
+
+} // namespace wadi

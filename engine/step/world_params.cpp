@@ -1,0 +1,154 @@
+#include "engine/step/world_params.hpp"
+#include "engine/step/half.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace wadi {
+
+namespace {
+
+// Neutral values that switch a guard off without a branch. Large, but far from overflow in what the stages do with them.
+constexpr float off = 1e30F;
+constexpr float gravity_cap_off = 1e9F;
+
+int cell_of(double metres, double dx, int cells) { return std::clamp(static_cast<int>(std::floor(metres / dx)), 0, cells - 1); }
+
+// The box of ledger strips that holds every source, one cell more on the high sides for the faces.
+void bound_sources(const Settings& s, WorldParams& p) {
+    p.source_count = static_cast<int>(s.sources.size());
+    if (s.sources.empty()) return;
+    int i0 = s.grid.nx, i1 = 0, j0 = s.grid.ny, j1 = 0;
+    for (const auto& source : s.sources) {
+        const bool box = source.shape == SourceShape::box;
+        const double r = source.shape == SourceShape::disc ? source.radius : 0;
+        i0 = std::min(i0, cell_of(box ? source.box[0] : source.center[0] - r, s.grid.dx, s.grid.nx));
+        j0 = std::min(j0, cell_of(box ? source.box[1] : source.center[1] - r, s.grid.dx, s.grid.ny));
+        i1 = std::max(i1, cell_of(box ? source.box[2] : source.center[0] + r, s.grid.dx, s.grid.nx));
+        j1 = std::max(j1, cell_of(box ? source.box[3] : source.center[1] + r, s.grid.dx, s.grid.ny));
+    }
+    p.source_i0 = i0;
+    p.source_i1 = std::min(i1 + 2, s.grid.nx + 1);
+    p.source_s0 = j0 / STRIP;
+    p.source_s1 = std::min((j1 + 1) / STRIP + 1, p.strips);
+}
+
+} // namespace
+
+double ledger_quantum(const Method& method) {
+    Method chosen = method;
+    chosen.quantum = -1;
+    return height_quantum(method) > 0 ? height_quantum(method) : height_quantum(chosen);
+}
+
+float velocity_limit(const Method& method, double k) {
+    const auto limit = static_cast<float>(method.velocity_clamp / k);
+    return method.half_storage ? half_at_most(limit) : limit;
+}
+
+WorldParams derive_params(const Settings& s) {
+    const auto& m = s.material;
+    const auto& w = s.method;
+    const FieldLayout layout{s.grid.nx, s.grid.ny};
+    const auto f = [](double x) { return static_cast<float>(x); };
+    const double dx = s.grid.dx, dt = s.dt, dts = dt / w.substeps, k = dt / dx, ks = dts / dx, quantum = height_quantum(w);
+    WorldParams p{};
+    p.nx = s.grid.nx;
+    p.ny = s.grid.ny;
+    p.pitch = layout.pitch();
+    p.strips = layout.strips();
+    p.substeps = w.substeps;
+    p.tile_size = s.active_tiles;
+    p.tile_rings = 1; // WorldState widens it to the plan's reach
+    p.tile_columns = s.active_tiles > 0 ? FieldLayout::active_tiles(s.grid.nx, s.active_tiles) : 0;
+    p.tile_rows = s.active_tiles > 0 ? FieldLayout::active_tiles(s.grid.ny, s.active_tiles) : 0;
+    bound_sources(s, p);
+    p.side_kind_west = static_cast<int>(s.sides[SIDE_WEST].kind);
+    p.side_kind_east = static_cast<int>(s.sides[SIDE_EAST].kind);
+    p.side_kind_south = static_cast<int>(s.sides[SIDE_SOUTH].kind);
+    p.side_kind_north = static_cast<int>(s.sides[SIDE_NORTH].kind);
+    p.dx = f(dx);
+    p.inv_dx = f(1 / dx);
+    p.gravity = f(s.gravity);
+    p.quantum = f(quantum);
+    p.inv_quantum = quantum > 0 ? f(1 / quantum) : 0.0F;
+    p.inv_ledger_quantum = f(1 / ledger_quantum(w));
+    p.largest_height = f(w.largest_height);
+    p.dry_threshold = f(w.dry_threshold);
+
+    p.k = f(k);
+    p.water_velocity_clamp = velocity_limit(w, k);
+    p.shock_viscosity = f(w.shock_viscosity * k * std::sqrt(s.gravity));
+    p.gravity_cap_base = w.gravity_cap > 0 ? f(w.gravity_cap) : gravity_cap_off;
+    p.gravity_cap_floor = f(w.gravity_cap_least);
+    p.inv_k2 = f(1 / (k * k));
+    const bool rest = w.rest_surface > 0 || w.rest_velocity > 0;
+    p.rest_surface = rest ? f(w.rest_surface) : -1.0F;
+    p.rest_velocity = rest ? f(w.rest_velocity) : -1.0F;
+    p.diffusion_number = f(std::min(m.diffusion_rate, 0.2 * dx * dx / dt) * dt / (dx * dx));
+    p.bed_friction_dt = f(dt * m.bed_friction);
+    const double submerged = std::max(m.sand_density / m.water_density - 1, 0.05) * s.gravity; // (s - 1) g
+    p.bed_shear = f(m.bed_shear);
+    p.bed_shear_dt = f(dt * m.bed_shear);
+    p.bed_shear_threshold = f(0.047 * submerged * m.grain_size);
+    p.bed_load = submerged > 0 ? f(8 / submerged) : 0.0F;
+    p.bed_slope_number = f(2 / dx);
+    p.bed_slope_cap = f(0.2 * dx / dt);
+    p.limiter = w.outflow_limiter ? 1.0F : 0.0F;
+    p.inv_substeps = f(1.0 / w.substeps);
+
+    p.ks = f(ks);
+    p.dts = f(dts);
+    p.sand_velocity_clamp = velocity_limit(w, ks);
+    p.sand_gravity_cap = w.sand_gravity_cap > 0 ? f(w.sand_gravity_cap / (ks * ks)) : off;
+    p.density_ratio = f(m.water_density / m.sand_density);
+    p.water_density = f(m.water_density);
+    p.sand_density = f(m.sand_density);
+    p.friction = f(m.friction);
+    const double kd = dts * m.exchange_rate;
+    p.drag_kd = f(kd);
+    p.drag_coupling = f(kd * m.water_density / (m.water_density + kd) / m.sand_density);
+    p.drag_share = f(kd / (m.water_density + kd));
+
+    double lambda = m.young_modulus * m.poisson_ratio / ((1 + m.poisson_ratio) * (1 - 2 * m.poisson_ratio));
+    double shear = m.young_modulus / (2 * (1 + m.poisson_ratio));
+    if (w.elastic_cap > 0 && lambda + 2 * shear > 0) {
+        const double scale = std::min(1.0, w.elastic_cap * m.sand_density * dx * dx / (dts * dts * (lambda + 2 * shear)));
+        lambda *= scale;
+        shear *= scale;
+    }
+    const double slope = m.yield_friction * (2 * shear + 2 * lambda);
+    const double weight = m.sand_density * s.gravity;
+    p.lambda = f(lambda);
+    p.shear = f(shear);
+    p.inv_two_shear = shear > 0 ? f(0.5 / shear) : 0.0F;
+    p.yield_slope = f(slope);
+    p.inv_yield_slope = slope > 0 ? f(1 / slope) : 0.0F;
+    p.inv_bulk = lambda + shear > 0 ? f(1 / (lambda + shear)) : 0.0F;
+    p.passive_pressure = w.passive_pressure > 0 ? f(w.passive_pressure * weight) : off;
+    // The explicit viscous stress is stable with the elastic one while nu dts/dx^2 <= 1/4 - c^2 dts^2/(2 dx^2).
+    const double wave = std::sqrt((lambda + 2 * shear) / m.sand_density) * ks;
+    const double viscous = std::min(w.bulk_viscosity * wave, std::max(0.0, 0.2 - 0.4 * wave * wave));
+    p.bulk_viscosity = f(viscous * m.sand_density / ks);
+    p.tip_pressure = f(0.5 / m.yield_friction);
+    p.inv_friction_yield = f(1 / m.yield_friction);
+    p.force_scale = f(ks / m.sand_density);
+    p.gradient_clamp = w.gradient_clamp > 0 ? f(w.gradient_clamp) : off;
+    p.stress_taper = w.stress_taper > 0 ? f(1 / w.stress_taper) : off;
+    p.cohesion_cap = w.cohesion_cap > 0 ? f(2 * m.yield_friction * w.cohesion_cap * weight) : off;
+    const auto [phi1, phi2, phi3] = m.saturation;
+    p.cohesion0 = f(m.cohesion_dry);
+    p.cohesion1 = f(m.cohesion_wet);
+    p.phi1 = f(phi1);
+    p.phi2 = f(phi2);
+    p.phi3 = f(phi3);
+    p.slope01 = f((m.cohesion_wet - m.cohesion_dry) / phi1);
+    p.slope12 = f((m.cohesion_capillary - m.cohesion_wet) / (phi2 - phi1));
+    p.slope23 = f(m.cohesion_capillary / (phi3 - phi2));
+    // Tensor weights: 1 | 2,1 | 3,2,1 by distance; zero weights switch the outer rings off.
+    p.smooth0 = f(w.saturation_smoothing + 1);
+    p.smooth1 = f(std::max(0, w.saturation_smoothing));
+    p.smooth2 = f(std::max(0, w.saturation_smoothing - 1));
+    return p;
+}
+
+} // namespace wadi

@@ -1,0 +1,16 @@
+// From settings in SI units to the scalars that stages read: every derived constant is computed once, here, in double.
+#pragma once
+#include "engine/compute/params.hpp"
+#include "engine/settings/settings.hpp"
+
+namespace wadi {
+
+/// What the ledger counts in: Q, or the quantum that would have been chosen where Q is 0.
+double ledger_quantum(const Method& method);
+
+/// The velocity clamp [m/s] for k = dt/dx [s/m]; with half storage a 16-bit float, so that what is at it is not rounded above it.
+float velocity_limit(const Method& method, double k);
+
+WorldParams derive_params(const Settings& settings);
+
+} // namespace wadi

@@ -1,0 +1,64 @@
+// Prelude of the stage language for C++. Included inside a namespace of its own per instruction set, so that
+// code compiled for a higher one shares no inline function with baseline code: it must include no standard header.
+// WADI_STAGE_CHECKED (debug builds) checks every index against the buffer's size.
+
+struct alignas(8) vec2 { float x, y; };
+struct alignas(16) vec4 { float x, y, z, w; };
+typedef unsigned int uint;
+
+#define FN static inline __attribute__((always_inline))
+#define REF(T) T&
+#include "../effects.h"
+#include "../step_params.h"
+
+#ifdef WADI_STAGE_CHECKED
+[[noreturn]] void stage_index_error(const char* stage, const char* buffer, long index, unsigned long size);
+template <class T> struct StageBuffer {
+    T* data;
+    unsigned long size;
+    const char* stage;
+    const char* name;
+    inline T& operator[](long index) const {
+        if (index < 0 || static_cast<unsigned long>(index) >= size) stage_index_error(stage, name, index, size);
+        return data[index];
+    }
+};
+#define WADI_BUFFER(T) StageBuffer<T>
+#else
+#define WADI_BUFFER(T) T* __restrict
+#endif
+
+#define STAGE(NAME)                                                                                                    \
+    template <unsigned EFFECTS> struct NAME {                                                                          \
+        typedef Stored<EFFECTS> float_or_half;                                                                         \
+        WorldParams P;                                                                                                 \
+        const StepInput& S;
+#define EXTENT(KIND)
+#define REACH(CELLS)
+#define FAR_IF(BITS)
+#define END_STAGE                                                                                                      \
+    }                                                                                                                  \
+    ;
+#define HELPER inline __attribute__((always_inline))
+#define HELPER_CONST const
+#define KERNEL inline __attribute__((always_inline)) void kernel([[maybe_unused]] int i, [[maybe_unused]] int j) const
+#define IN(SLOT, T, NAME) WADI_BUFFER(const T) NAME;
+#define OUT(SLOT, T, NAME) WADI_BUFFER(T) NAME;
+#define INOUT(SLOT, T, NAME) WADI_BUFFER(T) NAME;
+#define IN_IF(BITS, SLOT, T, NAME) IN(SLOT, T, NAME)
+#define OUT_IF(BITS, SLOT, T, NAME) OUT(SLOT, T, NAME)
+#define INOUT_IF(BITS, SLOT, T, NAME) INOUT(SLOT, T, NAME)
+#define HAS(BITS) ((EFFECTS & (BITS)) == (BITS))
+#define IDX(I, J) (((J) + GHOST) * P.pitch + (I) + GHOST)
+#define UNIFORM(C) true // a branch would keep the loop over i from vectorising
+FN float wdiv(float a, float b) { return a / b; }
+FN float wsqrt(float x) { return __builtin_sqrtf(x); }
+FN float wabs(float x) { return __builtin_fabsf(x); }
+FN float wtrunc(float x) { return __builtin_truncf(x); }
+FN float wfloor(float x) { return __builtin_floorf(x); }
+FN int float_bits(float x) { int r; __builtin_memcpy(&r, &x, 4); return r; }
+FN float bits_float(int x) { float r; __builtin_memcpy(&r, &x, 4); return r; }
+#include "half_storage.h"
+// Without short circuits: a branch inside a stage would stop the loop from vectorising.
+FN bool both(bool a, bool b) { return static_cast<bool>(static_cast<int>(a) & static_cast<int>(b)); }
+FN bool either(bool a, bool b) { return static_cast<bool>(static_cast<int>(a) | static_cast<int>(b)); }

@@ -1,0 +1,72 @@
+// Prelude of the stage language for CUDA. Included inside a namespace of its own; __fdiv_rn and __fsqrt_rn are the
+// correctly rounded forms whatever the compiler's flags, contraction is off by -fmad=false.
+
+struct alignas(8) vec2 { float x, y; };
+struct alignas(16) vec4 { float x, y, z, w; };
+typedef unsigned int uint;
+
+#define FN static __device__ __forceinline__
+#define REF(T) T&
+#include "../effects.h"
+#include "../step_params.h"
+
+#define STAGE(NAME)                                                                                                    \
+    template <unsigned EFFECTS> struct NAME {                                                                          \
+        typedef Stored<EFFECTS> float_or_half;                                                                         \
+        WorldParams P;                                                                                                 \
+        const StepInput& S;
+#define EXTENT(KIND)
+#define REACH(CELLS)
+#define FAR_IF(BITS)
+#define END_STAGE                                                                                                      \
+    }                                                                                                                  \
+    ;
+#define HELPER __device__ __forceinline__
+#define HELPER_CONST const
+#define KERNEL __device__ __forceinline__ void kernel(int i, int j) const
+#define IN(SLOT, T, NAME) const T* __restrict__ NAME;
+#define OUT(SLOT, T, NAME) T* __restrict__ NAME;
+#define INOUT(SLOT, T, NAME) T* __restrict__ NAME;
+#define IN_IF(BITS, SLOT, T, NAME) IN(SLOT, T, NAME)
+#define OUT_IF(BITS, SLOT, T, NAME) OUT(SLOT, T, NAME)
+#define INOUT_IF(BITS, SLOT, T, NAME) INOUT(SLOT, T, NAME)
+#define HAS(BITS) ((EFFECTS & (BITS)) == (BITS))
+#define UNIFORM(C) (C)
+#define IDX(I, J) (((J) + GHOST) * P.pitch + (I) + GHOST)
+
+#ifdef WADI_RELAXED_FLOAT
+FN float wdiv(float a, float b) { return a / b; }
+FN float wsqrt(float x) { return sqrtf(x); }
+#else
+// As __fdiv_rn and __fsqrt_rn round, without their branches: a sixth of a fused stage's code. A reciprocal and a quotient, each
+// corrected by residuals from fused multiply-adds (P. Markstein 1990). The powers of two keep residuals of small operands normal; what
+// they leave out is dividends beyond 4e28, radicands beyond it and divisors beyond 8e37.
+FN float wdiv(float a, float b) {
+    float reciprocal;
+    asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(reciprocal) : "f"(b));
+    reciprocal = fmaf(fmaf(-b, reciprocal, 1.0f), reciprocal, reciprocal);
+    const float scaled = a * 4294967296.0f; // 2^32
+    const float near = scaled * reciprocal;
+    float q = fmaf(fmaf(-b, near, scaled), reciprocal, near);
+    q = fmaf(fmaf(-b, q, scaled), reciprocal, q);
+    q = fabsf(q) < 3.0e38f && q != 0.0f ? q : near; // infinities, and zeros with their sign
+    return q * 2.32830644e-10f;                     // 2^-32
+}
+FN float wsqrt(float x) {
+    const float scaled = x * 4294967296.0f;
+    float inverse;
+    asm("rsqrt.approx.ftz.f32 %0, %1;" : "=f"(inverse) : "f"(scaled));
+    float s = scaled * inverse;
+    s = fmaf(fmaf(-s, s, scaled), 0.5f * inverse, s);
+    s = fmaf(fmaf(-s, s, scaled), 0.5f * inverse, s); // once leaves about one root in five million wrong
+    return x > 0.0f ? s * 1.52587891e-5f : x; // 2^-16
+}
+#endif
+FN float wabs(float x) { return fabsf(x); }
+FN float wtrunc(float x) { return truncf(x); }
+FN float wfloor(float x) { return floorf(x); }
+FN int float_bits(float x) { return __float_as_int(x); }
+FN float bits_float(int x) { return __int_as_float(x); }
+FN bool both(bool a, bool b) { return a && b; }
+FN bool either(bool a, bool b) { return a || b; }
+#include "half_storage.h"

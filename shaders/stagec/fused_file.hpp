@@ -1,0 +1,59 @@
+// Fused files: several stages as one pass over tiles, written from the stages' own text (shaders/README.md, "Fused stages").
+#pragma once
+#include "engine/compute/stage_table.hpp"
+#include "stage_file.hpp"
+
+namespace stagec {
+
+/// Cells around a group's own ones for which a phase runs too.
+struct Margins {
+    int west = 0, south = 0, east = 0, north = 0;
+};
+
+/// A stage inside a fused one: which field each of its bindings reads and writes.
+struct FusedPart {
+    Stage stage;
+    std::map<std::string, std::string> reads, writes; // binding name -> field name
+    unsigned condition = 0;                           // runs only if all these effects are on
+    std::size_t phase = 0;
+};
+
+/// Where a field that the parts write lives until the pass ends.
+enum class Keeping { nowhere, own_index, tile };
+
+/// What later passes read of a field: all of it, or its outer faces alone, and under which effects.
+struct Kept {
+    bool rim = false;
+    unsigned condition = 0;
+};
+
+struct FusedStage {
+    Stage stage; // name, struct name, extent, bindings and tested effects, as of a stage that is written by hand
+    unsigned needs = 0, without = 0;
+    std::vector<Margins> phases;
+    std::vector<FusedPart> parts;
+    std::map<std::string, Keeping> fields; // fields that parts write
+    std::map<std::string, Kept> kept;      // those that later passes read
+};
+
+/// Threads of a group of a fused stage along i and j; it covers FUSED_COLUMNS x FUSED_ROWS cells.
+inline constexpr int fused_group_x = wadi::compute::fused_group_x, fused_group_y = wadi::compute::fused_group_y;
+/// The box that holds every field kept in a tile: margins around a group's own cells.
+Margins tile_margins(const FusedStage& fused);
+int tile_pitch(const FusedStage& fused);
+int tile_floats(const FusedStage& fused);
+std::vector<std::string> fields_kept(const FusedStage& fused, Keeping keeping);
+
+/// Stages are looked for in the rooms of the folder stages beside the file's own.
+FusedStage parse_fused(const std::string& path, const Effects& effects);
+
+/// The parts' functions with their loads and stores redirected, one kernel function PART_kernel(i, j) each.
+std::string part_functions(const FusedStage& fused, const Effects& effects);
+/// The phases in order, with LANE, LANES (a group's threads) and BARRIER left to the language.
+std::string phase_loops(const FusedStage& fused);
+/// Include lines of the parts' physics.
+std::string physics_includes(const FusedStage& fused);
+/// Macros for places in memory and in a tile. They need own_i0, own_j0, tile_i0, tile_j0 and the language's type Place and PLACE.
+std::string index_macros(const FusedStage& fused);
+
+} // namespace stagec

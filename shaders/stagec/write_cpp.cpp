@@ -1,0 +1,103 @@
+#include "writers.hpp"
+#include <sstream>
+
+namespace stagec {
+
+namespace {
+
+// The buffers behind the slots, as the stage's members take them.
+std::string buffer_members(const Stage& s) {
+    std::ostringstream o;
+    o << "#ifdef WADI_STAGE_CHECKED\n";
+    for (const auto& b : s.bindings) {
+        const std::string element = element_type(b, "E"), type = (b.access == "IN" ? "const " : "") + element;
+        o << ",\n        {static_cast<" << type << "*>(b[" << b.slot << "]), sizes[" << b.slot << "] / sizeof(" << element
+          << "), \"" << s.name << "\", \"" << b.name << "\"}";
+    }
+    o << "\n#else\n";
+    for (const auto& b : s.bindings)
+        o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << element_type(b, "E") << "*>(b[" << b.slot << "])";
+    o << "\n#endif\n";
+    return o.str();
+}
+
+std::string block_head() {
+    return "template <unsigned E> static void block(void* const* b, const unsigned long* sizes, const void* params, const void* "
+           "input,"
+           " int i0, int i1, int j0, int j1) {\n    (void)b;\n    (void)sizes;\n"
+           "    const WorldParams P = *static_cast<const WorldParams*>(params);\n"
+           "    const StepInput& S = *static_cast<const StepInput*>(input);\n";
+}
+
+std::string file_head(const Stage& s, const std::string& isa) {
+    return "// Written by stagec from " + s.name + (s.fused ? ".fused" : ".stage") + " for the instruction set " + isa +
+           ".\nnamespace wadi_stage_" + isa + " {\n#include \"language/stage_cpp.h\"\n";
+}
+
+// Base has every mask. Half storage saves memory and no time here: the other sets leave it to base.
+std::string select_function(const Stage& s, const std::string& isa, unsigned tested, std::vector<unsigned> masks,
+                            const Effects& effects, bool all_masks) {
+    const bool base = isa == "base";
+    if (!base) {
+        std::erase_if(masks, [&](unsigned mask) { return (mask & effects.at(half_storage)) != 0; });
+        if (!all_masks) masks = largest(masks, ~(effects.at(first_choice) - 1));
+    }
+    std::ostringstream o;
+    o << "using Block = void (*)(void* const*, const unsigned long*, const void*, const void*, int, int, int, int);\n";
+    if (!base) o << "extern \"C\" Block wadi_cpu_base_" << s.name << "(unsigned effects);\n";
+    o << "extern \"C\" Block wadi_cpu_" << isa << "_" << s.name << "(unsigned effects) {\n    switch (effects & " << tested
+      << "u) {\n";
+    for (const unsigned mask : masks) o << "    case " << mask << "u: return wadi_stage_" << isa << "::block<" << mask << "u>;\n";
+    o << "    default: return " << (base ? "nullptr" : "wadi_cpu_base_" + s.name + "(effects)") << ";\n    }\n}\n";
+    return o.str();
+}
+
+} // namespace
+
+std::string write_cpp(const Stage& s, const std::string& isa, const Effects& effects, bool all_masks) {
+    const unsigned tested = tested_bits(s, effects);
+    std::ostringstream o;
+    o << file_head(s, isa) << "#include \"" << include_path(s) << "\"\n"
+      << block_head() << "    const " << s.struct_name << "<E> stage{P, S\n"
+      << buffer_members(s) << "    };\n    for (int j = j0; j < j1; ++j) {\n        const " << s.struct_name
+      << "<E> local = stage;\n"
+      << (s.extent == "POINTS" ? "        const int row = S.point_count - j * POINT_ROW;\n        i1 = row < i1 ? row : i1;\n"
+                               : "")
+      << "#if defined(__GNUC__) && !defined(__clang__)\n#pragma GCC ivdep\n#elif defined(__clang__)\n#pragma clang loop "
+         "vectorize(assume_safety)\n#endif\n"
+      << "        for (int i = i0; i < i1; ++i) local.kernel(i, j);\n    }\n}\n} // namespace\n"
+      << select_function(s, isa, tested, masks(tested), effects, all_masks);
+    return o.str();
+}
+
+// One tile after the other, what a GPU keeps in shared memory on the stack. Slower than the stages one by one: it is there to be
+// compared with them.
+std::string write_cpp(const FusedStage& f, const std::string& isa, const Effects& effects, bool all_masks) {
+    const Stage& s = f.stage;
+    std::ostringstream o;
+    o << file_head(s, isa) << physics_includes(f) << "struct Place { int x, y; };\n#define PLACE(X, Y) Place{X, Y}\n"
+      << index_macros(f)
+      << "#define LANE 0\n#define LANES 1\n#define BARRIER (void)0\n#define KEEP_STORED(FIELD, AT, TYPE) FIELD[AT] = "
+         "TYPE(stored)\n"
+      << "#define PART_FUNCTION inline __attribute__((always_inline))\n#define NOT_KEPT(X) (void)(X)\n"
+      << "template <unsigned FREE> struct " << s.struct_name << " {\n    static constexpr unsigned EFFECTS = FREE | " << f.needs
+      << "u;\n    typedef Stored<EFFECTS> float_or_half;\n    const WorldParams& P;\n    const StepInput& S;\n";
+    for (const auto& b : s.bindings)
+        o << "    WADI_BUFFER(" << (b.access == "IN" ? "const " : "") << b.type << ") " << b.name << ";\n";
+    for (const auto& name : fields_kept(f, Keeping::tile)) o << "    float tile_" << name << "[" << tile_floats(f) << "] = {};\n";
+    for (const auto& name : fields_kept(f, Keeping::own_index)) o << "    float own_" << name << " = 0.0f;\n";
+    o << "    int own_i0 = 0, own_j0 = 0, own_i1 = 0, own_j1 = 0, tile_i0 = 0, tile_j0 = 0;\n    bool owned = "
+         "false;\n"
+      << part_functions(f, effects) << "void tile() {\n    PLACE_TILE;\n"
+      << phase_loops(f) << "}\n};\n"
+      << block_head() << "    " << s.struct_name << "<E> stage{P, S\n"
+      << buffer_members(s)
+      << "    };\n    for (int j = j0; j < j1; j += FUSED_ROWS) {\n        for (int i = i0; i < i1; i += "
+         "FUSED_COLUMNS) {\n            stage.own_i0 = i;\n            stage.own_j0 = j;\n            stage.own_i1 = i + "
+         "FUSED_COLUMNS < i1 ? i + FUSED_COLUMNS : i1;\n            stage.own_j1 = j + FUSED_ROWS < j1 ? j + FUSED_ROWS : "
+         "j1;\n            stage.tile();\n        }\n    }\n}\n} // namespace\n"
+      << select_function(s, isa, tested_bits(s, effects), masks(tested_bits(s, effects), f.needs, f.without), effects, all_masks);
+    return o.str();
+}
+
+} // namespace stagec

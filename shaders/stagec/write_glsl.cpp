@@ -1,0 +1,107 @@
+#include "writers.hpp"
+#include <sstream>
+
+namespace stagec {
+
+namespace {
+
+std::string tile_bindings(const Stage& s) {
+    const std::size_t slots = s.bindings.size();
+    return "layout(std430, set = 0, binding = " + std::to_string(slots + 2) +
+           ") readonly buffer active_list_block { uint active_list[]; };\nlayout(std430, set = 0, binding = " +
+           std::to_string(slots + 3) + ") buffer activity_block { uint activity[]; };\n";
+}
+
+const char* const head = "#version 450\n#extension GL_GOOGLE_include_directive : require\n#ifdef WADI_HALF\n"
+                         "#extension GL_EXT_shader_16bit_storage : require\n#endif\n#include \"language/stage_glsl.h\"\n";
+
+// A stage's text with what loads and stores the named buffers converted, which GLSL does for 16-bit floats only where it is told.
+std::string converted(const std::string& text, const std::set<std::string>& narrow) {
+    std::string out;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::string word = word_at(text, at);
+        at += word.size();
+        if (word.empty()) {
+            out += text[at++];
+        } else if (narrow.count(word) == 0 || text[at] != '[') {
+            out += word;
+        } else {
+            std::size_t end = at + 1;
+            for (int depth = 1; depth > 0; ++end) depth += text[end] == '[' ? 1 : text[end] == ']' ? -1 : 0;
+            const std::string element = word + text.substr(at, end - at);
+            const std::size_t next = text.find_first_not_of(' ', end);
+            at = end;
+            if (text[next] == '=' && text[next + 1] != '=') {
+                at = text.find(';', next);
+                out += element + " = float_or_half(to_stored(" + converted(text.substr(next + 1, at - next - 1), narrow) + "))";
+            } else {
+                out += "float(" + element + ")";
+            }
+        }
+    }
+    return out;
+}
+
+// The stage file, included where nothing in it is to be converted.
+std::string stage_text(const Stage& s) {
+    std::set<std::string> narrow;
+    for (const auto& b : s.bindings)
+        if (b.narrow()) narrow.insert(b.name);
+    if (narrow.empty()) return "#include \"" + include_path(s) + "\"\n";
+    std::string text = converted(strip_comments(read_text(s.path)), narrow);
+    for (std::size_t at = 0; (at = text.find("\"../../physics/", at)) != std::string::npos;) text.erase(at + 1, 6);
+    return text;
+}
+
+} // namespace
+
+std::string write_glsl(const Stage& s) {
+    std::ostringstream o;
+    o << head << stage_text(s);
+    if (marks(s)) o << tile_bindings(s);
+    o << "void main() {\n    int i = int(gl_GlobalInvocationID.x)" << origin(s.extent, "i")
+      << ";\n    int j = int(gl_GlobalInvocationID.y)" << origin(s.extent, "j") << ";\n";
+    if (!marks(s)) {
+        o << "    if (" << guard(s.extent) << ") kernel(i, j);\n}\n";
+        return o.str();
+    }
+    if (s.extent == "RIM") {
+        o << "    if (!(" << guard(s.extent) << ")) return;\n" << rim_place(s);
+    } else {
+        o << "    int tile = 0;\n    if (ACTIVE_TILES != 0u) {\n        tile = int(active_list[gl_WorkGroupID.x]);\n"
+          << "        int row = int(gl_WorkGroupID.y * gl_WorkGroupSize.y + gl_LocalInvocationID.y);\n"
+          << "        if (row >= P.tile_size) return;\n"
+          << "        i = (tile % P.tile_columns) * P.tile_size + int(gl_LocalInvocationID.x);\n"
+          << "        j = (tile / P.tile_columns) * P.tile_size + row;\n    }\n"
+          << "    if (!(" << guard(s.extent) << ")) return;\n    int at = IDX(i, j);\n";
+    }
+    o << "    bool look = false;\n    if (ACTIVE_TILES != 0u) look = activity[tile] != uint(S.step);\n"
+      << marking(s, "") << "}\n";
+    return o.str();
+}
+
+std::string write_glsl(const FusedStage& f, const Effects& effects) {
+    const Stage& s = f.stage;
+    std::ostringstream o;
+    o << head << physics_includes(f) << "#undef HAS\n#define HAS(BITS) (((EFFECTS | " << f.needs << "u) & (BITS)) == (BITS))\n"
+      << "#define Place ivec2\n#define PLACE(X, Y) ivec2(X, Y)\n"
+      << index_macros(f) << "#define LANE int(gl_LocalInvocationIndex)\n#define LANES " << fused_group_x * fused_group_y
+      << "\n#define BARRIER barrier()\n#define PART_FUNCTION\n#define NOT_KEPT(X)\n"
+      << keep_stored;
+    for (const auto& b : s.bindings) o << b.access << "(" << b.slot << ", " << b.type << ", " << b.name << ")\n";
+    o << tile_bindings(s);
+    for (const auto& name : fields_kept(f, Keeping::tile)) o << "shared float tile_" << name << "[" << tile_floats(f) << "];\n";
+    for (const auto& name : fields_kept(f, Keeping::own_index)) o << "float own_" << name << ";\n";
+    o << "int own_i0, own_j0, own_i1, own_j1, tile_i0, tile_j0;\nbool owned, look = false, changed = false;\n"
+      << part_functions(f, effects)
+      << "void main() {\n    own_i0 = int(gl_WorkGroupID.x) * FUSED_COLUMNS;\n    own_j0 = int(gl_WorkGroupID.y) * FUSED_ROWS;\n"
+      << "    own_i1 = own_i0 + FUSED_COLUMNS;\n    own_j1 = own_j0 + FUSED_ROWS;\n    int tile = 0;\n"
+      << "    if (ACTIVE_TILES != 0u) {\n        tile = int(active_list[gl_WorkGroupID.x]);\n        int part = "
+         "int(gl_WorkGroupID.y);\n"
+         "        int across = (P.tile_size + FUSED_COLUMNS - 1) / FUSED_COLUMNS;\n"
+      << tile_part("") << "        look = activity[tile] != uint(S.step);\n    }\n    PLACE_TILE;\n"
+      << phase_loops(f) << "    if (changed) activity[tile] = uint(S.step);\n}\n";
+    return o.str();
+}
+
+} // namespace stagec
