@@ -15,51 +15,58 @@ FN float face_type(bool inner, float height_low, float height_high, float surfac
     return either(!inner, wall) ? FACE_FIXED : kind;
 }
 
-// The eight neighbours of a face among the faces of its direction, opposite ones first in every sum.
+// The eight neighbours of a face among the faces of its direction: low and high along it, left and right across it, opposite ones
+// first in every sum.
 struct Ring {
-    float w, e, s, n, sw, ne, se, nw;
+    float low, high, left, right, low_left, high_right, high_left, low_right;
 };
 
-FN float ring_sum(Ring a) { return ((a.w + a.e) + (a.s + a.n)) + ((a.sw + a.ne) + (a.se + a.nw)); }
+FN float ring_sum(Ring a) { return ((a.low + a.high) + (a.left + a.right)) + ((a.low_left + a.high_right) + (a.high_left + a.low_right)); }
 
-// Mean of the tracked neighbours, 0 without any. type: their boundary types; inside: 1 where the grid has them.
-FN float extrapolate(float own, float own_type, Ring value, Ring type, Ring inside) {
+FN float lends(float type, float inside) { return both(inside > 0.0f, type == FACE_TRACKED) ? 1.0f : 0.0f; }
+
+FN float lent(float value, float weight) { return weight > 0.0f ? value : 0.0f; }
+
+// Mean of the tracked neighbours, 0 without any. type: their boundary types; has_left, has_right: 1 where the grid goes on across the
+// face's direction.
+FN float extrapolate(float own, float own_type, Ring value, Ring type, float has_left, float has_right) {
     Ring weight;
-    weight.w = both(inside.w > 0.0f, type.w == FACE_TRACKED) ? 1.0f : 0.0f;
-    weight.e = both(inside.e > 0.0f, type.e == FACE_TRACKED) ? 1.0f : 0.0f;
-    weight.s = both(inside.s > 0.0f, type.s == FACE_TRACKED) ? 1.0f : 0.0f;
-    weight.n = both(inside.n > 0.0f, type.n == FACE_TRACKED) ? 1.0f : 0.0f;
-    weight.sw = both(inside.sw > 0.0f, type.sw == FACE_TRACKED) ? 1.0f : 0.0f;
-    weight.ne = both(inside.ne > 0.0f, type.ne == FACE_TRACKED) ? 1.0f : 0.0f;
-    weight.se = both(inside.se > 0.0f, type.se == FACE_TRACKED) ? 1.0f : 0.0f;
-    weight.nw = both(inside.nw > 0.0f, type.nw == FACE_TRACKED) ? 1.0f : 0.0f;
-    Ring lent;
-    lent.w = weight.w > 0.0f ? value.w : 0.0f;
-    lent.e = weight.e > 0.0f ? value.e : 0.0f;
-    lent.s = weight.s > 0.0f ? value.s : 0.0f;
-    lent.n = weight.n > 0.0f ? value.n : 0.0f;
-    lent.sw = weight.sw > 0.0f ? value.sw : 0.0f;
-    lent.ne = weight.ne > 0.0f ? value.ne : 0.0f;
-    lent.se = weight.se > 0.0f ? value.se : 0.0f;
-    lent.nw = weight.nw > 0.0f ? value.nw : 0.0f;
-    float mean = divide_or_zero(ring_sum(lent), ring_sum(weight));
+    weight.low = lends(type.low, 1.0f);
+    weight.high = lends(type.high, 1.0f);
+    weight.left = lends(type.left, has_left);
+    weight.right = lends(type.right, has_right);
+    weight.low_left = lends(type.low_left, has_left);
+    weight.high_right = lends(type.high_right, has_right);
+    weight.high_left = lends(type.high_left, has_left);
+    weight.low_right = lends(type.low_right, has_right);
+    Ring from;
+    from.low = lent(value.low, weight.low);
+    from.high = lent(value.high, weight.high);
+    from.left = lent(value.left, weight.left);
+    from.right = lent(value.right, weight.right);
+    from.low_left = lent(value.low_left, weight.low_left);
+    from.high_right = lent(value.high_right, weight.high_right);
+    from.high_left = lent(value.high_left, weight.high_left);
+    from.low_right = lent(value.low_right, weight.low_right);
+    float mean = divide_or_zero(ring_sum(from), ring_sum(weight));
     return own_type == FACE_UNTRACKED ? mean : own;
 }
 
-// Bilinear value at (-back_x, -back_y) cells from the face, both within +-1, as increments: a uniform velocity keeps its bits.
-FN float sample_back(float own, Ring value, float back_x, float back_y) {
-    float x = wclamp(back_x, -1.0f, 1.0f);
-    float y = wclamp(back_y, -1.0f, 1.0f);
-    float west = wmax(x, 0.0f);
-    float east = wmax(-x, 0.0f);
-    float south = wmax(y, 0.0f);
-    float north = wmax(-y, 0.0f);
-    float middle_x = 1.0f - wabs(x);
-    float middle_y = 1.0f - wabs(y);
-    float along = west * middle_y * (value.w - own) + east * middle_y * (value.e - own);
-    float across = south * middle_x * (value.s - own) + north * middle_x * (value.n - own);
-    float rising = west * south * (value.sw - own) + east * north * (value.ne - own);
-    float falling = east * south * (value.se - own) + west * north * (value.nw - own);
+// Bilinear value so many cells back from the face along its direction and across it, both within +-1, as increments: a uniform
+// velocity keeps its bits.
+FN float sample_back(float own, Ring value, float back_along, float back_across) {
+    float a = wclamp(back_along, -1.0f, 1.0f);
+    float b = wclamp(back_across, -1.0f, 1.0f);
+    float low = wmax(a, 0.0f);
+    float high = wmax(-a, 0.0f);
+    float left = wmax(b, 0.0f);
+    float right = wmax(-b, 0.0f);
+    float middle_along = 1.0f - wabs(a);
+    float middle_across = 1.0f - wabs(b);
+    float along = low * middle_across * (value.low - own) + high * middle_across * (value.high - own);
+    float across = left * middle_along * (value.left - own) + right * middle_along * (value.right - own);
+    float rising = low * left * (value.low_left - own) + high * right * (value.high_right - own);
+    float falling = high * left * (value.high_left - own) + low * right * (value.low_right - own);
     return own + ((along + across) + (rising + falling));
 }
 

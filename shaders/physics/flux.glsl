@@ -44,10 +44,13 @@ FN float flux_down(float velocity, Profile donor, float k) {
     return k * (wmin(velocity, 0.0f) * face_depth(donor.depth, -donor.slope, donor.growth, k * wabs(velocity)));
 }
 
-// What leaves a cell through its four faces; west and south fluxes leave where negative.
-FN float outflow(float flux_west, float flux_east, float flux_south, float flux_north) {
-    return (wmax(-flux_west, 0.0f) + wmax(flux_east, 0.0f)) + (wmax(-flux_south, 0.0f) + wmax(flux_north, 0.0f));
-}
+// Fluxes through a cell's two faces along one axis, positive up the axis.
+struct FacePair {
+    float low, high;
+};
+
+// What leaves a cell through its four faces; fluxes through low faces leave where negative.
+FN float outflow(FacePair x, FacePair y) { return (wmax(-x.low, 0.0f) + wmax(x.high, 0.0f)) + (wmax(-y.low, 0.0f) + wmax(y.high, 0.0f)); }
 
 // Factor on all outflow of a cell so that it never gives more than it holds; 4 ulp
 // keep the sum of the four below it however they were rounded.

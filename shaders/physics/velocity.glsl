@@ -5,11 +5,11 @@
 
 // Flux-form staggered upwind advection of one face velocity in increment form (NUMERICS 2.3, after Stelling and
 // Duinmeijer 2003): flux_* are the mean depths moved through the four sides of the face's own control volume,
-// height its mean new depth, inv_height 1 over it. A convex combination of the five velocities for any time step.
-FN float advect_velocity(float u, float u_west, float u_east, float u_south, float u_north, float flux_west, float flux_east, float flux_south,
-                         float flux_north, float height, float inv_height, float dry) {
-    float along = wmax(-flux_east, 0.0f) * (u_east - u) + wmax(flux_west, 0.0f) * (u_west - u);
-    float across = wmax(-flux_north, 0.0f) * (u_north - u) + wmax(flux_south, 0.0f) * (u_south - u);
+// low and high along its direction, left and right across it; height its mean new depth, inv_height 1 over it. A convex combination of the five velocities for any time step.
+FN float advect_velocity(float u, float u_low, float u_high, float u_left, float u_right, float flux_low, float flux_high, float flux_left,
+                         float flux_right, float height, float inv_height, float dry) {
+    float along = wmax(-flux_high, 0.0f) * (u_high - u) + wmax(flux_low, 0.0f) * (u_low - u);
+    float across = wmax(-flux_right, 0.0f) * (u_right - u) + wmax(flux_left, 0.0f) * (u_left - u);
     float moved = u + (along + across) * inv_height;
     return height > dry ? moved : u;
 }
@@ -52,9 +52,9 @@ FN float line_gain(float u, FaceLine at, float flux_low, float flux_high, float 
 }
 
 // advect_velocity with limited slopes, kept between the five velocities: no new extremum at any time step.
-FN float advect_velocity_second_order(float u, FaceLine along, FaceLine across, float flux_west, float flux_east, float flux_south, float flux_north,
+FN float advect_velocity_second_order(float u, FaceLine along, FaceLine across, float flux_low, float flux_high, float flux_left, float flux_right,
                                       float height, float inv_height, float dry) {
-    float gain = line_gain(u, along, flux_west, flux_east, inv_height) + line_gain(u, across, flux_south, flux_north, inv_height);
+    float gain = line_gain(u, along, flux_low, flux_high, inv_height) + line_gain(u, across, flux_left, flux_right, inv_height);
     float least = wmin(u, wmin(wmin(along.low, along.high), wmin(across.low, across.high)));
     float most = wmax(u, wmax(wmax(along.low, along.high), wmax(across.low, across.high)));
     float moved = wclamp(u + gain * inv_height, least, most);

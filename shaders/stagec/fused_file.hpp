@@ -15,6 +15,7 @@ struct FusedPart {
     Stage stage;
     std::map<std::string, std::string> reads, writes; // binding name -> field name
     unsigned condition = 0;                           // runs only if all these effects are on
+    std::string place;                                // of its RUN, for messages
     std::size_t phase = 0;
 };
 
@@ -25,6 +26,7 @@ enum class Keeping { nowhere, own_index, tile };
 struct Kept {
     bool rim = false;
     unsigned condition = 0;
+    std::string place; // of its KEEP
 };
 
 struct FusedStage {
@@ -46,6 +48,13 @@ std::vector<std::string> fields_kept(const FusedStage& fused, Keeping keeping);
 
 /// Stages are looked for in the rooms of the folder stages beside the file's own.
 FusedStage parse_fused(const std::string& path, const Effects& effects);
+
+const Binding& binding_of(const Stage& stage, const std::string& name);
+/// What of a binding's condition is still open in a fused stage; `never` where the binding cannot exist.
+unsigned condition_of(const FusedStage& fused, const FusedPart& part, const Binding& b, const Effects& effects, bool& never);
+bool writes_before(const FusedStage& fused, std::size_t part, const std::string& field);
+/// The part that writes a field last; the number of parts where none does.
+std::size_t last_writer(const FusedStage& fused, const std::string& field);
 
 /// The parts' functions with their loads and stores redirected, one kernel function PART_kernel(i, j) each.
 std::string part_functions(const FusedStage& fused, const Effects& effects);

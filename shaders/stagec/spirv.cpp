@@ -39,7 +39,7 @@ void write_nocontract(const std::string& in, const std::string& out) {
     for (const std::uint32_t w : result) {
         for (int b = 0; b < 4; ++b) bytes += static_cast<char>(w >> (8 * b) & 0xffu);
     }
-    write_text(out, bytes);
+    write_bytes(out, bytes);
 }
 
 std::string word_list(const std::string& module) {

@@ -17,29 +17,29 @@ int main(int argc, char** argv) {
     const std::string mode = a.empty() ? "" : a[0];
     if (mode == "glsl" && a.size() == 4) {
         const Effects effects = parse_effects(a[1]);
-        write_text(a[3], is_fused(a[2]) ? write_glsl(parse_fused(a[2], effects), effects) : write_glsl(parse_stage(a[2])));
+        write_code(a[3], is_fused(a[2]) ? write_glsl(parse_fused(a[2], effects), effects) : write_glsl(parse_stage(a[2])));
     } else if (mode == "cpp" && a.size() == 6 && (a[5] == "all" || a[5] == "largest")) {
         const Effects effects = parse_effects(a[1]);
         const bool all = a[5] == "all";
-        write_text(a[3], is_fused(a[2]) ? write_cpp(parse_fused(a[2], effects), a[4], effects, all)
+        write_code(a[3], is_fused(a[2]) ? write_cpp(parse_fused(a[2], effects), a[4], effects, all)
                                         : write_cpp(parse_stage(a[2]), a[4], effects, all));
     } else if (mode == "cuda" && a.size() == 5 && (a[4] == "all" || a[4] == "largest")) {
         const Effects effects = parse_effects(a[1]);
         const bool all = a[4] == "all";
-        write_text(a[3], is_fused(a[2]) ? write_cuda(parse_fused(a[2], effects), effects, all)
+        write_code(a[3], is_fused(a[2]) ? write_cuda(parse_fused(a[2], effects), effects, all)
                                         : write_cuda(parse_stage(a[2]), effects, all));
     } else if (mode == "nocontract" && a.size() == 3) {
         write_nocontract(a[1], a[2]);
     } else if (mode == "embed" && a.size() == 3) {
-        write_text(a[2], "// Written by stagec." + word_list(a[1]) + "\n");
+        write_code(a[2], "// Written by stagec." + word_list(a[1]) + "\n");
     } else if (mode == "table" && a.size() >= 5) {
-        write_text(a[2], stage_table({a.begin() + 4, a.end()}, parse_effects(a[1]), a[3]));
+        write_code(a[2], stage_table({a.begin() + 4, a.end()}, parse_effects(a[1]), a[3]));
     } else if (mode == "cpurows" && a.size() >= 4) {
-        write_text(a[1], cpu_rows(a[2], {a.begin() + 3, a.end()}));
+        write_code(a[1], cpu_rows(a[2], {a.begin() + 3, a.end()}));
     } else if (mode == "cudarows" && a.size() >= 3) {
         std::vector<std::string> names;
         for (std::size_t i = 2; i < a.size(); ++i) names.push_back(stem(a[i]));
-        write_text(a[1], cuda_rows(names));
+        write_code(a[1], cuda_rows(names));
     } else {
         fail("usage: glsl|cpp|cuda|nocontract|embed|table|cpurows|cudarows ... (see the top of stagec.cpp)");
     }

@@ -31,8 +31,6 @@ std::string stage_table(const std::vector<std::string>& paths, const Effects& ef
                                                               {"int", "i32"},   {"vec2", "vec2"},
                                                               {"vec4", "vec4"}, {"float_or_half", "f32_or_f16"}};
             const std::map<std::string, std::string> access = {{"IN", "in"}, {"OUT", "out"}, {"INOUT", "inout"}};
-            if (!types.count(b.type))
-                fail(s.path + ": type " + b.type + " of " + b.name + " is not float, float_or_half, uint, int, vec2 or vec4");
             o << "    {\"" << b.name << "\", " << b.slot << ", Access::" << access.at(b.access)
               << ", Scalar::" << types.at(b.type) << ", " << b.condition << "},\n";
         }

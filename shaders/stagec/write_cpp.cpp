@@ -57,8 +57,7 @@ std::string select_function(const Stage& s, const std::string& isa, unsigned tes
 std::string write_cpp(const Stage& s, const std::string& isa, const Effects& effects, bool all_masks) {
     const unsigned tested = tested_bits(s, effects);
     std::ostringstream o;
-    o << file_head(s, isa) << "#include \"" << include_path(s) << "\"\n"
-      << block_head() << "    const " << s.struct_name << "<E> stage{P, S\n"
+    o << file_head(s, isa) << stage_text(s) << block_head() << "    const " << s.struct_name << "<E> stage{P, S\n"
       << buffer_members(s) << "    };\n    for (int j = j0; j < j1; ++j) {\n        const " << s.struct_name
       << "<E> local = stage;\n"
       << (s.extent == "POINTS" ? "        const int row = S.point_count - j * POINT_ROW;\n        i1 = row < i1 ? row : i1;\n"
@@ -75,7 +74,9 @@ std::string write_cpp(const Stage& s, const std::string& isa, const Effects& eff
 std::string write_cpp(const FusedStage& f, const std::string& isa, const Effects& effects, bool all_masks) {
     const Stage& s = f.stage;
     std::ostringstream o;
-    o << file_head(s, isa) << physics_includes(f) << "struct Place { int x, y; };\n#define PLACE(X, Y) Place{X, Y}\n"
+    // What is loaded from a buffer that the fused stage's masks do not have is a constant, and its place used by nobody.
+    o << file_head(s, isa) << "#pragma GCC diagnostic ignored \"-Wunused-but-set-variable\"\n"
+      << physics_includes(f) << "struct Place { int x, y; };\n#define PLACE(X, Y) Place{X, Y}\n"
       << index_macros(f)
       << "#define LANE 0\n#define LANES 1\n#define BARRIER (void)0\n#define KEEP_STORED(FIELD, AT, TYPE) FIELD[AT] = "
          "TYPE(stored)\n"

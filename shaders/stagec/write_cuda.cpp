@@ -48,9 +48,8 @@ std::string write_cuda(const Stage& s, const Effects& effects, bool all_masks) {
     const auto chosen = all_masks ? masks(tested_bits(s, effects)) : largest(masks(tested_bits(s, effects)));
     const std::string space = "wadi_stage_cuda_" + s.name;
     std::ostringstream o;
-    o << "// Written by stagec from " << s.name << ".stage.\nnamespace " << space
-      << " {\n#include \"language/stage_cuda.h\"\n#include \"" << include_path(s) << "\"\n"
-      << "struct Slots { void* at[" << (s.bindings.empty() ? 1 : s.bindings.size()) << "]; };\n"
+    o << "// Written by stagec from " << s.name << ".stage.\nnamespace " << space << " {\n#include \"language/stage_cuda.h\"\n"
+      << stage_text(s) << "struct Slots { void* at[" << (s.bindings.empty() ? 1 : s.bindings.size()) << "]; };\n"
       << "template <unsigned E, int X, int Y> __global__ void __launch_bounds__(X > 0 ? X * Y : 1024)\n"
       << "run(const WorldParams P, const StepInput* __restrict__ input, const Slots b) {\n    const StepInput& S = *input;\n    "
          "const "

@@ -15,10 +15,12 @@ std::string tile_bindings(const Stage& s) {
 const char* const head = "#version 450\n#extension GL_GOOGLE_include_directive : require\n#ifdef WADI_HALF\n"
                          "#extension GL_EXT_shader_16bit_storage : require\n#endif\n#include \"language/stage_glsl.h\"\n";
 
-// A stage's text with what loads and stores the named buffers converted, which GLSL does for 16-bit floats only where it is told.
-std::string converted(const std::string& text, const std::set<std::string>& narrow) {
+// A stage's text from `at` to `stop` with what loads and stores the named buffers converted, which GLSL does for 16-bit floats
+// only where it is told.
+std::string converted(const Source& source, std::size_t at, std::size_t stop, const std::set<std::string>& narrow) {
+    const std::string& text = source.text;
     std::string out;
-    for (std::size_t at = 0; at < text.size();) {
+    while (at < stop) {
         const std::string word = word_at(text, at);
         at += word.size();
         if (word.empty()) {
@@ -26,14 +28,12 @@ std::string converted(const std::string& text, const std::set<std::string>& narr
         } else if (narrow.count(word) == 0 || text[at] != '[') {
             out += word;
         } else {
-            std::size_t end = at + 1;
-            for (int depth = 1; depth > 0; ++end) depth += text[end] == '[' ? 1 : text[end] == ']' ? -1 : 0;
-            const std::string element = word + text.substr(at, end - at);
-            const std::size_t next = text.find_first_not_of(' ', end);
+            const std::size_t end = behind_bracket(source, at), next = skip_blanks(text, end);
+            const std::string element = word + "[" + converted(source, at + 1, end - 1, narrow) + "]";
             at = end;
             if (text[next] == '=' && text[next + 1] != '=') {
                 at = text.find(';', next);
-                out += element + " = float_or_half(to_stored(" + converted(text.substr(next + 1, at - next - 1), narrow) + "))";
+                out += element + " = float_or_half(to_stored(" + converted(source, next + 1, at, narrow) + "))";
             } else {
                 out += "float(" + element + ")";
             }
@@ -42,22 +42,20 @@ std::string converted(const std::string& text, const std::set<std::string>& narr
     return out;
 }
 
-// The stage file, included where nothing in it is to be converted.
-std::string stage_text(const Stage& s) {
+std::string converted(const Stage& s) {
     std::set<std::string> narrow;
     for (const auto& b : s.bindings)
         if (b.narrow()) narrow.insert(b.name);
-    if (narrow.empty()) return "#include \"" + include_path(s) + "\"\n";
-    std::string text = converted(strip_comments(read_text(s.path)), narrow);
-    for (std::size_t at = 0; (at = text.find("\"../../physics/", at)) != std::string::npos;) text.erase(at + 1, 6);
-    return text;
+    Stage copy = s;
+    copy.source.text = converted(s.source, 0, s.source.text.size(), narrow);
+    return stage_text(copy);
 }
 
 } // namespace
 
 std::string write_glsl(const Stage& s) {
     std::ostringstream o;
-    o << head << stage_text(s);
+    o << head << converted(s);
     if (marks(s)) o << tile_bindings(s);
     o << "void main() {\n    int i = int(gl_GlobalInvocationID.x)" << origin(s.extent, "i")
       << ";\n    int j = int(gl_GlobalInvocationID.y)" << origin(s.extent, "j") << ";\n";

@@ -1,0 +1,191 @@
+#include "fused_file.hpp"
+#include "writers.hpp"
+#include <cctype>
+#include <sstream>
+
+namespace stagec {
+namespace {
+
+struct Rewriter {
+    const FusedStage& fused;
+    const FusedPart& part;
+    std::size_t index;
+    const Effects& effects;
+    std::set<std::string> functions;
+
+    bool absent(const std::string& binding) const {
+        bool never = false;
+        condition_of(fused, part, binding_of(part.stage, binding), effects, never);
+        return never;
+    }
+
+    std::string load(const std::string& binding, const std::string& at) const {
+        if (absent(binding)) return "0.0f";
+        const std::string& field = part.reads.at(binding);
+        if (!writes_before(fused, index, field)) return "float(" + field + "[IN_MEMORY(" + at + ")])";
+        return fused.fields.at(field) == Keeping::tile ? "tile_" + field + "[IN_TILE(" + at + ")]" : "own_" + field;
+    }
+
+    std::string store(const std::string& binding, const std::string& at, const std::string& value) const {
+        if (absent(binding)) return "NOT_KEPT(" + value + ");";
+        const std::string& field = part.writes.at(binding);
+        const bool narrow = binding_of(part.stage, binding).narrow();
+        std::string out = "{ float stored = " + (narrow ? "to_stored(" + value + ")" : value) + ";";
+        const Keeping keeping = fused.fields.at(field);
+        if (keeping == Keeping::tile) out += " tile_" + field + "[IN_TILE(" + at + ")] = stored;";
+        if (keeping == Keeping::own_index) out += " own_" + field + " = stored;";
+        const auto kept = fused.kept.find(field);
+        if (kept != fused.kept.end() && last_writer(fused, field) == index) {
+            const Kept& k = kept->second;
+            const std::string rim = k.rim ? " && (i == 0 || j == 0 || i == P.nx || j == P.ny)" : "";
+            const std::string on = k.condition != 0 ? " && HAS(" + std::to_string(k.condition) + "u)" : "";
+            out += " if (owned" + rim + on + ") KEEP_STORED(" + field + ", IN_MEMORY(" + at + "), " +
+                   (narrow ? "float_or_half" : "float") + ");";
+        }
+        return out + " }";
+    }
+
+    // The part's text from `at` to `stop`, line for line.
+    std::string run(std::size_t at, std::size_t stop) {
+        static const std::set<std::string> dropped = {"STAGE", "EXTENT", "REACH", "FAR_IF", "IN",
+                                                      "OUT",   "INOUT",  "IN_IF", "OUT_IF", "INOUT_IF"};
+        const std::string& text = part.stage.source.text;
+        std::string out;
+        while (at < stop) {
+            if (text[at] == '#') { // includes, gathered by physics_includes
+                at = text.find('\n', at);
+                continue;
+            }
+            if (!is_word(text[at])) {
+                out += text[at++];
+                continue;
+            }
+            const std::size_t begin = at;
+            const std::string word = word_at(text, at);
+            const bool number = std::isdigit(static_cast<unsigned char>(word[0])) != 0;
+            at += word.size();
+            if (dropped.count(word)) {
+                at = behind_bracket(part.stage.source, skip_blanks(text, at));
+            } else if (word == "END_STAGE") {
+            } else if (word == "KERNEL") {
+                out += "PART_FUNCTION void " + part.stage.name + "_kernel(int i, int j)";
+            } else if (word == "int" && is_place(text, begin)) {
+                out += "Place";
+            } else if (functions.count(word)) {
+                out += part.stage.name + "_" + word;
+            } else if (!number && at < stop && text[at] == '[' && is_binding(word)) {
+                out += access(word, begin, at);
+            } else {
+                out += word;
+            }
+        }
+        return out;
+    }
+
+    // A declaration from IDX(i, j), or a parameter of a helper: the stages' only other integers are the kernel's own i and j.
+    static bool is_place(const std::string& text, std::size_t at) {
+        const std::size_t name_at = skip_blanks(text, at + 3);
+        const std::string name = word_at(text, name_at);
+        if (text.compare(name_at + name.size(), 7, " = IDX(") == 0) return true;
+        if (name == "i" || name == "j") return false;
+        const std::size_t helper = text.rfind("HELPER ", at);
+        return helper != std::string::npos && text.find_first_of("{};", helper) > at;
+    }
+
+    bool is_binding(const std::string& word) const { return part.reads.count(word) || part.writes.count(word); }
+
+    // `at`: behind the binding's name, and then behind what is written in its place.
+    std::string access(const std::string& binding, std::size_t begin, std::size_t& at) {
+        const Source& source = part.stage.source;
+        const std::size_t end = behind_bracket(source, at), next = skip_blanks(source.text, end);
+        const std::string place = run(at + 1, end - 1), mark = source.text.substr(next, 2);
+        if (mark.size() == 2 && mark[1] == '=' && std::string("+-*/").find(mark[0]) != std::string::npos)
+            source.fail(begin, binding + "[...] " + mark + " cannot be fused");
+        if (mark[0] != '=' || mark == "==") {
+            at = end;
+            return load(binding, place);
+        }
+        const std::size_t stop = source.text.find(';', next);
+        at = stop + 1;
+        return store(binding, place, run(next + 1, stop));
+    }
+
+    void find_functions() {
+        const std::string& text = part.stage.source.text;
+        for_each_word(text, [&](const std::string& word, std::size_t at) {
+            if (word != "FN" && word != "HELPER") return;
+            at = skip_blanks(text, at + word.size());
+            at = skip_blanks(text, at + word_at(text, at).size()); // behind the type
+            functions.insert(word_at(text, at));
+        });
+    }
+};
+
+} // namespace
+
+std::string part_functions(const FusedStage& fused, const Effects& effects) {
+    std::string out;
+    for (std::size_t n = 0; n < fused.parts.size(); ++n) {
+        Rewriter rewriter{fused, fused.parts[n], n, effects, {}};
+        const Source& source = fused.parts[n].stage.source;
+        rewriter.find_functions();
+        out += "#line 1 \"" + source.path + "\"\n" + rewriter.run(0, source.text.size()) + here;
+    }
+    return out;
+}
+
+std::string physics_includes(const FusedStage& fused) {
+    std::set<std::string> lines;
+    for (const auto& part : fused.parts) {
+        std::istringstream text(part.stage.source.text);
+        for (std::string line; std::getline(text, line);) {
+            const auto at = line.find("physics/");
+            if (line.rfind("#include", 0) == 0 && at != std::string::npos) lines.insert("#include \"" + line.substr(at));
+        }
+    }
+    std::string out;
+    for (const auto& line : lines) out += line + "\n";
+    return out;
+}
+
+std::string index_macros(const FusedStage& fused) {
+    const Margins m = tile_margins(fused);
+    std::ostringstream o;
+    // Two numbers a place: compilers then see that neighbours lie at fixed distances, in memory as in the tile.
+    o << "#undef IDX\n#define IDX(I, J) PLACE(((J) + GHOST) * P.pitch + (I) + GHOST, ((J) - tile_j0) * " << tile_pitch(fused)
+      << " + (I) - tile_i0)\n#define IN_MEMORY(C) (C).x\n#define IN_TILE(C) (C).y\n"
+      << "#define PLACE_TILE tile_i0 = own_i0 - " << m.west << "; tile_j0 = own_j0 - " << m.south << "\n";
+    return o.str();
+}
+
+std::string phase_loops(const FusedStage& fused) {
+    std::ostringstream o;
+    for (std::size_t p = 0; p < fused.phases.size(); ++p) {
+        const Margins& m = fused.phases[p];
+        const int width = FUSED_COLUMNS + m.west + m.east, height = FUSED_ROWS + m.south + m.north;
+        if (p > 0) o << "    BARRIER;\n";
+        o << "    for (int n = LANE; n < " << width * height << "; n += LANES) {\n"
+          << "        int i = own_i0 + n % " << width << " - " << m.west << ";\n        int j = own_j0 + n / " << width << " - "
+          << m.south << ";\n"
+          << "        owned = i >= own_i0 && i < own_i1 && j >= own_j0 && j < own_j1;\n"
+          << "        bool inside = i >= 0 && j >= 0;\n";
+        for (const auto& part : fused.parts) {
+            if (part.phase != p) continue;
+            if (part.condition != 0) o << "        if (HAS(" << part.condition << "u)) {\n";
+            o << "        if (inside && " << guard(part.stage.extent) << ") {\n            " << part.stage.name
+              << "_kernel(i, j);\n        } else {\n"; // beyond the grid fields are 0, as ghosts are
+            for (const auto& [name, field] : part.writes) {
+                const auto found = fused.fields.find(field);
+                if (found == fused.fields.end()) continue;
+                if (found->second == Keeping::tile) o << "            tile_" << field << "[IN_TILE(IDX(i, j))] = 0.0f;\n";
+                if (found->second == Keeping::own_index) o << "            own_" << field << " = 0.0f;\n";
+            }
+            o << "        }\n";
+            if (part.condition != 0) o << "        }\n";
+        }
+        o << "    }\n";
+    }
+    return o.str();
+}
+
+} // namespace stagec
