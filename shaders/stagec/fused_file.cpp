@@ -87,10 +87,6 @@ void resolve(FusedStage& fused, const Effects& effects, std::set<std::string> te
             if (!never) fused.fields.emplace(field, Keeping::nowhere);
         }
     }
-    for (const auto& [field, keeping] : fused.fields) {
-        if (!fused.kept.count(field) && keeping == Keeping::nowhere)
-            fail(fused.parts[last_writer(fused, field)].place + ": nobody reads " + field);
-    }
     for (const auto& [field, kept] : fused.kept) {
         if (!fused.fields.count(field)) fail(kept.place + ": KEEP names " + field + ", which no part writes");
         const FusedPart& part = fused.parts[last_writer(fused, field)];
@@ -101,6 +97,10 @@ void resolve(FusedStage& fused, const Effects& effects, std::set<std::string> te
                 add_binding(fused, field, binding_of(part.stage, name).type, "OUT", condition | (kept.condition & ~fused.needs),
                             kept.place);
         }
+    }
+    for (const auto& [field, keeping] : fused.fields) {
+        if (!fused.kept.count(field) && keeping == Keeping::nowhere)
+            fail(fused.parts[last_writer(fused, field)].place + ": nobody reads " + field);
     }
     for (const auto& name : tested) {
         if ((effects.at(name) & (fused.needs | fused.without)) == 0) fused.stage.tested.push_back(name);

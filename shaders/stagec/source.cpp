@@ -80,12 +80,16 @@ std::size_t skip_blanks(const std::string& text, std::size_t at) {
 
 std::size_t behind_bracket(const Source& source, std::size_t at) {
     const std::string open = "([{", close = ")]}";
-    int depth = 0;
+    std::string expected; // what closes the brackets that are open
     for (std::size_t n = at; n < source.text.size(); ++n) {
-        if (open.find(source.text[n]) != std::string::npos) ++depth;
-        if (close.find(source.text[n]) != std::string::npos && --depth == 0) return n + 1;
+        const char c = source.text[n];
+        if (const auto kind = open.find(c); kind != std::string::npos) expected += close[kind];
+        if (close.find(c) == std::string::npos) continue;
+        if (expected.empty() || expected.back() != c) break;
+        expected.pop_back();
+        if (expected.empty()) return n + 1;
     }
-    source.fail(at, std::string("nothing closes this ") + source.text[at]);
+    source.fail(at, std::string("nothing closes this ") + source.text[std::min(at, source.text.size() - 1)]);
 }
 
 std::vector<std::string> arguments(const Source& source, std::size_t at) {
