@@ -79,7 +79,7 @@ void resolve(FusedStage& fused, const Effects& effects, std::set<std::string> te
             for (std::size_t w = 0; w < n; ++w)
                 for (const auto& [other, written] : fused.parts[w].writes)
                     if (written == field) same_phase &= fused.parts[w].phase == part.phase;
-            keeping = std::max(keeping, same_phase ? Keeping::own_index : Keeping::tile);
+            keeping = std::max(keeping, same_phase ? Keeping::own_index : Keeping::window);
         }
         for (const auto& [name, field] : part.writes) {
             bool never = false;
@@ -145,7 +145,7 @@ std::size_t last_writer(const FusedStage& fused, const std::string& field) {
     return last;
 }
 
-Margins tile_margins(const FusedStage& fused) {
+Margins window_margins(const FusedStage& fused) {
     Margins most;
     for (const auto& m : fused.phases) {
         most = {std::max(most.west, m.west), std::max(most.south, m.south), std::max(most.east, m.east),
@@ -154,14 +154,14 @@ Margins tile_margins(const FusedStage& fused) {
     return most;
 }
 
-int tile_pitch(const FusedStage& fused) {
-    const Margins m = tile_margins(fused);
+int window_pitch(const FusedStage& fused) {
+    const Margins m = window_margins(fused);
     return FUSED_COLUMNS + m.west + m.east;
 }
 
-int tile_floats(const FusedStage& fused) {
-    const Margins m = tile_margins(fused);
-    return tile_pitch(fused) * (FUSED_ROWS + m.south + m.north);
+int window_floats(const FusedStage& fused) {
+    const Margins m = window_margins(fused);
+    return window_pitch(fused) * (FUSED_ROWS + m.south + m.north);
 }
 
 std::vector<std::string> fields_kept(const FusedStage& fused, Keeping keeping) {
@@ -227,9 +227,9 @@ FusedStage parse_fused(const std::string& path, const Effects& effects) {
     }
     if (fused.stage.struct_name.empty()) source.fail(0, "no FUSED(Name)");
     resolve(fused, effects, asked);
-    const std::size_t bytes = 4 * fields_kept(fused, Keeping::tile).size() * static_cast<std::size_t>(tile_floats(fused));
+    const std::size_t bytes = 4 * fields_kept(fused, Keeping::window).size() * static_cast<std::size_t>(window_floats(fused));
     if (bytes > wadi::compute::fused_shared_bytes) {
-        source.fail(0, "tiles of " + std::to_string(bytes) + " bytes, at most " +
+        source.fail(0, "windows of " + std::to_string(bytes) + " bytes, at most " +
                            std::to_string(wadi::compute::fused_shared_bytes) + " are shared");
     }
     return fused;

@@ -1,4 +1,5 @@
-// Fused files: several stages as one pass over tiles, written from the stages' own text (shaders/README.md, "Fused stages").
+// Fused files: several stages as one pass over windows in shared memory, written from the stages' own text (shaders/README.md,
+// "Fused stages").
 #pragma once
 #include "engine/compute/stage_table.hpp"
 #include "stage_file.hpp"
@@ -20,7 +21,7 @@ struct FusedPart {
 };
 
 /// Where a field that the parts write lives until the pass ends.
-enum class Keeping { nowhere, own_index, tile };
+enum class Keeping { nowhere, own_index, window };
 
 /// What later passes read of a field: all of it, or its outer faces alone, and under which effects.
 struct Kept {
@@ -40,10 +41,10 @@ struct FusedStage {
 
 /// Threads of a group of a fused stage along i and j; it covers FUSED_COLUMNS x FUSED_ROWS cells.
 inline constexpr int fused_group_x = wadi::compute::fused_group_x, fused_group_y = wadi::compute::fused_group_y;
-/// The box that holds every field kept in a tile: margins around a group's own cells.
-Margins tile_margins(const FusedStage& fused);
-int tile_pitch(const FusedStage& fused);
-int tile_floats(const FusedStage& fused);
+/// The box that holds every field kept in shared memory: margins around a group's own cells.
+Margins window_margins(const FusedStage& fused);
+int window_pitch(const FusedStage& fused);
+int window_floats(const FusedStage& fused);
 std::vector<std::string> fields_kept(const FusedStage& fused, Keeping keeping);
 
 /// Stages are looked for in the rooms of the folder stages beside the file's own.
@@ -62,7 +63,8 @@ std::string part_functions(const FusedStage& fused, const Effects& effects);
 std::string phase_loops(const FusedStage& fused);
 /// Include lines of the parts' physics.
 std::string physics_includes(const FusedStage& fused);
-/// Macros for places in memory and in a tile. They need own_i0, own_j0, tile_i0, tile_j0 and the language's type Place and PLACE.
+/// Macros for places in memory and in a window. They need own_i0, own_j0, window_i0, window_j0 and the language's type Place and
+/// PLACE.
 std::string index_macros(const FusedStage& fused);
 
 } // namespace stagec

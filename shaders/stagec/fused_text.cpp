@@ -23,7 +23,7 @@ struct Rewriter {
         if (absent(binding)) return "0.0f";
         const std::string& field = part.reads.at(binding);
         if (!writes_before(fused, index, field)) return "float(" + field + "[IN_MEMORY(" + at + ")])";
-        return fused.fields.at(field) == Keeping::tile ? "tile_" + field + "[IN_TILE(" + at + ")]" : "own_" + field;
+        return fused.fields.at(field) == Keeping::window ? "window_" + field + "[IN_WINDOW(" + at + ")]" : "own_" + field;
     }
 
     std::string store(const std::string& binding, const std::string& at, const std::string& value) const {
@@ -32,7 +32,7 @@ struct Rewriter {
         const bool narrow = binding_of(part.stage, binding).narrow();
         std::string out = "{ float stored = " + (narrow ? "to_stored(" + value + ")" : value) + ";";
         const Keeping keeping = fused.fields.at(field);
-        if (keeping == Keeping::tile) out += " tile_" + field + "[IN_TILE(" + at + ")] = stored;";
+        if (keeping == Keeping::window) out += " window_" + field + "[IN_WINDOW(" + at + ")] = stored;";
         if (keeping == Keeping::own_index) out += " own_" + field + " = stored;";
         const auto kept = fused.kept.find(field);
         if (kept != fused.kept.end() && last_writer(fused, field) == index) {
@@ -149,12 +149,12 @@ std::string physics_includes(const FusedStage& fused) {
 }
 
 std::string index_macros(const FusedStage& fused) {
-    const Margins m = tile_margins(fused);
+    const Margins m = window_margins(fused);
     std::ostringstream o;
-    // Two numbers a place: compilers then see that neighbours lie at fixed distances, in memory as in the tile.
-    o << "#undef IDX\n#define IDX(I, J) PLACE(((J) + GHOST) * P.pitch + (I) + GHOST, ((J) - tile_j0) * " << tile_pitch(fused)
-      << " + (I) - tile_i0)\n#define IN_MEMORY(C) (C).x\n#define IN_TILE(C) (C).y\n"
-      << "#define PLACE_TILE tile_i0 = own_i0 - " << m.west << "; tile_j0 = own_j0 - " << m.south << "\n";
+    // Two numbers a place: compilers then see that neighbours lie at fixed distances, in memory as in the window.
+    o << "#undef IDX\n#define IDX(I, J) PLACE(((J) + GHOST) * P.pitch + (I) + GHOST, ((J) - window_j0) * " << window_pitch(fused)
+      << " + (I) - window_i0)\n#define IN_MEMORY(C) (C).x\n#define IN_WINDOW(C) (C).y\n"
+      << "#define PLACE_WINDOW window_i0 = own_i0 - " << m.west << "; window_j0 = own_j0 - " << m.south << "\n";
     return o.str();
 }
 
@@ -177,7 +177,7 @@ std::string phase_loops(const FusedStage& fused) {
             for (const auto& [name, field] : part.writes) {
                 const auto found = fused.fields.find(field);
                 if (found == fused.fields.end()) continue;
-                if (found->second == Keeping::tile) o << "            tile_" << field << "[IN_TILE(IDX(i, j))] = 0.0f;\n";
+                if (found->second == Keeping::window) o << "            window_" << field << "[IN_WINDOW(IDX(i, j))] = 0.0f;\n";
                 if (found->second == Keeping::own_index) o << "            own_" << field << " = 0.0f;\n";
             }
             o << "        }\n";

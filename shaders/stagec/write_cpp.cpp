@@ -69,8 +69,8 @@ std::string write_cpp(const Stage& s, const std::string& isa, const Effects& eff
     return o.str();
 }
 
-// One tile after the other, what a GPU keeps in shared memory on the stack. Slower than the stages one by one: it is there to be
-// compared with them.
+// One window after the other, what a GPU keeps in shared memory on the stack. Slower than the stages one by one: it is there to
+// be compared with them.
 std::string write_cpp(const FusedStage& f, const std::string& isa, const Effects& effects, bool all_masks) {
     const Stage& s = f.stage;
     std::ostringstream o;
@@ -85,18 +85,19 @@ std::string write_cpp(const FusedStage& f, const std::string& isa, const Effects
       << "u;\n    typedef Stored<EFFECTS> float_or_half;\n    const WorldParams& P;\n    const StepInput& S;\n";
     for (const auto& b : s.bindings)
         o << "    WADI_BUFFER(" << (b.access == "IN" ? "const " : "") << b.type << ") " << b.name << ";\n";
-    for (const auto& name : fields_kept(f, Keeping::tile)) o << "    float tile_" << name << "[" << tile_floats(f) << "] = {};\n";
+    for (const auto& name : fields_kept(f, Keeping::window))
+        o << "    float window_" << name << "[" << window_floats(f) << "] = {};\n";
     for (const auto& name : fields_kept(f, Keeping::own_index)) o << "    float own_" << name << " = 0.0f;\n";
-    o << "    int own_i0 = 0, own_j0 = 0, own_i1 = 0, own_j1 = 0, tile_i0 = 0, tile_j0 = 0;\n    bool owned = "
+    o << "    int own_i0 = 0, own_j0 = 0, own_i1 = 0, own_j1 = 0, window_i0 = 0, window_j0 = 0;\n    bool owned = "
          "false;\n"
-      << part_functions(f, effects) << "void tile() {\n    PLACE_TILE;\n"
+      << part_functions(f, effects) << "void window() {\n    PLACE_WINDOW;\n"
       << phase_loops(f) << "}\n};\n"
       << block_head() << "    " << s.struct_name << "<E> stage{P, S\n"
       << buffer_members(s)
       << "    };\n    for (int j = j0; j < j1; j += FUSED_ROWS) {\n        for (int i = i0; i < i1; i += "
          "FUSED_COLUMNS) {\n            stage.own_i0 = i;\n            stage.own_j0 = j;\n            stage.own_i1 = i + "
          "FUSED_COLUMNS < i1 ? i + FUSED_COLUMNS : i1;\n            stage.own_j1 = j + FUSED_ROWS < j1 ? j + FUSED_ROWS : "
-         "j1;\n            stage.tile();\n        }\n    }\n}\n} // namespace\n"
+         "j1;\n            stage.window();\n        }\n    }\n}\n} // namespace\n"
       << select_function(s, isa, tested_bits(s, effects), masks(tested_bits(s, effects), f.needs, f.without), effects, all_masks);
     return o.str();
 }

@@ -88,10 +88,10 @@ std::string write_cuda(const FusedStage& f, const Effects& effects, bool all_mas
     const Stage& s = f.stage;
     const auto legal = masks(tested_bits(s, effects), f.needs, f.without), chosen = all_masks ? legal : largest(legal);
     const std::string space = "wadi_stage_cuda_" + s.name;
-    const auto tile = fields_kept(f, Keeping::tile);
+    const auto windows = fields_kept(f, Keeping::window);
     // Groups on a multiprocessor, for which the compiler saves registers: these kernels wait for instructions, not for memory.
     // Before compute capability 8.0 it holds 1024 threads, 4 groups.
-    const int groups = 4 * tile.size() * static_cast<std::size_t>(tile_floats(f)) > 16384 ? 5 : 6;
+    const int groups = 4 * windows.size() * static_cast<std::size_t>(window_floats(f)) > 16384 ? 5 : 6;
     std::ostringstream o;
     o << "// Written by stagec from " << s.name << ".fused.\nnamespace " << space << " {\n#include \"language/stage_cuda.h\"\n"
       << physics_includes(f) << "struct Place { int x, y; };\n#define PLACE(X, Y) Place{X, Y}\n"
@@ -103,22 +103,22 @@ std::string write_cuda(const FusedStage& f, const Effects& effects, bool all_mas
       << "u;\n    typedef Stored<EFFECTS> float_or_half;\n    const WorldParams& P;\n    const StepInput& S;\n";
     for (const auto& b : s.bindings)
         o << "    " << (b.access == "IN" ? "const " : "") << b.type << "* __restrict__ " << b.name << ";\n";
-    for (const auto& name : tile) o << "    float* __restrict__ tile_" << name << ";\n";
+    for (const auto& name : windows) o << "    float* __restrict__ window_" << name << ";\n";
     for (const auto& name : fields_kept(f, Keeping::own_index)) o << "    float own_" << name << " = 0.0f;\n";
-    o << "    int own_i0 = 0, own_j0 = 0, own_i1 = 0, own_j1 = 0, tile_i0 = 0, tile_j0 = 0;\n    bool owned = "
+    o << "    int own_i0 = 0, own_j0 = 0, own_i1 = 0, own_j1 = 0, window_i0 = 0, window_j0 = 0;\n    bool owned = "
          "false, look = false, changed = false;\n"
-      << part_functions(f, effects) << "__device__ __forceinline__ void tile() {\n    PLACE_TILE;\n"
+      << part_functions(f, effects) << "__device__ __forceinline__ void window() {\n    PLACE_WINDOW;\n"
       << phase_loops(f) << "}\n};\n"
       << "#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ < 800\n#define GROUPS 4\n#else\n#define GROUPS " << groups << "\n#endif\n"
       << "template <unsigned E> __global__ void __launch_bounds__(" << fused_group_x * fused_group_y << ", GROUPS)\n"
       << "run(const WorldParams P, const StepInput* __restrict__ input, const Slots b, const Active active) {\n"
-      << "    __shared__ float tiles[" << std::max<std::size_t>(1, tile.size()) << "][" << tile_floats(f) << "];\n    "
+      << "    __shared__ float windows[" << std::max<std::size_t>(1, windows.size()) << "][" << window_floats(f) << "];\n    "
       << s.struct_name << "<E> stage{P, *input";
     for (const auto& b : s.bindings)
         o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << element_type(b, "E") << "*>(b.at[" << b.slot
           << "])";
-    for (std::size_t n = 0; n < tile.size(); ++n) o << ",\n        tiles[" << n << "]";
-    // One call of tile() for both ways: two would be two copies of all stages.
+    for (std::size_t n = 0; n < windows.size(); ++n) o << ",\n        windows[" << n << "]";
+    // One call of window() for both ways: two would be two copies of all stages.
     o << "};\n    const bool all = active.list == nullptr;\n"
       << "    const int across = (P.tile_size + FUSED_COLUMNS - 1) / FUSED_COLUMNS;\n"
       << "    const int parts = across * ((P.tile_size + FUSED_ROWS - 1) / FUSED_ROWS);\n"
@@ -130,7 +130,7 @@ std::string write_cuda(const FusedStage& f, const Effects& effects, bool all_mas
       << "        volatile uint* activity = active.activity;\n        if (!all) {\n"
       << "        const int tile = static_cast<int>(active.list[n / parts]), part = n % parts;\n"
       << tile_part("stage.") << "        activity += tile;\n        stage.look = *activity != uint(input->step);\n"
-      << "        stage.changed = false;\n        }\n        stage.tile();\n"
+      << "        stage.changed = false;\n        }\n        stage.window();\n"
       << "        if (stage.changed) *activity = uint(input->step);\n        BARRIER;\n    }\n}\n} // namespace " << space
       << "\nextern \"C\" const void* wadi_cuda_" << s.name << "(unsigned effects, int, int) {\n    switch (effects) {\n";
     for (const unsigned mask : chosen)

@@ -88,16 +88,17 @@ std::string write_glsl(const FusedStage& f, const Effects& effects) {
       << keep_stored;
     for (const auto& b : s.bindings) o << b.access << "(" << b.slot << ", " << b.type << ", " << b.name << ")\n";
     o << tile_bindings(s);
-    for (const auto& name : fields_kept(f, Keeping::tile)) o << "shared float tile_" << name << "[" << tile_floats(f) << "];\n";
+    for (const auto& name : fields_kept(f, Keeping::window))
+        o << "shared float window_" << name << "[" << window_floats(f) << "];\n";
     for (const auto& name : fields_kept(f, Keeping::own_index)) o << "float own_" << name << ";\n";
-    o << "int own_i0, own_j0, own_i1, own_j1, tile_i0, tile_j0;\nbool owned, look = false, changed = false;\n"
+    o << "int own_i0, own_j0, own_i1, own_j1, window_i0, window_j0;\nbool owned, look = false, changed = false;\n"
       << part_functions(f, effects)
       << "void main() {\n    own_i0 = int(gl_WorkGroupID.x) * FUSED_COLUMNS;\n    own_j0 = int(gl_WorkGroupID.y) * FUSED_ROWS;\n"
       << "    own_i1 = own_i0 + FUSED_COLUMNS;\n    own_j1 = own_j0 + FUSED_ROWS;\n    int tile = 0;\n"
       << "    if (ACTIVE_TILES != 0u) {\n        tile = int(active_list[gl_WorkGroupID.x]);\n        int part = "
          "int(gl_WorkGroupID.y);\n"
          "        int across = (P.tile_size + FUSED_COLUMNS - 1) / FUSED_COLUMNS;\n"
-      << tile_part("") << "        look = activity[tile] != uint(S.step);\n    }\n    PLACE_TILE;\n"
+      << tile_part("") << "        look = activity[tile] != uint(S.step);\n    }\n    PLACE_WINDOW;\n"
       << phase_loops(f) << "    if (changed) activity[tile] = uint(S.step);\n}\n";
     return o.str();
 }
