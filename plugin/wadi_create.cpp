@@ -1,4 +1,5 @@
 // Devices, and worlds made from levels or arrays.
+#include "backends/registry.hpp"
 #include "engine/level/level.hpp"
 #include "engine/settings/accuracy_presets.hpp"
 #include "plugin/abi.hpp"
@@ -37,7 +38,7 @@ Result<std::unique_ptr<compute::Device>> open(const wadi_device_options* options
         return error(Code::not_supported, "vulkan_host was given, but this build has no Vulkan");
 #endif
     }
-    return compute::open_device(options->backend != nullptr ? options->backend : "auto", options->device, o);
+    return backends::open_device(options->backend != nullptr ? options->backend : "auto", options->device, o);
 }
 
 LevelOverrides to_overrides(const wadi_level_overrides* o) {
@@ -129,7 +130,7 @@ wadi_result wadi_list_devices(wadi_device_info* infos, uint32_t* count, char* no
         const uint32_t capacity = infos != nullptr ? *count : 0;
         uint32_t found = 0;
         std::string why_none;
-        for (const auto& backend : compute::backends()) {
+        for (const auto& backend : backends::all()) {
             std::string why;
             const auto devices = backend.enumerate(why);
             if (devices.empty()) why_none += std::string(backend.name) + ": " + why + "\n";

@@ -1,7 +1,7 @@
 // The CPU backend: always built, needs nothing but threads. The reference that every other backend is compared with in bits.
 #pragma once
-#include "engine/compute/device.hpp"
+#include "backends/common/backend.hpp"
 
 namespace wadi::cpu {
-const compute::Backend& cpu_backend();
+const backends::Backend& cpu_backend();
 }

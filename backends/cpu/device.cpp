@@ -373,11 +373,11 @@ void CpuDevice::execute(Recorded& program, const StepInput& input, std::vector<c
     }
 }
 
-const compute::Backend& cpu_backend() {
-    static const compute::Backend backend = {
+const backends::Backend& cpu_backend() {
+    static const backends::Backend backend = {
         "cpu",
         [](std::string&) {
-            return std::vector<compute::DeviceInfo>{{"cpu", 0, processor_name(), compute::DeviceKind::cpu, physical_memory()}};
+            return std::vector<backends::DeviceInfo>{{"cpu", 0, processor_name(), compute::DeviceKind::cpu, physical_memory()}};
         },
         [](int, const compute::DeviceOptions& options) -> Result<std::unique_ptr<compute::Device>> {
             constexpr int most_threads = 256;

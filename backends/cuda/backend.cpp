@@ -6,9 +6,9 @@
 namespace wadi::cuda {
 namespace {
 
-std::vector<compute::DeviceInfo> enumerate(std::string& why_none) {
+std::vector<backends::DeviceInfo> enumerate(std::string& why_none) {
     try {
-        std::vector<compute::DeviceInfo> list;
+        std::vector<backends::DeviceInfo> list;
         for (ListedDevice& device : list_devices(why_none)) list.push_back(std::move(device.info));
         return list;
     } catch (const std::bad_alloc&) {
@@ -19,8 +19,8 @@ std::vector<compute::DeviceInfo> enumerate(std::string& why_none) {
 
 } // namespace
 
-const compute::Backend& cuda_backend() {
-    static const compute::Backend backend{"cuda", enumerate, open_device};
+const backends::Backend& cuda_backend() {
+    static const backends::Backend backend{"cuda", enumerate, open_device};
     return backend;
 }
 

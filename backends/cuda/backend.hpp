@@ -1,9 +1,9 @@
 // The CUDA backend: NVIDIA GPUs.
 #pragma once
-#include "engine/compute/device.hpp"
+#include "backends/common/backend.hpp"
 
 namespace wadi::cuda {
 
-const compute::Backend& cuda_backend();
+const backends::Backend& cuda_backend();
 
 } // namespace wadi::cuda

@@ -1,6 +1,6 @@
 // The NVIDIA GPUs that this build has code for.
 #pragma once
-#include "engine/compute/device.hpp"
+#include "backends/common/backend.hpp"
 
 namespace wadi::cuda {
 
@@ -8,7 +8,7 @@ struct ListedDevice {
     int ordinal = 0;    // as CUDA counts, which also counts devices that are left out here
     int capability = 0; // 10 x major + minor
     compute::DeviceUuid uuid{};
-    compute::DeviceInfo info;
+    backends::DeviceInfo info;
 };
 
 /// In CUDA's order, the fastest first. Empty with a reason in `why_none`.

@@ -7,14 +7,14 @@
 namespace wadi::vulkan {
 namespace {
 
-std::vector<compute::DeviceInfo> enumerate(std::string& why_none) {
+std::vector<backends::DeviceInfo> enumerate(std::string& why_none) {
     try {
         auto instance = Instance::create({});
         if (!instance) {
             why_none = instance.status().message;
             return {};
         }
-        std::vector<compute::DeviceInfo> list;
+        std::vector<backends::DeviceInfo> list;
         for (PhysicalDevice& device : (*instance)->devices(why_none)) list.push_back(std::move(device.info));
         return list;
     } catch (const std::bad_alloc&) {
@@ -25,8 +25,8 @@ std::vector<compute::DeviceInfo> enumerate(std::string& why_none) {
 
 } // namespace
 
-const compute::Backend& vulkan_backend() {
-    static const compute::Backend backend{"vulkan", enumerate, open_device, lend};
+const backends::Backend& vulkan_backend() {
+    static const backends::Backend backend{"vulkan", enumerate, open_device, lend};
     return backend;
 }
 

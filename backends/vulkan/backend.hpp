@@ -1,9 +1,9 @@
 // The Vulkan backend: any GPU, integrated or discrete, and the software GPU lavapipe.
 #pragma once
-#include "engine/compute/device.hpp"
+#include "backends/common/backend.hpp"
 
 namespace wadi::vulkan {
 
-const compute::Backend& vulkan_backend();
+const backends::Backend& vulkan_backend();
 
 } // namespace wadi::vulkan

@@ -1,7 +1,7 @@
 // A Vulkan instance of our own: validation, messages, and the list of devices that can run stages.
 #pragma once
+#include "backends/common/backend.hpp"
 #include "backends/vulkan/api.hpp"
-#include "engine/compute/device.hpp"
 #include <atomic>
 #include <memory>
 #include <string>
@@ -34,7 +34,7 @@ struct PhysicalDevice {
     VkPhysicalDevice handle = VK_NULL_HANDLE;
     std::uint32_t queue_family = 0; // compute only where there is one, else any with compute
     std::uint32_t timestamp_bits = 0;
-    compute::DeviceInfo info;
+    backends::DeviceInfo info;
 };
 
 class Instance {

@@ -70,13 +70,10 @@ struct DeviceOptions {
     bool validate = false;          // Vulkan: validation and synchronization validation layers
     bool full_barriers = false;     // a barrier before every operation
     std::optional<HostDevice> host; // Vulkan: run on the host's device; CUDA: beside it
-    std::shared_ptr<Lender> lender; // CUDA: lends shared buffers and semaphores; filled by open_device()
+    std::shared_ptr<Lender> lender; // CUDA: lends shared buffers and semaphores; filled when the device is opened
     bool no_replay = false;         // record anew for each submit (GPU backends; the CPU has nothing recorded)
     Log log;                        // of drivers and validation layers
 };
-
-/// Reads WADI_VALIDATE, WADI_FULL_BARRIERS and WADI_NO_REPLAY into options that the caller left off.
-void apply_environment(DeviceOptions& options);
 
 /// Memory that the host reads or writes in place.
 enum class HostAccess : std::uint8_t { none, upload, readback };
@@ -175,31 +172,5 @@ class Device {
   private:
     Status no_host_sync(std::size_t points) const;
 };
-
-/// One device that a backend can open.
-struct DeviceInfo {
-    std::string backend;
-    int index = 0; // within its backend
-    std::string name;
-    DeviceKind kind = DeviceKind::cpu;
-    std::uint64_t memory_bytes = 0;
-};
-
-/// One backend of this build. `enumerate` never fails the program: no loader or driver is an empty list and a reason.
-struct Backend {
-    const char* name;
-    std::vector<DeviceInfo> (*enumerate)(std::string& why_none);
-    Result<std::unique_ptr<Device>> (*open)(int index, const DeviceOptions& options);
-    /// Lends from the host's device (DeviceOptions::host). Null: this API has nothing to lend. Errors: not_supported.
-    Result<std::shared_ptr<Lender>> (*lend)(const DeviceOptions& options) = nullptr;
-};
-
-/// All backends of this build, the CPU first. Defined in a file that CMake writes: engine code names no backend.
-std::span<const Backend> backends();
-
-/// Opens `name` ("auto", "cpu", "vulkan", "cuda"), device `index` (-1 = the backend's best).
-/// auto: a real GPU first, else the CPU; a software GPU only when asked for by name.
-/// Errors: not_found, listing what there is.
-Result<std::unique_ptr<Device>> open_device(const std::string& name, int index, DeviceOptions options);
 
 } // namespace wadi::compute

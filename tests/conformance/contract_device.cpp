@@ -22,8 +22,8 @@ void capabilities(Session& session, Device& device, Expect& expect) {
     expect.that(c.backend == session.target().info.backend, "capabilities().backend is " + c.backend);
     expect.that(!c.name.empty() && !c.driver.empty(), "a device without a name or driver");
     expect.that(c.kind == session.target().info.kind, "capabilities().kind is not what enumerate said");
-    expect.code(compute::open_device(c.backend, 1000, {}).status(), {Code::not_found}, "device 1000 of " + c.backend);
-    auto unknown = compute::open_device("abacus", -1, {});
+    expect.code(backends::open_device(c.backend, 1000, {}).status(), {Code::not_found}, "device 1000 of " + c.backend);
+    auto unknown = backends::open_device("abacus", -1, {});
     expect.code(unknown.status(), {Code::not_found}, "backend \"abacus\"");
     expect.that(unknown.status().message.find("cpu") != std::string::npos, "the message does not list the known backends");
 }

@@ -105,9 +105,9 @@ Result<std::vector<Target>> choose_targets(const Options& options, std::vector<s
         for (const Target& target : targets)
             if (name == target.label() || name == target.info.backend) chosen.push_back(target);
         if (chosen.size() > before) continue;
-        const auto backends = compute::backends();
+        const auto backends = backends::all();
         const auto built =
-            std::find_if(backends.begin(), backends.end(), [&](const compute::Backend& b) { return name == b.name; });
+            std::find_if(backends.begin(), backends.end(), [&](const backends::Backend& b) { return name == b.name; });
         if (built != backends.end()) {
             std::string why;
             built->enumerate(why);

@@ -5,7 +5,7 @@ namespace wadi::conformance {
 
 std::vector<Target> all_targets() {
     std::vector<Target> targets;
-    for (const auto& backend : compute::backends()) {
+    for (const auto& backend : backends::all()) {
         std::string why;
         for (const auto& info : backend.enumerate(why)) targets.push_back({&backend, info});
     }
@@ -14,7 +14,7 @@ std::vector<Target> all_targets() {
 
 Session::Session(Target target, const compute::DeviceOptions& options)
     : target_(std::move(target)), options_(options), messages_(std::make_shared<std::vector<std::string>>()) {
-    compute::apply_environment(options_);
+    backends::apply_environment(options_);
     options_.log = [messages = messages_](int level, const std::string& message) {
         if (level <= 1) messages->push_back(message);
     };
@@ -46,7 +46,7 @@ Result<std::unique_ptr<compute::Device>> open_plain_cpu() {
     compute::DeviceOptions options;
     options.threads = 1;
     options.instruction_set = "base";
-    return compute::open_device("cpu", 0, options);
+    return backends::open_device("cpu", 0, options);
 }
 
 } // namespace wadi::conformance

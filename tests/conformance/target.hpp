@@ -1,6 +1,6 @@
 // The devices under test: which there are, opened once and shared by the cases.
 #pragma once
-#include "engine/compute/device.hpp"
+#include "backends/registry.hpp"
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -10,8 +10,8 @@ namespace wadi::conformance {
 
 /// One device of one backend.
 struct Target {
-    const compute::Backend* backend = nullptr;
-    compute::DeviceInfo info;
+    const backends::Backend* backend = nullptr;
+    backends::DeviceInfo info;
     std::string label() const { return info.backend + std::to_string(info.index); } // "vulkan0"
 };
 

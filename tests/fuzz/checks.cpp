@@ -1,4 +1,5 @@
 #include "tests/fuzz/checks.hpp"
+#include "backends/registry.hpp"
 #include "tests/conformance/symmetry.hpp"
 #include "tests/fuzz/run.hpp"
 #include "tests/reference/solver.hpp"
@@ -187,7 +188,7 @@ const std::vector<std::string>& check_names() {
 Result<Devices> open_devices(const std::vector<std::string>& backends) {
     Devices devices;
     compute::DeviceOptions options;
-    compute::apply_environment(options);
+    backends::apply_environment(options);
     for (const auto& target : conformance::all_targets()) {
         const std::string& name = target.info.backend;
         if (name == "cpu") {

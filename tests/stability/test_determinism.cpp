@@ -1,4 +1,5 @@
 // Same input, same bits: runs, threads, instruction sets, replay, interleaved worlds, barriers everywhere, and backends.
+#include "backends/registry.hpp"
 #include "tests/support/worlds.hpp"
 #include <cmath>
 #include <doctest/doctest.h>
@@ -33,7 +34,7 @@ TEST_CASE("runs, thread counts and instruction sets agree in every bit") {
     }
     int sets = 0;
     for (const std::string set : {"base", "avx2", "avx512"}) {
-        auto device = compute::open_device("cpu", 0, cpu(2, set).options);
+        auto device = backends::open_device("cpu", 0, cpu(2, set).options);
         if (device) {
             CAPTURE(set);
             CHECK(run(scene, steps, cpu(2, set)) == expected);
@@ -44,7 +45,7 @@ TEST_CASE("runs, thread counts and instruction sets agree in every bit") {
         }
     }
     CHECK(sets >= 1);
-    CHECK(!compute::open_device("cpu", 0, cpu(2, "mmx").options));
+    CHECK(!backends::open_device("cpu", 0, cpu(2, "mmx").options));
     auto changed = scene;
     changed.fields.water[0] += 1e-4F;
     CHECK(run(changed, steps) != expected);
@@ -179,7 +180,7 @@ TEST_CASE(
                 messages += level < 2 ? message + "\n" : std::string();
             };
             // The layers are a development package: a machine with a real GPU may lack them.
-            const auto device = compute::open_device(backend, -1, checked.options);
+            const auto device = backends::open_device(backend, -1, checked.options);
             if (device.status().code == Code::not_supported) {
                 MESSAGE("no validation layers here: " << backend << " runs unchecked");
                 checked.options.validate = false;

@@ -1,5 +1,6 @@
 // Every call to a device fails once, with out_of_memory or as a lost device: the caller is told, everything is freed, and after a
 // lack of memory the world can be used on or made again.
+#include "backends/registry.hpp"
 #include "tests/stability/quality.hpp"
 #include <set>
 
@@ -138,7 +139,7 @@ template <class Note> void session(Device& device, FaultyDevice::Plan& plan, Not
 TEST_CASE("every device call fails in turn: out of memory or lost, it is told and all is freed") {
     for (const auto& backend : available_backends()) {
         CAPTURE(backend);
-        auto device = compute::open_device(backend, -1, {});
+        auto device = backends::open_device(backend, -1, {});
         REQUIRE(device);
         for (const Code code : {Code::out_of_memory, Code::device_lost}) {
             FaultyDevice::Plan whole;
@@ -174,7 +175,7 @@ TEST_CASE("every device call fails in turn: out of memory or lost, it is told an
 }
 
 TEST_CASE("a pipeline for effects that no world has together is refused by the CPU, which has no code for it") {
-    auto device = compute::open_device("cpu", -1, {});
+    auto device = backends::open_device("cpu", -1, {});
     REQUIRE(device);
     const int stage = compute::find_stage("integrate_water_velocity");
     const std::uint32_t second_half = EFFECT_HALF_STORAGE | EFFECT_SECOND_ORDER_WATER;

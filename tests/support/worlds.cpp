@@ -1,4 +1,5 @@
 #include "tests/support/worlds.hpp"
+#include "backends/registry.hpp"
 #include "tests/support/borrowed_device.hpp"
 #include <algorithm>
 #include <cmath>
@@ -72,7 +73,7 @@ compute::Device& shared_device(const Target& target) {
     static auto& devices = *new std::map<std::string, std::unique_ptr<compute::Device>>;
     auto& device = devices[target.backend];
     if (!device) {
-        auto opened = compute::open_device(target.backend, -1, target.options);
+        auto opened = backends::open_device(target.backend, -1, target.options);
         REQUIRE_MESSAGE(opened, opened.status().message);
         device = std::move(*opened);
     }
@@ -81,7 +82,7 @@ compute::Device& shared_device(const Target& target) {
 
 std::unique_ptr<compute::Device> device_for(const Target& target) {
     if (target.shared_device && target.backend != "cpu") return std::make_unique<BorrowedDevice>(shared_device(target));
-    auto device = compute::open_device(target.backend, -1, target.options);
+    auto device = backends::open_device(target.backend, -1, target.options);
     REQUIRE_MESSAGE(device, device.status().message);
     return std::move(*device);
 }
@@ -96,7 +97,7 @@ std::unique_ptr<World> make_world(const Scene& scene, const Target& target) {
 
 bool has_backend(const std::string& name) {
     std::string why;
-    for (const auto& backend : compute::backends()) {
+    for (const auto& backend : backends::all()) {
         if (name == backend.name) return !backend.enumerate(why).empty();
     }
     return false;
@@ -104,7 +105,7 @@ bool has_backend(const std::string& name) {
 
 std::vector<std::string> available_backends() {
     std::vector<std::string> names;
-    for (const auto& backend : compute::backends()) {
+    for (const auto& backend : backends::all()) {
         if (has_backend(backend.name)) names.emplace_back(backend.name);
     }
     return names;

@@ -1,5 +1,6 @@
 // libFuzzer: whatever bytes a reader gets, it returns a value or an error. One program per reader: -DTARGET=level, png, npy, asc,
 // r16, snapshot or commands.
+#include "backends/registry.hpp"
 #include "engine/edits/command_log.hpp"
 #include "engine/image/map.hpp"
 #include "engine/level/level.hpp"
@@ -49,7 +50,7 @@ World& small_world() {
         settings.dt = 0.02;
         InitialFields fields;
         fields.water.assign(20, 0.5F);
-        auto device = compute::open_device("cpu", 0, {});
+        auto device = backends::open_device("cpu", 0, {});
         auto made =
             device ? World::create(settings, fields, std::move(*device)) : Result<std::unique_ptr<World>>(device.status());
         if (!made) std::abort();

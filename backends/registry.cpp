@@ -1,8 +1,11 @@
-// Opening a device by name: the only place that chooses between backends.
-#include "engine/compute/device.hpp"
+#include "backends/registry.hpp"
 #include <cstdlib>
 
-namespace wadi::compute {
+namespace wadi::backends {
+
+using compute::Device;
+using compute::DeviceKind;
+using compute::DeviceOptions;
 
 namespace {
 
@@ -13,13 +16,13 @@ bool environment_switch(const char* name) {
 
 std::string known_backends() {
     std::string names = "auto";
-    for (const auto& backend : backends()) names += std::string(", ") + backend.name;
+    for (const auto& backend : all()) names += std::string(", ") + backend.name;
     return names;
 }
 
 // The backend that runs on a host's device and lends from it; null where the build lacks it.
 const Backend* lending_backend() {
-    for (const auto& backend : backends()) {
+    for (const auto& backend : all()) {
         if (backend.lend != nullptr) return &backend;
     }
     return nullptr;
@@ -30,12 +33,6 @@ bool real_gpu(DeviceKind kind) {
 }
 
 } // namespace
-
-Status Device::no_host_sync(std::size_t points) const {
-    if (points == 0) return ok_status();
-    return error(Code::not_supported,
-                 "the backend " + capabilities().backend + " has no semaphores or command buffers of a host");
-}
 
 void apply_environment(DeviceOptions& options) {
     options.validate |= environment_switch("WADI_VALIDATE");
@@ -63,14 +60,14 @@ Result<std::unique_ptr<Device>> open_device(const std::string& wanted, int index
         options.lender = std::move(*lender);
     }
     if (name == "auto") {
-        for (const auto& backend : backends()) {
+        for (const auto& backend : all()) {
             for (const auto& info : backend.enumerate(why)) {
                 if (real_gpu(info.kind)) return backend.open(info.index, options);
             }
         }
         name = "cpu";
     }
-    for (const auto& backend : backends()) {
+    for (const auto& backend : all()) {
         if (name != backend.name) continue;
         const auto devices = backend.enumerate(why);
         if (devices.empty()) return error(Code::not_found, "backend " + name + " has no device: " + why);
@@ -83,4 +80,4 @@ Result<std::unique_ptr<Device>> open_device(const std::string& wanted, int index
     return error(Code::not_found, "no backend '" + name + "' in this build; known: " + known_backends());
 }
 
-} // namespace wadi::compute
+} // namespace wadi::backends

@@ -1,0 +1,25 @@
+// What a backend tells the registry: its name, its devices, and how to open one.
+#pragma once
+#include "engine/compute/device.hpp"
+
+namespace wadi::backends {
+
+/// One device that a backend can open.
+struct DeviceInfo {
+    std::string backend;
+    int index = 0; // within its backend
+    std::string name;
+    compute::DeviceKind kind = compute::DeviceKind::cpu;
+    std::uint64_t memory_bytes = 0;
+};
+
+struct Backend {
+    const char* name;
+    /// Never fails the program: no loader or driver is an empty list and a reason.
+    std::vector<DeviceInfo> (*enumerate)(std::string& why_none);
+    Result<std::unique_ptr<compute::Device>> (*open)(int index, const compute::DeviceOptions& options);
+    /// Lends from the host's device (DeviceOptions::host). Null: this API has nothing to lend. Errors: not_supported.
+    Result<std::shared_ptr<compute::Lender>> (*lend)(const compute::DeviceOptions& options) = nullptr;
+};
+
+} // namespace wadi::backends
