@@ -14,10 +14,20 @@ bool environment_switch(const char* name) {
     return value != nullptr && *value != '\0' && *value != '0';
 }
 
-std::string known_backends() {
+// "auto, cpu, vulkan": those of this build for which `chosen` holds.
+std::string names_of(bool (*chosen)(const Backend&)) {
     std::string names = "auto";
-    for (const auto& backend : all()) names += std::string(", ") + backend.name;
+    for (const auto& backend : all()) {
+        if (chosen(backend)) names += std::string(", ") + backend.name;
+    }
     return names;
+}
+
+const Backend* find(const std::string& name) {
+    for (const auto& backend : all()) {
+        if (name == backend.name) return &backend;
+    }
+    return nullptr;
 }
 
 // The backend that runs on a host's device and lends from it; null where the build lacks it.
@@ -45,39 +55,41 @@ Result<std::unique_ptr<Device>> open_device(const std::string& wanted, int index
     std::string name = wanted;
     const char* forced = std::getenv("WADI_BACKEND");
     if (name == "auto" && forced != nullptr && *forced != '\0') name = forced;
-    std::string why;
+    const auto* backend = find(name);
+    if (backend == nullptr && name != "auto") {
+        return error(Code::not_found,
+                     "no backend '" + name + "' in this build; known: " + names_of([](const Backend&) { return true; }));
+    }
     if (options.host) {
         const auto* lending = lending_backend();
         if (lending == nullptr)
-            return error(Code::not_supported, "a host's Vulkan device was given, but this build has no Vulkan");
-        if (name == "auto" || name == lending->name) return lending->open(0, options);
-        if (name != "cuda") {
-            return error(Code::not_supported, "a host's Vulkan device was given, but the backend is " + name +
-                                                  "; on one run vulkan and auto, beside one cuda");
+            return error(Code::not_supported, "a host's device was given, but this build has no backend for it");
+        if (name == "auto" || backend == lending) return lending->open(0, options);
+        if (!backend->borrows) {
+            return error(Code::not_supported, "a host's device was given, but the backend is " + name +
+                                                  "; on one or beside one run: " +
+                                                  names_of([](const Backend& b) { return b.lend != nullptr || b.borrows; }));
         }
         auto lender = lending->lend(options);
         if (!lender) return lender.status();
         options.lender = std::move(*lender);
     }
+    std::string why;
     if (name == "auto") {
-        for (const auto& backend : all()) {
-            for (const auto& info : backend.enumerate(why)) {
-                if (real_gpu(info.kind)) return backend.open(info.index, options);
+        for (const auto& b : all()) {
+            for (const auto& info : b.enumerate(why)) {
+                if (real_gpu(info.kind)) return b.open(info.index, options);
             }
         }
-        name = "cpu";
+        backend = &all().front();
     }
-    for (const auto& backend : all()) {
-        if (name != backend.name) continue;
-        const auto devices = backend.enumerate(why);
-        if (devices.empty()) return error(Code::not_found, "backend " + name + " has no device: " + why);
-        if (index >= static_cast<int>(devices.size())) {
-            return error(Code::not_found, "backend " + name + " has no device " + std::to_string(index) + ", only 0 ... " +
-                                              std::to_string(devices.size() - 1));
-        }
-        return backend.open(index, options);
+    const auto devices = backend->enumerate(why);
+    if (devices.empty()) return error(Code::not_found, std::string("backend ") + backend->name + " has no device: " + why);
+    if (index >= static_cast<int>(devices.size())) {
+        return error(Code::not_found, std::string("backend ") + backend->name + " has no device " + std::to_string(index) +
+                                          ", only 0 ... " + std::to_string(devices.size() - 1));
     }
-    return error(Code::not_found, "no backend '" + name + "' in this build; known: " + known_backends());
+    return backend->open(index, options);
 }
 
 } // namespace wadi::backends

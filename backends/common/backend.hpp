@@ -18,8 +18,10 @@ struct Backend {
     /// Never fails the program: no loader or driver is an empty list and a reason.
     std::vector<DeviceInfo> (*enumerate)(std::string& why_none);
     Result<std::unique_ptr<compute::Device>> (*open)(int index, const compute::DeviceOptions& options);
-    /// Lends from the host's device (DeviceOptions::host). Null: this API has nothing to lend. Errors: not_supported.
+    /// Lends from the host's device (DeviceOptions::host), on which this backend can run. Null: it cannot. Errors: not_supported.
     Result<std::shared_ptr<compute::Lender>> (*lend)(const compute::DeviceOptions& options) = nullptr;
+    /// Runs beside a host's device, with what another backend lends from it (DeviceOptions::lender).
+    bool borrows = false;
 };
 
 } // namespace wadi::backends

@@ -20,7 +20,7 @@ std::vector<backends::DeviceInfo> enumerate(std::string& why_none) {
 } // namespace
 
 const backends::Backend& cuda_backend() {
-    static const backends::Backend backend{"cuda", enumerate, open_device};
+    static const backends::Backend backend{"cuda", enumerate, open_device, nullptr, true};
     return backend;
 }
 

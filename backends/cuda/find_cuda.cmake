@@ -1,13 +1,7 @@
-# Looks for nvcc and sets WADI_HAS_CUDA. Included by the top folder, because a language must be enabled above all folders that
-# compile or link it.
+# Looks for nvcc and sets WADI_HAS_CUDA. The language must be enabled above all folders that compile or link it.
 set(WADI_CUDA_ARCHITECTURES "" CACHE STRING
     "Compute capabilities to compile for, as CMake writes them (e.g. 90-real;120-virtual); empty = all of the list that nvcc knows")
-set(WADI_HAS_CUDA OFF)
 set(oldest_nvcc 12.5) # cudaGetDriverEntryPointByVersion
-if(NOT WADI_CUDA)
-  wadi_report("CUDA backend" "off (WADI_CUDA=OFF)")
-  return()
-endif()
 if(WADI_SANITIZE)
   wadi_report("CUDA backend" "off (nvcc does not take WADI_SANITIZE=${WADI_SANITIZE})")
   return()

@@ -116,7 +116,7 @@ int main_checked(int argc, char** argv) {
                  "wadi-recorder");
     app.add_option("level", level, "level name (--list-levels), level file (.json) or level folder");
     app.add_option("--terrain", terrain, "a terrain map (.png, .r16, .npy, .asc) instead of a level")->excludes("level");
-    app.add_option("--backend", options.backend, "auto, cpu, vulkan or cuda")->capture_default_str();
+    app.add_option("--backend", options.backend, "auto, or one of --list-backends")->capture_default_str();
     app.add_option("--device", options.device, "device number within the backend (--list-backends); -1 = best")
         ->capture_default_str();
     app.add_option("--threads", options.threads, "threads of the cpu backend; 0 = all cores")

@@ -94,6 +94,6 @@ with tempfile.TemporaryDirectory() as name:
     libraries = check_installed(moved)
     check_package(moved, folder / "package")
     check_pkg_config(moved, folder, libraries)
-    cmake_consumer(folder / "source", "-DWADI_AS=source", f"-DWADI_SOURCE={source}", "-DWADI_VULKAN=OFF", "-DWADI_CUDA=OFF")
+    cmake_consumer(folder / "source", "-DWADI_AS=source", f"-DWADI_SOURCE={source}", "-DWADI_BACKENDS=OFF")
     check_zip(folder)
 print("find_package, pkg-config, add_subdirectory and the zip work")

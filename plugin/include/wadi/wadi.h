@@ -68,7 +68,7 @@ typedef struct wadi_region {
 /** Where and how a world runs. */
 typedef struct wadi_device_options {
     uint32_t struct_size;
-    const char* backend;       /* "auto" (a real GPU first, else the CPU), "cpu", "vulkan", "cuda" */
+    const char* backend;       /* "auto" (a real GPU first, else the CPU), or one that wadi_list_devices names: "cpu", "vulkan" ... */
     int32_t device;            /* index from wadi_list_devices, -1 = the backend's best */
     int32_t threads;           /* CPU backend: threads, 0 = all cores */
     int32_t validate;          /* 1 = Vulkan validation layers; messages go to the log callback */

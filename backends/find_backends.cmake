@@ -1,0 +1,16 @@
+# Which backends this build has beside the CPU's. Included by the top folder ahead of shaders/, where stages are made for each of
+# them. In the order in which "auto" takes their GPUs: CUDA first, so that it is preferred on NVIDIA's cards.
+set(WADI_BACKEND_NAMES cuda vulkan)
+option(WADI_BACKENDS "Build other backends than the CPU's, each where what it needs is found; OFF switches all of them off" ON)
+foreach(name ${WADI_BACKEND_NAMES})
+  string(TOUPPER ${name} NAME)
+  option(WADI_${NAME} "Build backends/${name} where what it needs is found" ON)
+  set(WADI_HAS_${NAME} OFF)
+  if(NOT WADI_BACKENDS)
+    wadi_report("${NAME} backend" "off (WADI_BACKENDS=OFF)")
+  elseif(NOT WADI_${NAME})
+    wadi_report("${NAME} backend" "off (WADI_${NAME}=OFF)")
+  else()
+    include(backends/${name}/find_${name}.cmake)
+  endif()
+endforeach()
