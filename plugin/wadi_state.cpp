@@ -1,5 +1,5 @@
 // Stepping, and reading the state.
-#include "engine/step/quanta.hpp"
+#include "engine/settings/quanta.hpp"
 #include "plugin/abi.hpp"
 
 using namespace wadi;

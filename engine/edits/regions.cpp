@@ -1,7 +1,7 @@
 #include "engine/edits/regions.hpp"
 #include "engine/settings/messages.hpp"
+#include "engine/settings/quanta.hpp"
 #include "engine/step/ledger.hpp"
-#include "engine/step/quanta.hpp"
 #include "engine/step/world_params.hpp"
 #include <algorithm>
 #include <cmath>
@@ -63,7 +63,7 @@ Status round_and_check(EditLayer layer, const Region& region, Bands& bands, cons
             if (!(given >= least && given <= most))
                 return error(Code::bad_argument,
                              outside_text(std::string("write_region: ") + layer_name(layer), given, least, most) + cell);
-            if (quantum > 0) value = static_cast<float>(std::nearbyint(given / quantum) * quantum);
+            value = static_cast<float>(nearest_quantum(given, quantum, Halves::even));
             double column = static_cast<double>(value);
             for (const auto other : {EditLayer::terrain, EditLayer::sand, EditLayer::water})
                 if (other != layer) column += static_cast<double>(bands.of(other).at(i, j));

@@ -1,6 +1,7 @@
 #include "engine/image/map.hpp"
 #include "engine/level/layers.hpp"
 #include "engine/settings/messages.hpp"
+#include "engine/settings/quanta.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -31,8 +32,6 @@ double combined(double current, double value, Combine combine) {
     }
     return current;
 }
-
-double rounded(double height, double quantum) { return quantum > 0 ? std::round(height / quantum) * quantum : height; }
 
 Result<std::vector<float>> load_heights(const Layer& layer, const LevelFrame& frame, const FileReader& files,
                                         std::vector<std::string>& warnings) {
@@ -112,7 +111,7 @@ Result<std::vector<float>> draw_layers(const std::vector<Layer>& layers, LayerTa
                 if (!sample.inside) continue;
                 double next = combined(current, sample.value, layer.combine);
                 if (target != LayerTarget::terrain) next = std::max(next, 0.0);
-                field[cell] = static_cast<float>(rounded(next, frame.quantum));
+                field[cell] = static_cast<float>(nearest_quantum(next, frame.quantum, Halves::away));
                 changed = changed || field[cell] != static_cast<float>(current);
             }
         }

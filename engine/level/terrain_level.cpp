@@ -3,6 +3,7 @@
 #include "engine/level/layers.hpp"
 #include "engine/level/level.hpp"
 #include "engine/settings/messages.hpp"
+#include "engine/settings/quanta.hpp"
 #include "engine/settings/setting_fields.hpp"
 #include <algorithm>
 #include <cmath>
@@ -83,7 +84,7 @@ Result<Level> build(const std::string& map_path, const LevelOverrides& overrides
     if (!frame) return frame.status();
     level.fields.terrain = resample(*map, frame->nx, frame->ny);
     for (float& height : level.fields.terrain)
-        height = static_cast<float>(std::round(static_cast<double>(height) / quantum) * quantum);
+        height = static_cast<float>(nearest_quantum(static_cast<double>(height), quantum, Halves::away));
     settings.sources.push_back(spring(level.fields.terrain, settings.grid));
     if (Status status = validate(settings); !status) return status;
     if (Status status = validate(level.fields, settings); !status) return status;

@@ -1,5 +1,5 @@
 #include "engine/reads/state_reader.hpp"
-#include "engine/step/quanta.hpp"
+#include "engine/settings/quanta.hpp"
 #include "engine/step/world_params.hpp"
 #include <algorithm>
 #include <bit>

@@ -1,7 +1,7 @@
 #include "engine/step/world_state.hpp"
 #include "engine/settings/level_digest.hpp"
+#include "engine/settings/quanta.hpp"
 #include "engine/step/half.hpp"
-#include "engine/step/quanta.hpp"
 #include "engine/step/step_inputs.hpp"
 #include "engine/step/world_params.hpp"
 #include <algorithm>
@@ -42,8 +42,7 @@ std::vector<float> to_faces(const FieldLayout& layout, const std::vector<float>&
 
 // Nearest whole quantum, as every height is.
 void round_heights(std::vector<float>& heights, double quantum) {
-    if (quantum <= 0) return;
-    for (auto& h : heights) h = static_cast<float>(std::nearbyint(static_cast<double>(h) / quantum) * quantum);
+    for (auto& h : heights) h = static_cast<float>(nearest_quantum(static_cast<double>(h), quantum, Halves::even));
 }
 
 std::int64_t count_quanta(const std::vector<float>& heights, double quantum) {

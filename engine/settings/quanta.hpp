@@ -1,4 +1,5 @@
-// Counting heights in whole quanta on the host: sums saturate, so a state that has blown up is counted without overflow.
+// Heights in whole quanta on the host: rounding to them, and counting in them. Sums saturate, so a state that has blown up is
+// counted without overflow.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -8,6 +9,17 @@ namespace wadi {
 
 /// Largest count: 2^10 times the fullest world of 8192 x 8192 cells, whose cells hold 2^24 quanta each at most.
 inline constexpr std::int64_t MOST_QUANTA = std::int64_t{1} << 60;
+
+/// Where heights midway between two quanta go. Levels draw with `away` from zero, as edits on the device are rounded; heights
+/// that a host gives go to the `even` one. Either rule for both would change the bits of worlds made the other way.
+enum class Halves { even, away };
+
+/// The nearest whole quantum [m] to a height [m]; the height itself where `quantum` is 0.
+inline double nearest_quantum(double height, double quantum, Halves halves) {
+    if (quantum <= 0) return height;
+    const double count = height / quantum;
+    return (halves == Halves::even ? std::nearbyint(count) : std::round(count)) * quantum;
+}
 
 /// Height [m] in quanta [m], to the nearest; +-MOST_QUANTA beyond them, 0 for NaN.
 inline std::int64_t to_quanta(double height, double quantum) {
