@@ -1,4 +1,5 @@
 #include "engine/world.hpp"
+#include "engine/step/initial_fields.hpp"
 
 namespace wadi {
 
@@ -11,7 +12,7 @@ Result<std::unique_ptr<World>> World::create(const Settings& settings, const Ini
     std::unique_ptr<World> world(new World(settings, std::move(device), group));
     world->state_.content = content_of(fields);
     if (auto status = world->state_.open(*effects); !status) return status;
-    if (auto status = world->state_.upload(fields); !status) return status;
+    if (auto status = upload(world->state_, fields); !status) return status;
     if (auto status = world->stepper_.record(); !status) return status;
     return world;
 }

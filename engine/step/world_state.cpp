@@ -1,55 +1,12 @@
 #include "engine/step/world_state.hpp"
 #include "engine/settings/level_digest.hpp"
-#include "engine/settings/quanta.hpp"
 #include "engine/step/half.hpp"
-#include "engine/step/step_inputs.hpp"
 #include "engine/step/world_params.hpp"
 #include <algorithm>
-#include <cmath>
 
 namespace wadi {
 
 namespace {
-
-std::vector<float> with_ghosts(const FieldLayout& layout, const std::vector<float>& cells, bool repeat_edges) {
-    std::vector<float> field(layout.size(), 0.0F);
-    if (cells.empty()) return field;
-    for (int j = -GHOST; j < layout.ny + 1 + GHOST; ++j) {
-        for (int i = -GHOST; i < layout.nx + 1 + GHOST; ++i) {
-            const int x = std::clamp(i, 0, layout.nx - 1), y = std::clamp(j, 0, layout.ny - 1);
-            if (repeat_edges || (x == i && y == j))
-                field[layout.index(i, j)] =
-                    cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(layout.nx) + static_cast<std::size_t>(x)];
-        }
-    }
-    return field;
-}
-
-// Face velocities from cell-centred ones: the mean of the two cells; outer faces are walls until a side opens them.
-std::vector<float> to_faces(const FieldLayout& layout, const std::vector<float>& cells, bool along_x) {
-    std::vector<float> field(layout.size(), 0.0F);
-    if (cells.empty()) return field;
-    const auto at = [&](int i, int j) {
-        return cells[static_cast<std::size_t>(j) * static_cast<std::size_t>(layout.nx) + static_cast<std::size_t>(i)];
-    };
-    for (int j = along_x ? 0 : 1; j < layout.ny; ++j) {
-        for (int i = along_x ? 1 : 0; i < layout.nx; ++i) {
-            field[layout.index(i, j)] = 0.5F * (at(i, j) + (along_x ? at(i - 1, j) : at(i, j - 1)));
-        }
-    }
-    return field;
-}
-
-// Nearest whole quantum, as every height is.
-void round_heights(std::vector<float>& heights, double quantum) {
-    for (auto& h : heights) h = static_cast<float>(nearest_quantum(static_cast<double>(h), quantum, Halves::even));
-}
-
-std::int64_t count_quanta(const std::vector<float>& heights, double quantum) {
-    std::int64_t sum = 0;
-    for (const float h : heights) sum = add_quanta(sum, to_quanta(static_cast<double>(h), quantum));
-    return sum;
-}
 
 std::span<const std::byte> bytes_of(const auto& values) { return std::as_bytes(std::span(values)); }
 
@@ -235,35 +192,6 @@ Status WorldState::prepare(std::uint32_t effects) const {
         if (auto made = device_->create_pipeline(stage, effects, group_of(stage)); !made) return made.status();
     }
     return ok_status();
-}
-
-Status WorldState::upload(const InitialFields& fields) {
-    const double quantum = height_quantum(settings_.method);
-    const auto put = [&](const char* name, const std::vector<float>& values) { return write_field(name, 0, values); };
-    const auto heights = [&](const std::vector<float>& cells, bool repeat_edges) {
-        auto rounded = cells;
-        round_heights(rounded, quantum);
-        return with_ghosts(layout_, rounded, repeat_edges);
-    };
-    const auto sand = heights(fields.sand, false), water = heights(fields.water, false);
-    sand_initial = plan_.find("sand_height") == nullptr ? 0 : count_quanta(sand, ledger_quantum(settings_.method));
-    water_initial = plan_.find("water_height") == nullptr ? 0 : count_quanta(water, ledger_quantum(settings_.method));
-    const auto u = to_faces(layout_, fields.velocity_x, true), v = to_faces(layout_, fields.velocity_y, false);
-    const std::pair<const char*, std::vector<float>> all[] = {
-        {"terrain", heights(fields.terrain, true)},
-        {"sand_height", sand},
-        {"water_height", water},
-        {"water_velocity_x", u},
-        {"water_velocity_y", v},
-        {"mixed_velocity_x", u},
-        {"mixed_velocity_y", v},
-        {"sand_velocity_x", to_faces(layout_, fields.sand_velocity_x, true)},
-        {"sand_velocity_y", to_faces(layout_, fields.sand_velocity_y, false)}};
-    for (const auto& [name, values] : all) {
-        if (auto status = put(name, values); !status) return status;
-    }
-    if (plan_.find("source_shapes") == nullptr) return ok_status();
-    return device_->write(buffers_["source_shapes"][0], 0, bytes_of(source_shapes(settings_)));
 }
 
 Status WorldState::read_field(const std::string& name, std::size_t first, std::span<float> values) {

@@ -47,8 +47,6 @@ class WorldState {
     Status adopt(const EffectChoice& effects);
     /// Creates the pipelines that a plan of another mask would need, so that adopting it later records but compiles nothing.
     Status prepare(std::uint32_t effects) const;
-    /// Writes the level's fields into the current buffers.
-    Status upload(const InitialFields& fields);
 
     const Settings& settings() const { return settings_; }
     const FieldLayout& layout() const { return layout_; }
