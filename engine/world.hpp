@@ -78,9 +78,9 @@ class World {
     const EffectChoice& effects() const { return state_.effects(); }
     /// device_lost with its text once the device is lost.
     const Status& lost() const { return state_.lost(); }
-    compute::Device& device() const { return state_.device(); }
-    std::uint64_t device_bytes() const { return state_.device_bytes(); }
-    const std::vector<MemoryItem>& memory() const { return state_.memory(); }
+    compute::Device& device() const { return *state_.device(); }
+    std::uint64_t device_bytes() const { return state_.device().bytes(); }
+    const std::vector<MemoryItem>& memory() const { return state_.device().memory(); }
     /// The plan as text: effects and reasons, passes, buffers, bytes per cell.
     std::string describe_plan() const;
 

@@ -1,6 +1,5 @@
 #include "engine/edits/edits.hpp"
 #include "engine/settings/scripted_edits.hpp"
-#include "engine/step/wakes.hpp"
 #include <algorithm>
 
 namespace wadi {
@@ -36,17 +35,17 @@ Result<std::uint32_t> Edits::create_stamp(int nx, int ny, std::span<const float>
 }
 
 Status Edits::upload(const Stamp& stamp) {
-    return state_.note(state_.device().write(images_, stamp.page * STAMP_PAGE * 4, std::as_bytes(std::span(stamp.values))));
+    return state_.device().write(images_, stamp.page * STAMP_PAGE * 4, std::as_bytes(std::span(stamp.values)));
 }
 
 // Grows by doubling; the images move to the new buffer.
 Status Edits::make_room(std::uint64_t pages) {
     if (pages <= pages_) return ok_status();
     const std::uint64_t wanted = std::max(pages, 2 * pages_);
-    auto made = state_.make_buffer({wanted * STAMP_PAGE * 4, "stamps"});
-    if (!made) return state_.note(made.status());
+    auto made = state_.device().create_buffer({wanted * STAMP_PAGE * 4, "stamps"});
+    if (!made) return made.status();
     program_.forget();
-    state_.free_buffer(images_, pages_ * STAMP_PAGE * 4);
+    state_.device().destroy_buffer(images_);
     images_ = *made;
     pages_ = wanted;
     for (const auto& stamp : stamps_) {
@@ -99,7 +98,7 @@ Status Edits::submit() {
             if (pack_edit(due_[taken], stamps_, state_.settings().grid, to)) ++input.edit_count;
         }
         if (input.edit_count > 0) {
-            wake_edits(state_, input);
+            state_.tiles().wake_edits(input);
             if (auto ticket = program_.submit(input); !ticket) return ticket.status();
         }
         due_.erase(due_.begin(), due_.begin() + static_cast<std::ptrdiff_t>(taken));

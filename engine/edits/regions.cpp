@@ -18,8 +18,8 @@ class Rows {
           offset_(static_cast<std::size_t>(first + GHOST) * static_cast<std::size_t>(state.layout().pitch())),
           values_(static_cast<std::size_t>(end - first) * static_cast<std::size_t>(state.layout().pitch())) {}
 
-    Status read() { return state_.read_field(field_, offset_, values_); }
-    Status write() { return state_.write_field(field_, offset_, values_); }
+    Status read() { return state_.fields().read(field_, offset_, values_); }
+    Status write() { return state_.fields().write(field_, offset_, values_); }
     float& at(int i, int j) { return values_[state_.layout().index(i, j) - offset_]; }
 
   private:
@@ -139,7 +139,7 @@ Status write_region(WorldState& state, Stepper& stepper, EditLayer layer, const 
             written.at(i, j) = value;
         }
     }
-    state.wake_all();
+    state.tiles().wake_all();
     if (terrain) {
         repeat_edges(layout, written, first, end);
         return written.write();

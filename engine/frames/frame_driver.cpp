@@ -29,7 +29,7 @@ Status FrameDriver::set(const UpdateSettings& settings) {
 
 // Tickets count up from 1 and finish in order, so the one that has to be done before another submission fits has a known number.
 bool FrameDriver::queue_has_room() const {
-    auto& device = state_.device();
+    auto& device = *state_.device();
     const std::uint64_t newest = device.counters().submits + 1 + reserved_submissions;
     const std::uint64_t depth = device.capabilities().queue_depth;
     return newest <= depth || device.finished({newest - depth});

@@ -7,10 +7,8 @@ namespace wadi {
 std::string HostCopies::label(const Item& item, std::size_t slot) { return "host " + item.name + " " + std::to_string(slot); }
 
 void HostCopies::destroy(Programs& programs) {
-    for (auto& of_set : programs) {
+    for (auto& of_set : programs)
         for (auto& program : of_set) state_.device().destroy_program(program);
-        of_set = {};
-    }
 }
 
 std::vector<compute::BufferDesc> HostCopies::wanted_buffers(const std::vector<Item>& items) const {
@@ -30,7 +28,7 @@ Status HostCopies::record(const std::vector<Item>& items, Programs& programs) {
             for (const auto& item : items)
                 builder.copy({item.from[set], buffers_[label(item, slot)], item.offset, 0, item.bytes});
             auto compiled = state_.device().compile(builder, state_.params());
-            if (!compiled) return state_.note(compiled.status());
+            if (!compiled) return compiled.status();
             programs[set][slot] = *compiled;
         }
     }
@@ -79,7 +77,7 @@ Result<bool> HostCopies::copy(std::size_t set, std::uint64_t step) {
     if (slot == nullptr) return false;
     const auto index = static_cast<std::size_t>(slot - slots_.data());
     auto ticket = state_.device().submit(programs_[set][index], {});
-    if (!ticket) return state_.note(ticket.status());
+    if (!ticket) return ticket.status();
     slot->ticket = *ticket;
     slot->copy.step = step;
     slot->handed_out = 0;

@@ -1,6 +1,6 @@
 // Copies of published buffers in host memory, for hosts that share no API with the device: one frame late, never waited for.
 #pragma once
-#include "engine/step/named_buffers.hpp"
+#include "engine/step/world_state.hpp"
 #include <optional>
 #include <span>
 
@@ -22,7 +22,7 @@ class HostCopies {
         std::map<std::string, std::span<const std::byte>> contents; // by item name
     };
 
-    explicit HostCopies(WorldState& state) : state_(state), buffers_(state) {}
+    explicit HostCopies(WorldState& state) : state_(state), buffers_(state.device()) {}
     ~HostCopies() { destroy(programs_); }
     HostCopies(const HostCopies&) = delete;
     HostCopies& operator=(const HostCopies&) = delete;

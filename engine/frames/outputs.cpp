@@ -129,7 +129,7 @@ Status Outputs::restart() {
     if (changed.id == 0) return ok_status();
     const std::vector<std::int32_t> never(
         static_cast<std::size_t>(state_.layout().strips()) * static_cast<std::size_t>(state_.layout().tile_columns()), -1);
-    return state_.note(state_.device().write(changed, 0, std::as_bytes(std::span(never))));
+    return state_.device().write(changed, 0, std::as_bytes(std::span(never)));
 }
 
 Status Outputs::build_publish(compute::ProgramBuilder& builder, const Parity& parity, std::size_t set) const {
@@ -145,13 +145,13 @@ Status Outputs::build_publish(compute::ProgramBuilder& builder, const Parity& pa
             return;
         }
         if (kind.stage == nullptr) {
-            builder.copy({state_.buffer(kind.binding, parity), to, 0, 0, state_.layout().size() * 4});
+            builder.copy({state_.fields().buffer(kind.binding, parity), to, 0, 0, state_.layout().size() * 4});
             return;
         }
         Slots slots = {{kind.binding, to}};
         if (kind.layer != nullptr) {
-            slots["velocity_x"] = state_.buffer(layer + "x", parity);
-            slots["velocity_y"] = state_.buffer(layer + "y", parity);
+            slots["velocity_x"] = state_.fields().buffer(layer + "x", parity);
+            slots["velocity_y"] = state_.fields().buffer(layer + "y", parity);
         }
         status = state_.append_stage(builder, kind.stage, parity, slots);
     });
@@ -235,7 +235,7 @@ Result<OutputView> Outputs::view(Output output, OutputSet set) const {
     const bool missing = published_ < (set == OutputSet::previous ? 2u : 1u);
     if (missing) return error(Code::not_ready, "output " + name + " was not published yet; it is after the next update");
     const std::size_t at = set == OutputSet::previous ? previous() : current();
-    auto native = state_.device().native(between ? buffers_[interpolated_label(output)] : buffer(output, at));
+    auto native = (*state_.device()).native(between ? buffers_[interpolated_label(output)] : buffer(output, at));
     if (!native) return native.status();
     OutputView view;
     view.buffer = *native;

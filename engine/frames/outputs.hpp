@@ -41,7 +41,7 @@ struct OutputView {
 
 class Outputs {
   public:
-    explicit Outputs(WorldState& state) : state_(state), buffers_(state), copies_(state) {}
+    explicit Outputs(WorldState& state) : state_(state), buffers_(state.device()), copies_(state) {}
 
     /// What is published (all_outputs and tiles_bit), what is copied to host memory as well (all_outputs), and whether float
     /// fields of `mask` are interpolated. Allocates and frees, and starts publishing anew; waits for the device.

@@ -17,7 +17,7 @@ constexpr std::uint32_t least_capacity = 1024;
 Status Queries::reserve(Batch& batch, std::size_t place, std::uint32_t count) {
     if (count <= batch.capacity) return ok_status();
     batch.program.reset();
-    for (auto& item : batch.buffers) state_.free_buffer(item.buffer, item.bytes);
+    for (const auto buffer : batch.buffers) state_.device().destroy_buffer(buffer);
     batch.buffers = {};
     batch.capacity = 0;
     const std::uint32_t capacity = std::max(least_capacity, std::bit_ceil(count));
@@ -29,18 +29,17 @@ Status Queries::reserve(Batch& batch, std::size_t place, std::uint32_t count) {
                                           {out, label + " samples"},
                                           {out, label + " readback", compute::HostAccess::readback}};
     for (std::size_t n = 0; n < batch.buffers.size(); ++n) {
-        auto made = state_.make_buffer(wanted[n]);
-        if (!made) return state_.note(made.status());
-        batch.buffers[n] = {*made, wanted[n].label, wanted[n].bytes};
+        auto made = state_.device().create_buffer(wanted[n]);
+        if (!made) return made.status();
+        batch.buffers[n] = *made;
     }
     batch.capacity = capacity;
-    const auto build = [this, &batch](compute::ProgramBuilder& builder, const Parity& parity) {
+    const auto build = [this, &batch, in, out](compute::ProgramBuilder& builder, const Parity& parity) {
         const auto& b = batch.buffers;
-        builder.copy({b[upload].buffer, b[points].buffer, 0, 0, b[points].bytes});
-        auto status =
-            state_.append_stage(builder, "sample_points", parity, {{"points", b[points].buffer}, {"samples", b[samples].buffer}},
-                                static_cast<int>(batch.capacity));
-        builder.copy({b[samples].buffer, b[readback].buffer, 0, 0, b[samples].bytes});
+        builder.copy({b[upload], b[points], 0, 0, in});
+        auto status = state_.append_stage(builder, "sample_points", parity, {{"points", b[points]}, {"samples", b[samples]}},
+                                          static_cast<int>(batch.capacity));
+        builder.copy({b[samples], b[readback], 0, 0, out});
         return status;
     };
     batch.program = std::make_unique<StateProgram>(state_, "query", build);
@@ -63,7 +62,7 @@ Result<std::uint64_t> Queries::ask(std::span<const float> xy) {
         return error(Code::not_ready, "query: " + std::to_string(ring) + " batches are under way");
     batch.ticket = 0;
     if (auto status = reserve(batch, place, static_cast<std::uint32_t>(count)); !status) return status;
-    std::memcpy(state_.device().mapped(batch.buffers[upload].buffer).data(), xy.data(), xy.size_bytes());
+    std::memcpy(state_.device().mapped(batch.buffers[upload]).data(), xy.data(), xy.size_bytes());
     batch.count = static_cast<std::uint32_t>(count);
     batch.submitted = false;
     if (stepper_.parts_done() == 0) {
@@ -101,8 +100,8 @@ Result<Queries::Answer> Queries::answer(std::uint64_t ticket) {
     if (!state_.lost()) return state_.lost();
     if (!batch.submitted || !state_.device().finished(batch.sampled))
         return error(Code::not_ready, "get_query: the answer is not there yet; ask again later");
-    if (auto status = state_.note(state_.device().wait(batch.sampled)); !status) return status;
-    const auto bytes = state_.device().mapped(batch.buffers[readback].buffer);
+    if (auto status = state_.device().wait(batch.sampled); !status) return status;
+    const auto bytes = state_.device().mapped(batch.buffers[readback]);
     return Answer{
         {reinterpret_cast<const float*>(bytes.data()), std::size_t{batch.count} * SAMPLE_FLOATS}, batch.count, batch.step};
 }

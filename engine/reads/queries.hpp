@@ -37,7 +37,7 @@ class Queries {
         bool submitted = false;
         std::uint64_t step = 0;
         compute::Ticket sampled;
-        std::array<MemoryItem, 4> buffers; // upload, points, samples, readback
+        std::array<compute::Buffer, 4> buffers; // upload, points, samples, readback
         std::unique_ptr<StateProgram> program;
     };
 

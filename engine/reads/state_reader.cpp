@@ -1,5 +1,6 @@
 #include "engine/reads/state_reader.hpp"
 #include "engine/settings/quanta.hpp"
+#include "engine/step/active_count.hpp"
 #include "engine/step/world_params.hpp"
 #include <algorithm>
 #include <bit>
@@ -28,19 +29,19 @@ bool is_velocity(const std::string& name) { return name.ends_with("velocity_x") 
 
 Result<std::vector<float>> StateReader::read_buffer(compute::Buffer from) {
     std::vector<float> raw(state_.layout().size());
-    if (auto status = state_.note(state_.device().read(from, 0, std::as_writable_bytes(std::span(raw)))); !status) return status;
+    if (auto status = state_.device().read(from, 0, std::as_writable_bytes(std::span(raw))); !status) return status;
     return raw;
 }
 
 Result<std::vector<float>> StateReader::read_raw(const std::string& field) {
     std::vector<float> raw(state_.layout().size());
-    if (auto status = state_.read_field(field, 0, raw); !status) return status;
+    if (auto status = state_.fields().read(field, 0, raw); !status) return status;
     return raw;
 }
 
 StateReader::Rows StateReader::rows_of(compute::Buffer from) {
     return [this, from](std::size_t first, std::span<float> rows) {
-        return state_.note(state_.device().read(from, first * 4, std::as_writable_bytes(rows)));
+        return state_.device().read(from, first * 4, std::as_writable_bytes(rows));
     };
 }
 
@@ -61,8 +62,8 @@ Status StateReader::publish(const std::string& stage, const std::map<std::string
                             const std::vector<const char*>& outputs) {
     for (std::size_t n = 0; n < outputs.size(); ++n) {
         if (output_[n].id != 0) continue;
-        auto made = state_.make_buffer({state_.layout().size() * 4, "reader output " + std::to_string(n)});
-        if (!made) return state_.note(made.status());
+        auto made = state_.device().create_buffer({state_.layout().size() * 4, "reader output " + std::to_string(n)});
+        if (!made) return made.status();
         output_[n] = *made;
     }
     auto& program = programs_[fields.empty() ? stage : stage + " " + fields.begin()->second];
@@ -70,13 +71,13 @@ Status StateReader::publish(const std::string& stage, const std::map<std::string
         program = std::make_unique<StateProgram>(
             state_, stage, [this, stage, fields, outputs](compute::ProgramBuilder& builder, const Parity& parity) {
                 Slots slots;
-                for (const auto& [binding, field] : fields) slots[binding] = state_.buffer(field, parity);
+                for (const auto& [binding, field] : fields) slots[binding] = state_.fields().buffer(field, parity);
                 for (std::size_t n = 0; n < outputs.size(); ++n) slots[outputs[n]] = output_[n];
                 return state_.append_stage(builder, stage.c_str(), parity, slots);
             });
     }
     auto ticket = program->submit();
-    return ticket ? state_.note(state_.device().wait(*ticket)) : ticket.status();
+    return ticket ? state_.device().wait(*ticket) : ticket.status();
 }
 
 Status StateReader::read(const std::string& name, const Region& region, std::span<float> values) {
@@ -101,7 +102,7 @@ Status StateReader::read(const std::string& name, const Region& region, std::spa
             return status;
         return read_cells(rows_of(output_[name.back() == 'x' ? 0 : 1]), region, values);
     }
-    return read_cells([&](std::size_t first, std::span<float> rows) { return state_.read_field(name, first, rows); }, region,
+    return read_cells([&](std::size_t first, std::span<float> rows) { return state_.fields().read(name, first, rows); }, region,
                       values);
 }
 
@@ -160,15 +161,11 @@ Result<WorldStats> StateReader::stats() {
     if (!hash) return hash.status();
     s.hash = *hash;
     if (state_.plan().active_tiles) {
-        s.tiles =
-            static_cast<std::uint64_t>(state_.params().tile_columns) * static_cast<std::uint64_t>(state_.params().tile_rows);
-        for (const auto from : state_.active_counts()) {
-            std::uint32_t count = 0;
-            if (auto status = state_.note(state_.device().read(from, 0, std::as_writable_bytes(std::span(&count, 1)))); !status)
-                return status;
-            s.active_tiles = std::max<std::uint64_t>(s.active_tiles, count);
-            s.active_sand_tiles = count; // the last list
-        }
+        auto counts = read_active_counts(state_);
+        if (!counts) return counts.status();
+        s.tiles = state_.tiles().count();
+        s.active_tiles = *std::max_element(counts->begin(), counts->end());
+        s.active_sand_tiles = counts->back();
     }
     if (auto status = publish("mark_limits", {}, {"limit_marks"}); !status) return status;
     auto marks = read_buffer(output_[0]);

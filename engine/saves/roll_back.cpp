@@ -11,9 +11,10 @@ Status RollBack::set(std::uint32_t frames, std::uint32_t interval) {
     if (frames > 0 && interval == 0) return error(Code::bad_argument, "set_rollback: interval_steps is 0, allowed are 1 or more");
     if (!state_.lost()) return state_.lost();
     clear();
-    frames_ = std::vector<Frame>(frames);
+    frames_.reserve(frames); // programs refer to their frame
+    for (std::uint32_t n = 0; n < frames; ++n) frames_.emplace_back(state_.device());
     interval_ = interval;
-    recording_ = state_.recording();
+    recording_ = state_.fields().recording();
     auto status = ok_status();
     for (std::size_t n = 0; n < frames_.size() && status; ++n) status = fit(frames_[n], n);
     if (status) return restart();
@@ -25,31 +26,23 @@ void RollBack::clear() {
     for (auto& frame : frames_) {
         frame.keep.reset();
         frame.restore.reset();
-        for (const auto& [name, item] : frame.fields) state_.free_buffer(item.buffer, item.bytes);
+        frame.copies.keep_only({});
     }
     frames_.clear();
 }
 
 // Gives a frame the buffers of the plan. A new one is zero, as the field was when the plan lacked it.
 Status RollBack::fit(Frame& frame, std::size_t number) {
-    const auto planned = state_.kept_fields();
-    std::erase_if(frame.fields, [&](const auto& entry) {
-        if (std::any_of(planned.begin(), planned.end(), [&](const KeptField& f) { return f.name == entry.first; })) return false;
-        state_.free_buffer(entry.second.buffer, entry.second.bytes);
-        return true;
-    });
-    for (const auto& field : planned) {
-        if (frame.fields.contains(field.name)) continue;
-        const std::string label = "roll-back " + std::to_string(number) + " " + field.name;
-        auto made = state_.make_buffer({field.bytes, label});
-        if (!made) return state_.note(made.status());
-        frame.fields[field.name] = {*made, label, field.bytes};
-    }
+    const auto label = [number](const std::string& field) { return "roll-back " + std::to_string(number) + " " + field; };
+    std::vector<compute::BufferDesc> wanted;
+    for (const auto& field : state_.fields().kept()) wanted.push_back({field.bytes, label(field.name)});
+    frame.copies.keep_only(wanted);
+    if (auto status = frame.copies.keep_also(wanted); !status) return status;
     const auto program = [&](bool back) {
-        const auto build = [this, &frame, back](compute::ProgramBuilder& builder, const Parity& parity) {
-            for (const auto& [name, item] : frame.fields) {
-                const auto now = state_.buffer(name, parity);
-                builder.copy({back ? item.buffer : now, back ? now : item.buffer, 0, 0, item.bytes});
+        const auto build = [this, &frame, back, label](compute::ProgramBuilder& builder, const Parity& parity) {
+            for (const auto& field : state_.fields().kept()) {
+                const auto now = state_.fields().buffer(field.name, parity), copy = frame.copies[label(field.name)];
+                builder.copy({back ? copy : now, back ? now : copy, 0, 0, field.bytes});
             }
             return ok_status();
         };
@@ -62,7 +55,7 @@ Status RollBack::fit(Frame& frame, std::size_t number) {
 
 // After a promotion old frames go on with the new plan; what a smaller plan cannot hold is forgotten.
 Status RollBack::fit() {
-    if (recording_ == state_.recording()) return ok_status();
+    if (recording_ == state_.fields().recording()) return ok_status();
     for (std::size_t n = 0; n < frames_.size(); ++n) {
         if ((frames_[n].effects & ~state_.plan().effects) != 0) frames_[n].kept = false;
         if (auto status = fit(frames_[n], n); !status) {
@@ -70,7 +63,7 @@ Status RollBack::fit() {
             return status;
         }
     }
-    recording_ = state_.recording();
+    recording_ = state_.fields().recording();
     return ok_status();
 }
 

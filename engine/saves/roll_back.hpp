@@ -27,11 +27,12 @@ class RollBack {
 
   private:
     struct Frame {
+        explicit Frame(WorldDevice& device) : copies(device) {}
         bool kept = false;
         std::uint32_t effects = 0;
         Material material;
         HostTotals totals;
-        std::map<std::string, MemoryItem> fields;
+        NamedBuffers copies; // of the kept fields
         std::unique_ptr<StateProgram> keep, restore;
     };
 

@@ -15,7 +15,7 @@ Content operator|(Content a, Content b) { return {a.sand || b.sand, a.water || b
 
 SnapshotHeader Snapshots::header() const {
     return {state_.layout().nx,         state_.layout().ny, state_.plan().effects, state_.level(),
-            state_.settings().material, stepper_.totals(),  state_.kept_fields()};
+            state_.settings().material, stepper_.totals(),  state_.fields().kept()};
 }
 
 Status Snapshots::save(std::span<std::byte> to) {
@@ -28,9 +28,8 @@ Status Snapshots::save(std::span<std::byte> to) {
     write_header(header, to);
     for (std::size_t n = 0; n < header.fields.size(); ++n) {
         const auto& field = header.fields[n];
-        const auto from = state_.buffer(field.name, state_.parity());
-        auto status = state_.note(state_.device().read(from, 0, to.subspan(header.begin_of(n), field.bytes)));
-        if (!status) return status;
+        const auto from = state_.fields().buffer(field.name);
+        if (auto status = state_.device().read(from, 0, to.subspan(header.begin_of(n), field.bytes)); !status) return status;
     }
     seal(to);
     return ok_status();
@@ -54,7 +53,7 @@ Status Snapshots::check(const SnapshotHeader& header) const {
         return error(Code::bad_argument,
                      "load: the snapshot has effects that this world's level does not allow: " + effect_names(lacking));
     }
-    const auto kept = state_.kept_fields(make_step_plan(header.effects, state_.plan().substeps));
+    const auto kept = state_.fields().kept(make_step_plan(header.effects, state_.plan().substeps).fields);
     for (const auto& field : header.fields) {
         const auto found = std::find_if(kept.begin(), kept.end(), [&](const KeptField& k) { return k.name == field.name; });
         if (found == kept.end() || found->bytes != field.bytes) {
@@ -78,15 +77,14 @@ Status Snapshots::write_fields(const SnapshotHeader& header, std::span<const std
     };
     const bool one_layer = (header.effects & (EFFECT_WATER | EFFECT_SAND)) == (EFFECT_WATER | EFFECT_SAND);
     std::vector<std::byte> zeros;
-    for (const auto& field : state_.kept_fields()) {
+    for (const auto& field : state_.fields().kept()) {
         auto contents = find(field.name);
         if (contents.empty() && one_layer && field.name.starts_with("mixed_")) contents = find("water_" + field.name.substr(6));
         if (contents.empty()) {
             zeros.resize(std::max<std::size_t>(zeros.size(), field.bytes));
             contents = std::span(zeros).first(field.bytes);
         }
-        auto status = state_.note(state_.device().write(state_.buffer(field.name, state_.parity()), 0, contents));
-        if (!status) return status;
+        if (auto status = state_.device().write(state_.fields().buffer(field.name), 0, contents); !status) return status;
     }
     return ok_status();
 }
@@ -110,19 +108,20 @@ Status Snapshots::load(std::span<const std::byte> from) {
 }
 
 Status Snapshots::make_buffers() {
-    if (copies_ && recording_ == state_.recording()) return ok_status();
+    if (copies_ && recording_ == state_.fields().recording()) return ok_status();
+    const auto label = [](const std::string& field) { return "save " + field; };
+    std::vector<compute::BufferDesc> wanted;
+    for (const auto& field : state_.fields().kept())
+        wanted.push_back({field.bytes, label(field.name), compute::HostAccess::readback});
     copies_.reset();
-    for (const auto& [name, copy] : readback_) state_.free_buffer(copy.buffer, copy.memory.size());
-    readback_.clear();
-    for (const auto& field : state_.kept_fields()) {
-        auto made = state_.make_buffer({field.bytes, "save " + field.name, compute::HostAccess::readback});
-        if (!made) return state_.note(made.status());
-        readback_[field.name] = {*made, state_.device().mapped(*made)};
-    }
-    recording_ = state_.recording();
-    copies_.emplace(state_, "save", [this](compute::ProgramBuilder& builder, const Parity& parity) {
-        for (const auto& [name, copy] : readback_)
-            builder.copy({state_.buffer(name, parity), copy.buffer, 0, 0, copy.memory.size()});
+    readback_.keep_only(wanted);
+    if (auto status = readback_.keep_also(wanted); !status) return status;
+    memory_.clear();
+    for (const auto& field : state_.fields().kept()) memory_[field.name] = state_.device().mapped(readback_[label(field.name)]);
+    recording_ = state_.fields().recording();
+    copies_.emplace(state_, "save", [this, label](compute::ProgramBuilder& builder, const Parity& parity) {
+        for (const auto& field : state_.fields().kept())
+            builder.copy({state_.fields().buffer(field.name, parity), readback_[label(field.name)], 0, 0, field.bytes});
         return ok_status();
     });
     return ok_status();
@@ -175,7 +174,7 @@ Status Snapshots::end_save(std::uint64_t ticket, std::span<std::byte> to) {
     }
     if (!state_.lost()) return state_.lost();
     if (phase_ == Phase::device && state_.device().finished(copied_)) {
-        if (auto status = state_.note(state_.device().wait(copied_)); !status) return status;
+        if (auto status = state_.device().wait(copied_); !status) return status;
         to_ = to.first(*bytes);
         phase_ = Phase::worker;
         worker_.start([this] { assemble(); });
@@ -194,7 +193,7 @@ void Snapshots::assemble() {
     write_header(saved_, to_);
     for (std::size_t n = 0; n < saved_.fields.size(); ++n) {
         const auto& field = saved_.fields[n];
-        std::memcpy(to_.data() + saved_.begin_of(n), readback_.at(field.name).memory.data(), field.bytes);
+        std::memcpy(to_.data() + saved_.begin_of(n), memory_.at(field.name).data(), field.bytes);
     }
     seal(to_);
 }

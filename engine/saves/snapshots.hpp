@@ -34,10 +34,6 @@ class Snapshots {
 
   private:
     enum class Phase { none, step, device, worker }; // what the save in flight waits for
-    struct Readback {
-        compute::Buffer buffer;
-        std::span<const std::byte> memory;
-    };
 
     SnapshotHeader header() const;
     Status check(const SnapshotHeader& header) const;
@@ -54,7 +50,8 @@ class Snapshots {
     SnapshotHeader saved_;
     compute::Ticket copied_;
     std::span<std::byte> to_;
-    std::map<std::string, Readback> readback_; // by field
+    NamedBuffers readback_{state_.device()};
+    std::map<std::string, std::span<const std::byte>> memory_; // of readback_, by field
     std::optional<StateProgram> copies_;
     std::uint64_t recording_ = 0;
     Worker worker_; // last: it ends before what it reads

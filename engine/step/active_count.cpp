@@ -9,18 +9,38 @@ namespace {
 
 using Counts = std::array<std::uint32_t, 2>; // one per list
 
+// Whose first word is how many tiles the newest step ran over: one per list of tiles.
+std::vector<compute::Buffer> counters(WorldState& state) {
+    std::vector<compute::Buffer> buffers;
+    for (const bool of_substeps : {false, true})
+        if (!of_substeps || state.plan().tiles_by_material)
+            buffers.push_back(state.fields().buffer(state.plan().tile_list(of_substeps).back()));
+    return buffers;
+}
+
 } // namespace
+
+Result<std::vector<std::uint32_t>> read_active_counts(WorldState& state) {
+    std::vector<std::uint32_t> counts;
+    for (const auto from : counters(state)) {
+        counts.push_back(0);
+        if (auto status = state.device().read(from, 0, std::as_writable_bytes(std::span(&counts.back(), 1))); !status)
+            return status;
+    }
+    return counts;
+}
 
 Status ActiveCount::append(compute::ProgramBuilder& builder, int turn) {
     auto& slot = slots_[static_cast<std::size_t>(turn)];
     if (slot.buffer.id == 0) {
-        auto made = state_.make_buffer({sizeof(Counts), "active count " + std::to_string(turn), compute::HostAccess::readback});
+        auto made = state_.device().create_buffer(
+            {sizeof(Counts), "active count " + std::to_string(turn), compute::HostAccess::readback});
         if (!made) return made.status();
         slot.buffer = *made;
     }
     std::uint64_t at = 0;
-    for (const auto count : state_.active_counts()) {
-        builder.copy({count, slot.buffer, 0, at, sizeof(std::uint32_t)});
+    for (const auto from : counters(state_)) {
+        builder.copy({from, slot.buffer, 0, at, sizeof(std::uint32_t)});
         at += sizeof(std::uint32_t);
     }
     return ok_status();
@@ -36,8 +56,8 @@ bool ActiveCount::asleep() {
         // Only where no submission can be writing it.
         if (slot.ticket.value <= seen_ || !state_.device().finished(slot.ticket)) continue;
         Counts counts{};
-        std::memcpy(counts.data(), state_.device().mapped(slot.buffer).data(),
-                    sizeof(std::uint32_t) * state_.active_counts().size());
+        const std::size_t lists = state_.plan().tiles_by_material ? 2 : 1;
+        std::memcpy(counts.data(), state_.device().mapped(slot.buffer).data(), lists * sizeof(std::uint32_t));
         newest_ = *std::max_element(counts.begin(), counts.end());
         seen_ = slot.ticket.value;
         report(newest_);
@@ -46,12 +66,11 @@ bool ActiveCount::asleep() {
 }
 
 void ActiveCount::report(std::uint32_t count) {
-    const double tiles = static_cast<double>(state_.params().tile_columns) * static_cast<double>(state_.params().tile_rows);
-    const bool above = static_cast<double>(count) > state_.settings().active_tiles_most * tiles;
-    if (above && !above_ && state_.log)
-        state_.log(1, "step " + std::to_string(state_.steps) + ": " + std::to_string(count) + " of " +
-                          std::to_string(static_cast<std::uint64_t>(tiles)) +
-                          " tiles are active, more than active_tiles_most allows");
+    const std::uint64_t tiles = state_.tiles().count();
+    const bool above = static_cast<double>(count) > state_.settings().active_tiles_most * static_cast<double>(tiles);
+    if (above && !above_)
+        state_.tell(1, std::to_string(count) + " of " + std::to_string(tiles) +
+                           " tiles are active, more than active_tiles_most allows");
     above_ = above;
 }
 

@@ -5,6 +5,10 @@
 
 namespace wadi {
 
+/// The tiles that the newest step ran over, per list of tiles: the water's or the only one, then the sand's. Waits for the
+/// device.
+Result<std::vector<std::uint32_t>> read_active_counts(WorldState& state);
+
 class ActiveCount {
   public:
     explicit ActiveCount(WorldState& state) : state_(state) {}

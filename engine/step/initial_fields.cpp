@@ -75,11 +75,11 @@ Status upload(WorldState& state, const InitialFields& fields) {
         {"sand_velocity_x", to_faces(layout, fields.sand_velocity_x, true)},
         {"sand_velocity_y", to_faces(layout, fields.sand_velocity_y, false)}};
     for (const auto& [name, values] : all) {
-        if (auto status = state.write_field(name, 0, values); !status) return status;
+        if (auto status = state.fields().write(name, 0, values); !status) return status;
     }
-    const auto shapes = state.buffer("source_shapes", state.parity());
+    const auto shapes = state.fields().buffer("source_shapes");
     if (shapes.id == 0) return ok_status();
-    return state.note(state.device().write(shapes, 0, std::as_bytes(std::span<const vec4>(source_shapes(state.settings())))));
+    return state.device().write(shapes, 0, std::as_bytes(std::span<const vec4>(source_shapes(state.settings()))));
 }
 
 } // namespace wadi

@@ -14,8 +14,8 @@ std::int64_t sum(const std::vector<std::uint32_t>& words, std::size_t row, std::
 
 Result<std::vector<std::uint32_t>> words_of(WorldState& state, const char* name, std::size_t count) {
     std::vector<std::uint32_t> values(count);
-    const auto from = state.buffer(name, state.parity());
-    if (auto status = state.note(state.device().read(from, 0, std::as_writable_bytes(std::span(values)))); !status) return status;
+    const auto from = state.fields().buffer(name);
+    if (auto status = state.device().read(from, 0, std::as_writable_bytes(std::span(values))); !status) return status;
     return values;
 }
 
@@ -57,17 +57,17 @@ Result<Ledger> read_ledger(WorldState& state) {
 // The first counter of the entry's row takes it all: only the sum is ever looked at.
 Status book(WorldState& state, int entry, std::int64_t quanta) {
     if (quanta == 0) return ok_status();
-    const auto ledger = state.buffer("source_ledger", state.parity());
+    const auto ledger = state.fields().buffer("source_ledger");
     const std::uint64_t low = 2 * static_cast<std::uint64_t>(entry) * row_of(state) * 4, high = low + row_of(state) * 4;
     std::array<std::uint32_t, 2> words{};
     const auto word = [&](std::size_t n) { return std::span(words).subspan(n, 1); };
     auto& device = state.device();
-    if (auto status = state.note(device.read(ledger, low, std::as_writable_bytes(word(0)))); !status) return status;
-    if (auto status = state.note(device.read(ledger, high, std::as_writable_bytes(word(1)))); !status) return status;
+    if (auto status = device.read(ledger, low, std::as_writable_bytes(word(0))); !status) return status;
+    if (auto status = device.read(ledger, high, std::as_writable_bytes(word(1))); !status) return status;
     const std::uint64_t count = (std::uint64_t{words[0]} + (std::uint64_t{words[1]} << 32)) + static_cast<std::uint64_t>(quanta);
     words = {static_cast<std::uint32_t>(count), static_cast<std::uint32_t>(count >> 32)};
-    if (auto status = state.note(device.write(ledger, low, std::as_bytes(word(0)))); !status) return status;
-    return state.note(device.write(ledger, high, std::as_bytes(word(1))));
+    if (auto status = device.write(ledger, low, std::as_bytes(word(0))); !status) return status;
+    return device.write(ledger, high, std::as_bytes(word(1)));
 }
 
 } // namespace wadi

@@ -5,27 +5,24 @@ namespace wadi {
 StateProgram::~StateProgram() { forget(); }
 
 void StateProgram::forget() {
-    for (auto& program : programs_) {
-        state_.device().destroy_program(program);
-        program = {};
-    }
+    for (auto& program : programs_) state_.device().destroy_program(program);
 }
 
 Result<compute::Ticket> StateProgram::submit(const StepInput& input) {
+    auto& device = state_.device();
+    const auto& fields = state_.fields();
     if (!state_.lost()) return state_.lost();
-    if (recording_ != state_.recording()) forget();
-    recording_ = state_.recording();
-    auto& program = programs_[static_cast<std::size_t>(state_.turn())];
+    if (recording_ != fields.recording()) forget();
+    recording_ = fields.recording();
+    auto& program = programs_[static_cast<std::size_t>(fields.turn())];
     if (program.id == 0) {
         compute::ProgramBuilder builder(label_);
-        if (auto status = build_(builder, state_.parity()); !status) return state_.note(status);
-        auto compiled = state_.device().compile(builder, state_.params());
-        if (!compiled) return state_.note(compiled.status());
+        if (auto status = build_(builder, fields.parity()); !status) return status;
+        auto compiled = device.compile(builder, state_.params());
+        if (!compiled) return compiled.status();
         program = *compiled;
     }
-    auto ticket = state_.device().submit(program, input);
-    if (!ticket) return state_.note(ticket.status());
-    return ticket;
+    return device.submit(program, input);
 }
 
 } // namespace wadi

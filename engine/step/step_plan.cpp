@@ -2,20 +2,13 @@
 #include <algorithm>
 #include <array>
 #include <set>
-#include <string_view>
 
 namespace wadi {
 
 namespace {
 
-constexpr std::string_view next_suffix = "_next";
-
 // What a list of active tiles consists of: the dispatches of a pass over tiles name them too.
 constexpr std::array tile_fields = {"activity", "active_tiles", "active_counts", "active_list", "active_dispatch"};
-
-bool is_next(const std::string& name) { return name.ends_with(next_suffix); }
-
-std::string base_name(const std::string& name) { return is_next(name) ? name.substr(0, name.size() - next_suffix.size()) : name; }
 
 const std::set<std::string> state_fields = {
     "terrain",          "sand_height",      "water_height",    "stretch_xx",       "stretch_xy",
@@ -65,8 +58,9 @@ class Builder {
             const bool exists = (effects_ & binding.condition) == binding.condition;
             const std::string name(binding.name);
             const auto renamed = names.find(base_name(name));
-            const std::string field =
-                renamed == names.end() ? name : renamed->second + (is_next(name) ? std::string(next_suffix) : "");
+            const std::string field = renamed == names.end() ? name
+                                      : is_next(name)        ? next_name(renamed->second)
+                                                             : renamed->second;
             pass.fields.push_back(exists ? field : std::string());
         }
         passes_.push_back(std::move(pass));
@@ -265,45 +259,6 @@ void share_scratch(StepPlan& plan) {
 }
 
 } // namespace
-
-int StepPlan::field_buffers() const {
-    int count = scratch_blocks;
-    for (const auto& field : fields) {
-        if (field.role == FieldRole::state) count += field.ping_pong ? 2 : 1;
-    }
-    return count;
-}
-
-double StepPlan::bytes_per_cell() const {
-    int bytes = 4 * scratch_blocks;
-    for (const auto& field : fields)
-        if (field.role == FieldRole::state) bytes += field.element_bytes() * (field.ping_pong ? 2 : 1);
-    return bytes;
-}
-
-double StepPlan::traffic_per_cell() const {
-    double moved = 0;
-    const auto add = [&](const PlanPass& pass, int times) {
-        const auto& stage = compute::stage_table()[static_cast<std::size_t>(pass.stage)];
-        using enum compute::Extent;
-        if (stage.extent != cells && stage.extent != faces && stage.extent != strips) return;
-        for (std::size_t n = 0; n < pass.fields.size(); ++n) {
-            const auto* field = pass.fields[n].empty() ? nullptr : find(base_name(pass.fields[n]));
-            if (field == nullptr || (field->role != FieldRole::state && field->role != FieldRole::scratch)) continue;
-            moved += times * field->element_bytes() * (stage.bindings[n].access == compute::Access::inout ? 2 : 1);
-        }
-    };
-    for (const auto& pass : water_passes) add(pass, 1);
-    for (const auto& pass : substep_passes) add(pass, substeps);
-    return moved;
-}
-
-double StepPlan::least_traffic_per_cell() const {
-    double moved = 0;
-    for (const auto& field : fields)
-        if (field.role == FieldRole::state) moved += field.element_bytes() * (field.name == "terrain" ? 1 : 2);
-    return moved;
-}
 
 std::vector<std::string> StepPlan::tile_list(bool of_substeps) const {
     std::vector<std::string> names(tile_fields.begin(), tile_fields.end());

@@ -9,8 +9,13 @@
 
 namespace wadi {
 
-/// One pass. `fields` names, slot by slot, the field bound there; empty where the binding does not exist under the mask.
 /// A name that ends in "_next" is the other buffer of a ping-pong field.
+inline std::string next_name(const std::string& field) { return field + "_next"; }
+inline bool is_next(const std::string& name) { return name.ends_with("_next"); }
+/// The field that either name is of.
+inline std::string base_name(const std::string& name) { return is_next(name) ? name.substr(0, name.size() - 5) : name; }
+
+/// One pass. `fields` names, slot by slot, the field bound there; empty where the binding does not exist under the mask.
 struct PlanPass {
     int stage = -1;
     std::vector<std::string> fields;

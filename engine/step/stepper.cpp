@@ -11,7 +11,6 @@ void Stepper::drop_programs() {
     };
     drop(programs_);
     drop(timed_programs_);
-    programs_ = timed_programs_ = {};
     for (auto& programs : part_programs_) {
         drop(programs);
         programs.clear();
@@ -46,11 +45,11 @@ Status Stepper::record() {
     std::array<compute::Program, 2> fresh{};
     Parity parity;
     for (int turn = 0; turn < 2; ++turn) {
-        state_.set_start_parity(turn, parity);
+        state_.fields().set_parity(turn, parity);
         auto program = record_step(turn, parity, false);
         if (!program) {
             state_.device().destroy_program(fresh[0]);
-            return state_.note(program.status());
+            return program.status();
         }
         fresh[static_cast<std::size_t>(turn)] = *program;
     }
@@ -67,14 +66,14 @@ Status Stepper::hold(Content content) {
     if (choice->mask != state_.effects().mask) {
         const EffectChoice before = state_.effects();
         auto status = state_.adopt(*choice);
-        if (!status) return state_.note(status);
+        if (!status) return status;
         status = record();
         if (!status) {
-            if (auto back = state_.adopt(before); !back) return state_.note(back);
+            if (auto back = state_.adopt(before); !back) return back;
             if (auto back = record(); !back) return back;
             return status;
         }
-        if (state_.log) state_.log(2, "step " + std::to_string(state_.steps) + ": effects " + effect_names(choice->mask));
+        state_.tell(2, "effects " + effect_names(choice->mask));
     }
     state_.content = content;
     return ok_status();
@@ -109,14 +108,14 @@ Status Stepper::prepare() {
             auto choice = check_allowed(state_.settings(), content) ? effects_required(state_.settings(), content)
                                                                     : Result<EffectChoice>(state_.effects());
             if (!choice) return choice.status();
-            if (auto status = state_.prepare(choice->mask); !status) return state_.note(status);
+            if (auto status = state_.prepare(choice->mask); !status) return status;
         }
     }
     return ok_status();
 }
 
 Status Stepper::record_parts(std::size_t turn) {
-    Parity parity = state_.parity_of(static_cast<int>(turn));
+    Parity parity = state_.fields().parity(static_cast<int>(turn));
     for (int part = 0; part < parts(); ++part) {
         compute::ProgramBuilder builder(part == 0 ? "water part" : "sand part");
         for (const auto& pass : part == 0 ? state_.plan().water_passes : state_.plan().substep_passes) {
@@ -134,16 +133,16 @@ Status Stepper::record_parts(std::size_t turn) {
 
 // Submits parts until `parts` of the step are done; the last one makes the step whole.
 Status Stepper::finish(int parts) {
-    const auto turn = static_cast<std::size_t>(state_.turn());
+    const auto turn = static_cast<std::size_t>(state_.fields().turn());
     if (asleep_) parts_done_ = parts;
     if (!asleep_ && part_programs_[turn].empty()) {
-        if (auto status = record_parts(turn); !status) return state_.note(status);
+        if (auto status = record_parts(turn); !status) return status;
     }
     for (; parts_done_ < parts; ++parts_done_) {
         auto ticket = state_.device().submit(part_programs_[turn][static_cast<std::size_t>(parts_done_)], input_);
         if (!ticket) {
             if (parts_done_ == 0) inputs_.undo();
-            return state_.note(ticket.status());
+            return ticket.status();
         }
         ticket_ = *ticket;
         if (parts_done_ == 0) note_submitted(input_);
@@ -156,15 +155,15 @@ Status Stepper::begin_step() { return before_step_ ? before_step_() : ok_status(
 Status Stepper::complete_step() {
     parts_done_ = 0;
     asleep_ = false;
-    state_.set_turn(1 - state_.turn());
+    state_.fields().end_turn();
     ++state_.steps;
     return after_step_ ? after_step_() : ok_status();
 }
 
 StepInput Stepper::next_input() {
     StepInput input = inputs_.next(static_cast<int>(state_.steps));
-    wakes_.wake(input);
-    state_.put_wakes(input);
+    state_.tiles().wake_inputs(input);
+    state_.tiles().put(input);
     return input;
 }
 
@@ -173,8 +172,8 @@ bool Stepper::may_sleep(const StepInput& input) {
 }
 
 void Stepper::note_submitted(const StepInput& input) {
-    active_.submitted(state_.turn(), ticket_, input.wake_count > 0);
-    state_.forget_wakes();
+    active_.submitted(state_.fields().turn(), ticket_, input.wake_count > 0);
+    state_.tiles().submitted();
 }
 
 HostTotals Stepper::totals() const { return {state_.steps, state_.sand_initial, state_.water_initial, inputs_.totals()}; }
@@ -182,7 +181,7 @@ HostTotals Stepper::totals() const { return {state_.steps, state_.sand_initial, 
 void Stepper::set_totals(const HostTotals& totals) {
     parts_done_ = 0;
     asleep_ = false;
-    state_.wake_all();
+    state_.tiles().wake_all();
     state_.steps = totals.steps;
     state_.sand_initial = totals.sand_initial;
     state_.water_initial = totals.water_initial;
@@ -203,30 +202,30 @@ Status Stepper::step() {
     if (!state_.lost()) return state_.lost();
     if (parts_done_ > 0) return finish(parts());
     if (auto status = begin_step(); !status) return status;
-    const auto turn = static_cast<std::size_t>(state_.turn());
+    const auto turn = static_cast<std::size_t>(state_.fields().turn());
     const StepInput input = next_input();
     if (may_sleep(input)) return complete_step();
     auto ticket = state_.device().submit(profiling_ ? timed_programs_[turn] : programs_[turn], input);
     if (!ticket) {
         inputs_.undo();
-        return state_.note(ticket.status());
+        return ticket.status();
     }
     ticket_ = *ticket;
     note_submitted(input);
     if (profiling_) {
         pending_timings_.push_back(*ticket);
-        if (auto status = collect_timings(false); !status) return state_.note(status);
+        if (auto status = collect_timings(false); !status) return status;
     }
     return complete_step();
 }
 
 Status Stepper::set_profiling(bool on) {
-    if (auto status = collect_timings(true); !status) return state_.note(status);
+    if (auto status = collect_timings(true); !status) return status;
     if (on && timed_programs_[0].id == 0) {
         for (int turn = 0; turn < 2; ++turn) {
-            Parity parity = state_.parity_of(turn);
+            Parity parity = state_.fields().parity(turn);
             auto program = record_step(turn, parity, true);
-            if (!program) return state_.note(program.status());
+            if (!program) return program.status();
             timed_programs_[static_cast<std::size_t>(turn)] = *program;
         }
     }
@@ -254,7 +253,7 @@ Status Stepper::collect_timings(bool all) {
 }
 
 Result<std::vector<StageTime>> Stepper::stage_times() {
-    if (auto status = collect_timings(true); !status) return state_.note(status);
+    if (auto status = collect_timings(true); !status) return status;
     std::vector<StageTime> times;
     const auto add = [&](const PlanPass& pass, int repeats) {
         const std::string name(compute::stage_table()[static_cast<std::size_t>(pass.stage)].name);

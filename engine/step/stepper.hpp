@@ -2,7 +2,6 @@
 #pragma once
 #include "engine/step/active_count.hpp"
 #include "engine/step/step_inputs.hpp"
-#include "engine/step/wakes.hpp"
 #include "engine/step/world_state.hpp"
 #include <functional>
 
@@ -87,7 +86,6 @@ class Stepper {
 
     WorldState& state_;
     StepInputs inputs_;
-    InputWakes wakes_{state_};
     ActiveCount active_{state_};
     bool asleep_ = false; // the present step submits nothing
     std::array<compute::Program, 2> programs_{}, timed_programs_{};

@@ -1,0 +1,66 @@
+// The fields of a world on its device, by name, and which buffer of each pair is the current one.
+#pragma once
+#include "engine/compute/params.hpp"
+#include "engine/settings/settings.hpp"
+#include "engine/step/named_buffers.hpp"
+#include "engine/step/step_plan.hpp"
+#include <array>
+#include <set>
+
+namespace wadi {
+
+/// Ping-pong fields whose second buffer is the current one.
+using Parity = std::set<std::string>;
+
+/// A field that the next step depends on, or a ledger: what snapshots and roll-back frames hold.
+struct KeptField {
+    std::string name;
+    std::uint64_t bytes = 0;
+};
+
+class FieldStore {
+  public:
+    FieldStore(WorldDevice& device, const Settings& settings);
+
+    /// Changes to the fields of a plan at a boundary between two steps. Those there already keep their values to the bit, new
+    /// ones are zero, others are freed; the next step is turn 0 and every program must be recorded anew. Waits for the device
+    /// where it frees. Errors: out_of_memory, nothing changed.
+    Status adopt(const StepPlan& plan);
+    /// Counts up with every adopt().
+    std::uint64_t recording() const { return recording_; }
+
+    /// The buffer of a field under a parity; with the suffix "_next" its partner. Null where there is no such field.
+    compute::Buffer buffer(const std::string& name, const Parity& parity) const;
+    /// The current one.
+    compute::Buffer buffer(const std::string& name) const { return buffer(name, parity()); }
+    /// Numbers of a field, from element `first` on: its 16-bit floats as floats where it has such. Zeros, and nothing written,
+    /// where there is no such field. Both wait for the device.
+    Status read(const std::string& name, std::size_t first, std::span<float> values);
+    Status write(const std::string& name, std::size_t first, std::span<const float> values);
+    /// The fields that are kept, and what a plan would keep.
+    std::vector<KeptField> kept() const { return kept(fields_); }
+    std::vector<KeptField> kept(const std::vector<PlanField>& fields) const;
+
+    /// Which of the two step programs comes next (0 or 1), and the fields whose second buffer is current before each.
+    int turn() const { return turn_; }
+    void end_turn() { turn_ = 1 - turn_; }
+    const Parity& parity() const { return parity(turn_); }
+    const Parity& parity(int turn) const { return parities_[static_cast<std::size_t>(turn)]; }
+    void set_parity(int turn, const Parity& parity) { parities_[static_cast<std::size_t>(turn)] = parity; }
+
+  private:
+    const PlanField* find(const std::string& name) const;
+    std::uint64_t bytes_of(const PlanField& field) const;
+    std::vector<compute::BufferDesc> wanted_by(const StepPlan& plan) const;
+
+    WorldDevice& device_;
+    const FieldLayout layout_;
+    const int tile_columns_, tile_rows_; // of active tiles
+    std::vector<PlanField> fields_;
+    NamedBuffers buffers_;
+    std::array<Parity, 2> parities_{};
+    int turn_ = 0;
+    std::uint64_t recording_ = 0;
+};
+
+} // namespace wadi
