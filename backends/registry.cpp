@@ -1,4 +1,5 @@
 #include "backends/registry.hpp"
+#include "backends/common/front_end.hpp"
 #include <cstdlib>
 
 namespace wadi::backends {
@@ -50,6 +51,21 @@ void apply_environment(DeviceOptions& options) {
     options.no_replay |= environment_switch("WADI_NO_REPLAY");
 }
 
+std::vector<DeviceInfo> list_devices(const Backend& backend, std::string& why_none) {
+    auto list = guarded([&]() -> Result<std::vector<DeviceInfo>> { return backend.enumerate(why_none); });
+    if (list) return std::move(*list);
+    why_none = list.status().message;
+    return {};
+}
+
+Result<std::unique_ptr<Device>> open_device(const Backend& backend, int index, const DeviceOptions& options) {
+    return guarded([&]() -> Result<std::unique_ptr<Device>> {
+        auto device = backend.open(index, options);
+        if (!device) return device.status();
+        return std::unique_ptr<Device>(new FrontEnd(std::move(*device)));
+    });
+}
+
 Result<std::unique_ptr<Device>> open_device(const std::string& wanted, int index, DeviceOptions options) {
     apply_environment(options);
     std::string name = wanted;
@@ -64,32 +80,32 @@ Result<std::unique_ptr<Device>> open_device(const std::string& wanted, int index
         const auto* lending = lending_backend();
         if (lending == nullptr)
             return error(Code::not_supported, "a host's device was given, but this build has no backend for it");
-        if (name == "auto" || backend == lending) return lending->open(0, options);
+        if (name == "auto" || backend == lending) return open_device(*lending, 0, options);
         if (!backend->borrows) {
             return error(Code::not_supported, "a host's device was given, but the backend is " + name +
                                                   "; on one or beside one run: " +
                                                   names_of([](const Backend& b) { return b.lend != nullptr || b.borrows; }));
         }
-        auto lender = lending->lend(options);
+        auto lender = guarded([&] { return lending->lend(options); });
         if (!lender) return lender.status();
         options.lender = std::move(*lender);
     }
     std::string why;
     if (name == "auto") {
         for (const auto& b : all()) {
-            for (const auto& info : b.enumerate(why)) {
-                if (real_gpu(info.kind)) return b.open(info.index, options);
+            for (const auto& info : list_devices(b, why)) {
+                if (real_gpu(info.kind)) return open_device(b, info.index, options);
             }
         }
         backend = &all().front();
     }
-    const auto devices = backend->enumerate(why);
+    const auto devices = list_devices(*backend, why);
     if (devices.empty()) return error(Code::not_found, std::string("backend ") + backend->name + " has no device: " + why);
     if (index >= static_cast<int>(devices.size())) {
         return error(Code::not_found, std::string("backend ") + backend->name + " has no device " + std::to_string(index) +
                                           ", only 0 ... " + std::to_string(devices.size() - 1));
     }
-    return backend->open(index, options);
+    return open_device(*backend, index, options);
 }
 
 } // namespace wadi::backends

@@ -132,7 +132,7 @@ wadi_result wadi_list_devices(wadi_device_info* infos, uint32_t* count, char* no
         std::string why_none;
         for (const auto& backend : backends::all()) {
             std::string why;
-            const auto devices = backend.enumerate(why);
+            const auto devices = backends::list_devices(backend, why);
             if (devices.empty()) why_none += std::string(backend.name) + ": " + why + "\n";
             for (const auto& device : devices) {
                 if (found < capacity) {

@@ -15,7 +15,7 @@ struct DeviceInfo {
 
 struct Backend {
     const char* name;
-    /// Never fails the program: no loader or driver is an empty list and a reason.
+    /// No loader, driver or device is an empty list and a reason. Like all three calls here it may throw std::bad_alloc.
     std::vector<DeviceInfo> (*enumerate)(std::string& why_none);
     Result<std::unique_ptr<compute::Device>> (*open)(int index, const compute::DeviceOptions& options);
     /// Lends from the host's device (DeviceOptions::host), on which this backend can run. Null: it cannot. Errors: not_supported.

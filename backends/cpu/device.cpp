@@ -7,6 +7,7 @@
 #include <cstring>
 #include <exception>
 #include <functional>
+#include <limits>
 #include <new>
 
 namespace wadi::cpu {
@@ -28,7 +29,8 @@ CpuDevice::CpuDevice(const InstructionSet& set, int threads, const compute::Devi
     capabilities_.driver = std::string(set.name) + ", " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
     capabilities_.kind = compute::DeviceKind::cpu;
     capabilities_.memory_bytes = physical_memory();
-    capabilities_.largest_buffer_bytes = capabilities_.memory_bytes;
+    capabilities_.largest_buffer_bytes =
+        capabilities_.memory_bytes != 0 ? capabilities_.memory_bytes : std::numeric_limits<std::ptrdiff_t>::max();
     capabilities_.exact_float = true;
     capabilities_.timestamps = true;
     capabilities_.half_storage = true;
@@ -46,31 +48,7 @@ CpuDevice::~CpuDevice() {
     runner_.join();
 }
 
-Status CpuDevice::check_lost() const {
-    return lost_ ? error(Code::device_lost, "the CPU device was lost (injected)") : ok_status();
-}
-
-CpuDevice::Memory* CpuDevice::find(compute::Buffer buffer) {
-    const auto found = buffers_.find(buffer.id);
-    return found == buffers_.end() ? nullptr : &found->second;
-}
-
-Status CpuDevice::check_range(const Memory& memory, std::uint64_t offset, std::uint64_t bytes) const {
-    if (offset > memory.bytes || bytes > memory.bytes - offset) {
-        return error(Code::bad_argument, "buffer '" + memory.label + "' has " + std::to_string(memory.bytes) + " bytes; " +
-                                             std::to_string(bytes) + " at offset " + std::to_string(offset) + " do not fit");
-    }
-    return ok_status();
-}
-
 Result<compute::Buffer> CpuDevice::create_buffer(const compute::BufferDesc& desc) {
-    if (auto status = check_lost(); !status) return status;
-    if (desc.bytes == 0) return error(Code::bad_argument, "buffer '" + desc.label + "' has 0 bytes");
-    if (capabilities_.largest_buffer_bytes != 0 && desc.bytes > capabilities_.largest_buffer_bytes) {
-        return error(Code::bad_argument, "buffer '" + desc.label + "' has " + std::to_string(desc.bytes) +
-                                             " bytes, more than the largest, " +
-                                             std::to_string(capabilities_.largest_buffer_bytes));
-    }
     // Operating systems promise more memory than they have; refuse before a page fault kills the host.
     const std::uint64_t limit = capabilities_.memory_bytes / 10 * 9;
     if (capabilities_.memory_bytes != 0 && (desc.bytes > limit || allocated_ > limit - desc.bytes)) {
@@ -79,40 +57,33 @@ Result<compute::Buffer> CpuDevice::create_buffer(const compute::BufferDesc& desc
                                               " MiB that this machine can give");
     }
     // Fields start 64 bytes apart modulo 4 KiB: equal offsets in many arrays would share cache sets.
-    const std::size_t stagger = 64 * (next_buffer_ % 64);
-    Memory memory;
+    const std::size_t stagger = 64 * ((counters_.allocations + 1) % 64);
+    buffers_.reserve();
+    auto owner = std::make_unique<Memory>();
+    auto& memory = *owner;
     memory.block.reset(new (std::nothrow) std::byte[desc.bytes + 64 + stagger]());
     if (!memory.block)
         return error(Code::out_of_memory, "buffer '" + desc.label + "': no memory for " + std::to_string(desc.bytes) + " bytes");
     const auto address = reinterpret_cast<std::uintptr_t>(memory.block.get());
     memory.data = memory.block.get() + ((64 - address % 64) % 64) + stagger;
     memory.bytes = desc.bytes;
-    memory.label = desc.label;
-    memory.host = desc.host != compute::HostAccess::none;
     allocated_ += desc.bytes;
     ++counters_.allocations;
-    const compute::Buffer handle{next_buffer_++};
-    buffers_.emplace(handle.id, std::move(memory));
-    return handle;
+    return compute::Buffer{buffers_.add(std::move(owner))};
 }
 
-std::span<std::byte> CpuDevice::mapped(compute::Buffer buffer) {
-    auto* memory = find(buffer);
-    return memory != nullptr && memory->host ? std::span(memory->data, memory->bytes) : std::span<std::byte>{};
-}
+std::span<std::byte> CpuDevice::mapped(compute::Buffer buffer) { return {at(buffer).data, at(buffer).bytes}; }
 
 Result<compute::NativeBuffer> CpuDevice::native(compute::Buffer buffer) {
-    const auto* memory = find(buffer);
-    if (memory == nullptr) return error(Code::bad_argument, "native: no buffer has the handle " + std::to_string(buffer.id));
-    return compute::NativeBuffer{compute::NativeBuffer::Kind::host_pointer, reinterpret_cast<std::uintptr_t>(memory->data),
-                                 memory->bytes};
+    const auto& memory = at(buffer);
+    return compute::NativeBuffer{compute::NativeBuffer::Kind::host_pointer, reinterpret_cast<std::uintptr_t>(memory.data),
+                                 memory.bytes};
 }
 
 void CpuDevice::destroy_buffer(compute::Buffer buffer) {
-    if (buffer.id == 0) return;
     drain();
-    if (const auto* memory = find(buffer)) allocated_ -= memory->bytes;
-    buffers_.erase(buffer.id);
+    allocated_ -= at(buffer).bytes;
+    buffers_.take(buffer.id);
 }
 
 void CpuDevice::drain() {
@@ -121,48 +92,28 @@ void CpuDevice::drain() {
 }
 
 Status CpuDevice::write(compute::Buffer buffer, std::uint64_t offset, std::span<const std::byte> bytes) {
-    if (auto status = check_lost(); !status) return status;
-    auto* memory = find(buffer);
-    if (memory == nullptr) return error(Code::bad_argument, "write to a buffer that does not exist");
-    if (auto status = check_range(*memory, offset, bytes.size()); !status) return status;
     drain();
-    std::ranges::copy(bytes, memory->data + offset);
+    std::ranges::copy(bytes, at(buffer).data + offset);
     return ok_status();
 }
 
 Status CpuDevice::read(compute::Buffer buffer, std::uint64_t offset, std::span<std::byte> bytes) {
-    if (auto status = check_lost(); !status) return status;
-    const auto* memory = find(buffer);
-    if (memory == nullptr) return error(Code::bad_argument, "read of a buffer that does not exist");
-    if (auto status = check_range(*memory, offset, bytes.size()); !status) return status;
     drain();
-    if (auto status = check_lost(); !status) return status;
-    std::copy_n(memory->data + offset, bytes.size(), bytes.data());
+    std::copy_n(at(buffer).data + offset, bytes.size(), bytes.data());
     return ok_status();
 }
 
 Result<compute::Pipeline> CpuDevice::create_pipeline(int stage, std::uint32_t effects, compute::GroupSize) {
-    if (auto status = check_lost(); !status) return status;
-    const auto table = compute::stage_table();
-    if (stage < 0 || static_cast<std::size_t>(stage) >= table.size())
-        return error(Code::bad_argument, "no stage with index " + std::to_string(stage));
-    const std::uint32_t mask = effects & table[static_cast<std::size_t>(stage)].tested_effects;
-    auto& id = pipeline_ids_[{stage, mask}];
-    if (id == 0) {
-        const auto block = set_.select[stage](mask);
-        if (block == nullptr) {
-            return error(Code::internal, "stage " + std::string(table[static_cast<std::size_t>(stage)].name) +
-                                             " has no code for the effects " + std::to_string(mask));
-        }
-        pipelines_.push_back({stage, mask, block});
-        id = static_cast<std::uint32_t>(pipelines_.size());
+    const auto block = set_.select[stage](effects);
+    if (block == nullptr) {
+        return error(Code::internal, "stage " + std::string(compute::stage_table()[static_cast<std::size_t>(stage)].name) +
+                                         " has no code for the effects " + std::to_string(effects));
     }
-    return compute::Pipeline{id};
+    pipelines_.push_back(block);
+    return compute::Pipeline{static_cast<std::uint32_t>(pipelines_.size())};
 }
 
 Result<compute::Program> CpuDevice::compile(const compute::ProgramBuilder& builder, const WorldParams& params) {
-    if (auto status = check_lost(); !status) return status;
-    if (auto status = compute::validate(builder); !status) return status;
     auto recorded = std::make_unique<Recorded>();
     recorded->params = params;
     const auto barriers = compute::plan_barriers(builder.ops());
@@ -172,25 +123,12 @@ Result<compute::Program> CpuDevice::compile(const compute::ProgramBuilder& build
         Step step;
         step.barrier_before = barriers[n] || full_barriers_;
         if (const auto* d = std::get_if<compute::Dispatch>(&op)) {
-            if (d->pipeline.id > pipelines_.size())
-                return error(Code::bad_argument, "'" + d->label + "': pipeline does not exist");
-            const auto& pipeline = pipelines_[d->pipeline.id - 1];
             const auto& stage = compute::stage_table()[static_cast<std::size_t>(d->stage)];
-            if (pipeline.stage != d->stage || pipeline.mask != (d->effects & stage.tested_effects)) {
-                return error(Code::bad_argument, "'" + d->label + "': the pipeline is of another stage or of other effects");
-            }
-            step.block = pipeline.block;
-            const auto& bindings = stage.bindings;
-            for (std::size_t b = 0; b < bindings.size(); ++b) {
-                const bool on = (d->effects & bindings[b].condition) == bindings[b].condition;
-                auto* memory = on ? find(d->slots[b]) : nullptr;
-                if (on && memory == nullptr)
-                    return error(Code::bad_argument,
-                                 "'" + d->label + "': the buffer of " + std::string(bindings[b].name) + " does not exist");
-                if (on && memory->host)
-                    return error(Code::bad_argument, "'" + d->label + "': " + compute::only_copies(memory->label));
-                step.buffers.push_back(on ? memory->data : nullptr);
-                step.sizes.push_back(on ? memory->bytes : 0);
+            step.block = pipelines_[d->pipeline.id - 1];
+            for (const auto& binding : stage.bindings) {
+                const auto* memory = binding.exists(d->effects) ? &at(d->slots[static_cast<std::size_t>(binding.slot)]) : nullptr;
+                step.buffers.push_back(memory != nullptr ? memory->data : nullptr);
+                step.sizes.push_back(memory != nullptr ? memory->bytes : 0);
             }
             step.range = d->range;
             step.rows_per_grab = std::max(1, (d->range.j1 - d->range.j0) / (8 * pool_.size()));
@@ -199,23 +137,13 @@ Result<compute::Program> CpuDevice::compile(const compute::ProgramBuilder& build
             }
             largest = std::max(largest, area(d->range));
         } else if (const auto* copy = std::get_if<compute::Copy>(&op)) {
-            auto* from = find(copy->from);
-            auto* to = find(copy->to);
-            if (from == nullptr || to == nullptr)
-                return error(Code::bad_argument, "program '" + builder.label() + "': copy of a buffer that does not exist");
-            if (auto status = check_range(*from, copy->from_offset, copy->bytes); !status) return status;
-            if (auto status = check_range(*to, copy->to_offset, copy->bytes); !status) return status;
-            step.from = from->data + copy->from_offset;
-            step.to = to->data + copy->to_offset;
+            step.from = at(copy->from).data + copy->from_offset;
+            step.to = at(copy->to).data + copy->to_offset;
             step.bytes = copy->bytes;
         } else if (const auto* fill = std::get_if<compute::Fill>(&op)) {
-            auto* to = find(fill->buffer);
-            if (to == nullptr)
-                return error(Code::bad_argument, "program '" + builder.label() + "': fill of a buffer that does not exist");
-            if (to->host)
-                return error(Code::bad_argument, "program '" + builder.label() + "': " + compute::only_copies(to->label));
-            step.to = to->data;
-            step.bytes = to->bytes / 4 * 4;
+            const auto& to = at(fill->buffer);
+            step.to = to.data;
+            step.bytes = to.bytes / 4 * 4;
             step.word = fill->word;
         } else if (const auto* stamp = std::get_if<compute::Timestamp>(&op)) {
             step.timestamp = static_cast<int>(recorded->timestamp_labels.size());
@@ -226,22 +154,15 @@ Result<compute::Program> CpuDevice::compile(const compute::ProgramBuilder& build
     recorded->small = largest < small_pass;
     recorded->progress = std::make_unique<Progress[]>(std::max<std::size_t>(1, recorded->steps.size()));
     ++counters_.recordings;
-    const compute::Program handle{next_program_++};
-    programs_.emplace(handle.id, std::move(recorded));
-    return handle;
+    return compute::Program{programs_.add(std::move(recorded))};
 }
 
 Status CpuDevice::set_active(const compute::Dispatch& d, const compute::StageInfo& stage, const WorldParams& params, Step& step) {
-    const auto words = [&](compute::Buffer buffer) -> std::uint32_t* {
-        auto* memory = find(buffer);
-        return memory == nullptr || memory->host ? nullptr : reinterpret_cast<std::uint32_t*>(memory->data);
-    };
+    const auto words = [&](compute::Buffer buffer) { return reinterpret_cast<std::uint32_t*>(at(buffer).data); };
     auto& active = step.active;
     active.activity = words(d.tiles.activity);
     active.flags = words(d.tiles.flags);
     active.counts = words(d.tiles.counts);
-    if (active.activity == nullptr || active.flags == nullptr || active.counts == nullptr || params.tile_size < 1)
-        return error(Code::bad_argument, "'" + d.label + "': active tiles without their lists");
     active.rim = stage.extent == compute::Extent::rim;
     for (std::size_t b = 0; b < stage.bindings.size(); ++b) {
         if (stage.bindings[b].access == compute::Access::in || step.buffers[b] == nullptr) continue;
@@ -257,18 +178,14 @@ Status CpuDevice::set_active(const compute::Dispatch& d, const compute::StageInf
 }
 
 void CpuDevice::destroy_program(compute::Program program) {
-    if (program.id == 0) return;
     drain();
-    programs_.erase(program.id);
+    programs_.take(program.id);
 }
 
 Result<compute::Ticket> CpuDevice::submit(compute::Program program, const StepInput& input) {
-    if (auto status = check_lost(); !status) return status;
-    const auto found = programs_.find(program.id);
-    if (found == programs_.end()) return error(Code::bad_argument, "submit of a program that does not exist");
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return queue_.size() < most_in_flight; });
-    queue_.push_back({submitted_ + 1, found->second.get(), input}); // may throw: nothing is counted then
+    queue_.push_back({submitted_ + 1, programs_.find(program.id), input}); // may throw: nothing is counted then
     ++submitted_;
     ++counters_.submits;
     lock.unlock();
@@ -282,15 +199,12 @@ bool CpuDevice::finished(compute::Ticket ticket) {
 }
 
 Status CpuDevice::wait(compute::Ticket ticket) {
-    {
-        std::unique_lock lock(mutex_);
-        changed_.wait(lock, [&] { return done_ >= std::min(ticket.value, submitted_); });
-    }
-    return check_lost();
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [&] { return done_ >= ticket.value; });
+    return ok_status();
 }
 
 Result<std::vector<compute::Timing>> CpuDevice::timings(compute::Ticket ticket) {
-    if (auto status = check_lost(); !status) return status;
     const std::lock_guard lock(mutex_);
     const auto found = timings_.find(ticket.value);
     return found == timings_.end() ? std::vector<compute::Timing>{} : found->second;
@@ -304,7 +218,7 @@ void CpuDevice::device_thread() {
         const Submission next = queue_.front();
         lock.unlock();
         std::vector<compute::Timing> times;
-        if (!lost_) execute(*next.program, next.input, times);
+        execute(*next.program, next.input, times);
         lock.lock();
         queue_.pop_front();
         done_ = next.ticket;

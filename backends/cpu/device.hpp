@@ -1,6 +1,7 @@
 // The compute interface on the CPU's own threads. submit() queues and returns; one device thread runs the queue in order and
 // shares each pass with the pool.
 #pragma once
+#include "backends/common/handle_table.hpp"
 #include "backends/cpu/active_tiles.hpp"
 #include "backends/cpu/thread_pool.hpp"
 #include "engine/compute/device.hpp"
@@ -33,15 +34,12 @@ class CpuDevice final : public compute::Device {
     Status wait(compute::Ticket ticket) override;
     Result<std::vector<compute::Timing>> timings(compute::Ticket ticket) override;
     Result<compute::NativeBuffer> native(compute::Buffer buffer) override;
-    void inject_device_lost() override { lost_ = true; }
 
   private:
     struct Memory {
         std::unique_ptr<std::byte[]> block;
         std::byte* data = nullptr; // 64-byte aligned, staggered
         std::uint64_t bytes = 0;
-        std::string label;
-        bool host = false; // for upload or readback
     };
     /// One operation, ready to run.
     struct Step {
@@ -72,24 +70,17 @@ class CpuDevice final : public compute::Device {
         std::unique_ptr<Progress[]> progress; // per step
         bool small = false;                   // not worth waking other threads for
     };
-    struct CpuPipeline {
-        int stage;
-        std::uint32_t mask; // of the stage's tested effects
-        StageBlock block;
-    };
     struct Submission {
         std::uint64_t ticket;
         Recorded* program;
         StepInput input;
     };
 
-    Status check_lost() const;
-    Memory* find(compute::Buffer buffer);
-    Status check_range(const Memory& memory, std::uint64_t offset, std::uint64_t bytes) const;
+    Memory& at(compute::Buffer buffer) const { return *buffers_.find(buffer.id); }
     void drain();
     void device_thread();
     void execute(Recorded& program, const StepInput& input, std::vector<compute::Timing>& timings);
-    /// Errors: bad_argument (a list that does not exist).
+    /// Errors: internal (more outputs than any stage has).
     Status set_active(const compute::Dispatch& dispatch, const compute::StageInfo& stage, const WorldParams& params, Step& step);
     static void run_rows(Step& step, const WorldParams& params, const StepInput& input, int first, int last);
 
@@ -98,12 +89,9 @@ class CpuDevice final : public compute::Device {
     const bool full_barriers_;
     compute::Capabilities capabilities_;
     compute::DeviceCounters counters_;
-    std::atomic<bool> lost_{false};
-    std::map<std::uint32_t, Memory> buffers_;
-    std::map<std::pair<int, std::uint32_t>, std::uint32_t> pipeline_ids_;
-    std::vector<CpuPipeline> pipelines_; // by id - 1
-    std::map<std::uint32_t, std::unique_ptr<Recorded>> programs_;
-    std::uint32_t next_buffer_ = 1, next_program_ = 1;
+    backends::HandleTable<Memory> buffers_;
+    std::vector<StageBlock> pipelines_; // by id - 1
+    backends::HandleTable<Recorded> programs_;
     std::uint64_t allocated_ = 0;
 
     std::mutex mutex_;

@@ -1,20 +1,14 @@
 #include "backends/cuda/backend.hpp"
 #include "backends/cuda/device.hpp"
 #include "backends/cuda/device_list.hpp"
-#include <new>
 
 namespace wadi::cuda {
 namespace {
 
 std::vector<backends::DeviceInfo> enumerate(std::string& why_none) {
-    try {
-        std::vector<backends::DeviceInfo> list;
-        for (ListedDevice& device : list_devices(why_none)) list.push_back(std::move(device.info));
-        return list;
-    } catch (const std::bad_alloc&) {
-        why_none = "out of memory"; // short enough to need none
-        return {};
-    }
+    std::vector<backends::DeviceInfo> list;
+    for (ListedDevice& device : list_devices(why_none)) list.push_back(std::move(device.info));
+    return list;
 }
 
 } // namespace

@@ -46,7 +46,6 @@ Semaphores::~Semaphores() {
 
 Result<cudaExternalSemaphore_t> Semaphores::find(std::uint64_t semaphore) {
     if (const auto found = imported_.find(semaphore); found != imported_.end()) return found->second;
-    if (semaphore == 0) return error(Code::bad_argument, "the semaphore is null");
     auto descriptor = c_.options.lender->lend_semaphore(semaphore);
     if (!descriptor) return descriptor.status();
     cudaExternalSemaphoreHandleDesc import{};

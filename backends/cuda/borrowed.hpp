@@ -24,7 +24,7 @@ class Semaphores {
     ~Semaphores();
     Semaphores(const Semaphores&) = delete;
     Semaphores& operator=(const Semaphores&) = delete;
-    /// What is submitted next starts after these points. Errors: bad_argument (null), not_supported.
+    /// What is submitted next starts after these points. Errors: not_supported.
     Status wait(std::span<const compute::SyncPoint> points);
     /// Set once what was submitted so far is done.
     Status signal(const compute::SyncPoint& point);

@@ -1,5 +1,6 @@
 #include "backends/cuda/context.hpp"
 #include "backends/cuda/device_list.hpp"
+#include "backends/cuda/stages.hpp"
 #include <algorithm>
 
 namespace wadi::cuda {
@@ -43,6 +44,7 @@ Status read_capabilities(Context& c, const ListedDevice& chosen) {
     c.capabilities.kind = chosen.info.kind;
     c.capabilities.memory_bytes = chosen.info.memory_bytes;
     c.capabilities.largest_buffer_bytes = std::min(chosen.info.memory_bytes, largest_indexed_buffer) / 4 * 4;
+    c.capabilities.groups = {largest_group, largest_group, largest_group, 256};
     c.capabilities.timestamps = true;
     c.capabilities.fused_gain_cells = std::int64_t{1} << 20; // H100: below it too few tiles fill the GPU (engine/README.md)
     c.capabilities.half_storage = true;

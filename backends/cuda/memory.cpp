@@ -45,14 +45,12 @@ void release(Context& c, Memory& memory) {
 // From memory that is not page-locked the driver may read after the call returns (on systems that share their page tables
 // with the GPU), hence the wait.
 Status copy_in(Context& c, const Memory& memory, std::uint64_t offset, std::span<const std::byte> bytes) {
-    if (bytes.empty()) return ok_status();
     const cudaError_t r = cudaMemcpyAsync(memory.data + offset, bytes.data(), bytes.size(), cudaMemcpyDefault, c.stream);
     if (Status s = c.check(r, "write", memory.label); !s) return s;
     return c.check(cudaStreamSynchronize(c.stream), "write", memory.label);
 }
 
 Status copy_out(Context& c, const Memory& memory, std::uint64_t offset, std::span<std::byte> bytes) {
-    if (bytes.empty()) return ok_status();
     const cudaError_t r = cudaMemcpyAsync(bytes.data(), memory.data + offset, bytes.size(), cudaMemcpyDefault, c.stream);
     if (Status s = c.check(r, "read", memory.label); !s) return s;
     return c.check(cudaStreamSynchronize(c.stream), "read", memory.label);
@@ -60,19 +58,11 @@ Status copy_out(Context& c, const Memory& memory, std::uint64_t offset, std::spa
 
 Buffers::~Buffers() {
     const CurrentContext current(c_);
-    for (const auto& b : buffers_) {
-        if (b) release(c_, *b);
-    }
+    buffers_.for_each([&](Memory& memory) { release(c_, memory); });
 }
 
 Result<compute::Buffer> Buffers::create(const compute::BufferDesc& desc) {
-    const std::uint64_t largest = c_.capabilities.largest_buffer_bytes;
-    if (desc.bytes == 0 || desc.bytes > largest) {
-        return error(Code::bad_argument, "size of buffer '" + desc.label + "' is " + std::to_string(desc.bytes) +
-                                             " bytes; allowed on " + c_.capabilities.name + " are 1 to " +
-                                             std::to_string(largest));
-    }
-    buffers_.reserve(buffers_.size() + 1); // so that nothing can fail once the memory exists
+    buffers_.reserve();
     auto owner = std::make_unique<Memory>();
     const bool borrowed = desc.shared && c_.options.lender != nullptr;
     auto memory =
@@ -86,48 +76,12 @@ Result<compute::Buffer> Buffers::create(const compute::BufferDesc& desc) {
         release(c_, *owner);
         return s;
     }
-    buffers_.push_back(std::move(owner));
-    return compute::Buffer{static_cast<std::uint32_t>(buffers_.size())};
+    return compute::Buffer{buffers_.add(std::move(owner))};
 }
 
 void Buffers::destroy(compute::Buffer buffer) {
-    if (find(buffer) == nullptr) return;
-    std::unique_ptr<Memory>& owner = buffers_[buffer.id - 1];
+    const auto owner = buffers_.take(buffer.id);
     release(c_, *owner);
-    owner.reset();
-}
-
-const Memory* Buffers::find(compute::Buffer buffer) const {
-    return buffer.id == 0 || buffer.id > buffers_.size() ? nullptr : buffers_[buffer.id - 1].get();
-}
-
-std::span<std::byte> Buffers::mapped(compute::Buffer buffer) const {
-    const Memory* memory = find(buffer);
-    return memory != nullptr && memory->host ? std::span(memory->data, memory->bytes) : std::span<std::byte>{};
-}
-
-Result<const Memory*> Buffers::find_range(compute::Buffer buffer, std::uint64_t offset, std::uint64_t bytes,
-                                          const char* verb) const {
-    const Memory* memory = find(buffer);
-    if (memory == nullptr) {
-        return error(Code::bad_argument, std::string(verb) + ": no buffer has the handle " + std::to_string(buffer.id));
-    }
-    if (offset > memory->bytes || bytes > memory->bytes - offset) {
-        return error(Code::bad_argument, std::string(verb) + " of buffer '" + memory->label + "': " + std::to_string(bytes) +
-                                             " bytes at offset " + std::to_string(offset) + " are outside its " +
-                                             std::to_string(memory->bytes) + " bytes");
-    }
-    return memory;
-}
-
-Status Buffers::write(compute::Buffer buffer, std::uint64_t offset, std::span<const std::byte> bytes) {
-    auto memory = find_range(buffer, offset, bytes.size(), "write");
-    return memory ? copy_in(c_, **memory, offset, bytes) : memory.status();
-}
-
-Status Buffers::read(compute::Buffer buffer, std::uint64_t offset, std::span<std::byte> bytes) {
-    auto memory = find_range(buffer, offset, bytes.size(), "read");
-    return memory ? copy_out(c_, **memory, offset, bytes) : memory.status();
 }
 
 } // namespace wadi::cuda

@@ -1,9 +1,9 @@
 // Device memory: the engine's buffers by handle, zeroed when made, and copies to and from the host.
 #pragma once
+#include "backends/common/handle_table.hpp"
 #include "backends/cuda/borrowed.hpp"
 #include <cstddef>
 #include <span>
-#include <vector>
 
 namespace wadi::cuda {
 
@@ -28,24 +28,16 @@ class Buffers {
     ~Buffers();
     Buffers(const Buffers&) = delete;
     Buffers& operator=(const Buffers&) = delete;
-    /// Errors: bad_argument (size), out_of_memory.
+    /// Errors: out_of_memory.
     Result<compute::Buffer> create(const compute::BufferDesc& desc);
     /// Nothing may use the buffer any more.
     void destroy(compute::Buffer buffer);
     /// Null for a handle that is not alive.
-    const Memory* find(compute::Buffer buffer) const;
-
-    /// Empty unless made for the host.
-    std::span<std::byte> mapped(compute::Buffer buffer) const;
-
-    Status write(compute::Buffer buffer, std::uint64_t offset, std::span<const std::byte> bytes);
-    Status read(compute::Buffer buffer, std::uint64_t offset, std::span<std::byte> bytes);
+    const Memory* find(compute::Buffer buffer) const { return buffers_.find(buffer.id); }
 
   private:
-    Result<const Memory*> find_range(compute::Buffer buffer, std::uint64_t offset, std::uint64_t bytes, const char* verb) const;
-
     Context& c_;
-    std::vector<std::unique_ptr<Memory>> buffers_; // handle id - 1 is the place; ids are never used again
+    backends::HandleTable<Memory> buffers_;
 };
 
 } // namespace wadi::cuda

@@ -6,20 +6,16 @@
 namespace wadi::cuda {
 
 struct StagePipeline {
-    int stage = -1;
-    std::uint32_t effects = 0; // those that the stage tests
     int group_x = 0, group_y = 0;
-    bool active_tiles = false;
     const void* kernel = nullptr;
 };
 
 class Pipelines {
   public:
     explicit Pipelines(Context& context) : c_(context) {}
-    /// Errors: bad_argument (stage, group size), not_supported (no code for this GPU), out_of_memory.
+    /// Errors: not_supported (no code for this GPU), out_of_memory.
     Result<compute::Pipeline> create(int stage, std::uint32_t effects, compute::GroupSize group);
-    /// Null for a handle that was never given out.
-    const StagePipeline* find(compute::Pipeline pipeline) const;
+    const StagePipeline& at(compute::Pipeline pipeline) const { return pipelines_[pipeline.id - 1]; }
 
   private:
     Context& c_;

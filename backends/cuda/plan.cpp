@@ -56,98 +56,54 @@ std::vector<std::vector<int>> plan_waits(const std::vector<compute::Op>& ops, bo
 
 class Planner {
   public:
-    Planner(const Context& context, const Buffers& buffers, const Pipelines& pipelines, const compute::ProgramBuilder& builder)
-        : c_(context), buffers_(buffers), pipelines_(pipelines), builder_(builder) {}
+    Planner(const Buffers& buffers, const Pipelines& pipelines, const compute::ProgramBuilder& builder)
+        : buffers_(buffers), pipelines_(pipelines), builder_(builder) {}
 
     Result<Call> plan(const compute::Dispatch& d) const {
-        const std::string where = "dispatch '" + d.label + "'";
-        const StagePipeline* pipeline = pipelines_.find(d.pipeline);
-        if (pipeline == nullptr)
-            return fail(Code::bad_argument, where, "no pipeline has the handle " + std::to_string(d.pipeline.id));
+        const StagePipeline& pipeline = pipelines_.at(d.pipeline);
         const compute::StageInfo& info = compute::stage_table()[static_cast<std::size_t>(d.stage)];
-        if (pipeline->stage != d.stage || pipeline->effects != (d.effects & info.tested_effects)) {
-            return fail(Code::bad_argument, where,
-                        "the pipeline was made for another stage or other effects than " + std::string(info.name));
-        }
-        if (pipeline->active_tiles != d.tiles.on())
-            return fail(Code::bad_argument, where, "the pipeline was made with or without active tiles, the dispatch is not");
-        KernelCall call{pipeline->kernel, {}, {}, {}, {}};
-        for (std::size_t slot = 0; slot < info.bindings.size(); ++slot) {
-            const compute::StageBinding& binding = info.bindings[slot];
-            const bool on = (d.effects & binding.condition) == binding.condition;
-            const Memory* memory = on ? buffers_.find(d.slots[slot]) : nullptr;
-            if (on && memory == nullptr) {
-                return fail(Code::bad_argument, where,
-                            "no buffer has the handle " + std::to_string(d.slots[slot].id) + " of binding " +
-                                std::string(binding.name));
-            }
-            if (on && memory->host) return fail(Code::bad_argument, where, compute::only_copies(memory->label));
-            call.slots.push_back(on ? memory->data : nullptr);
-        }
+        KernelCall call{pipeline.kernel, {}, {}, {}, {}};
+        for (const auto& binding : info.bindings)
+            call.slots.push_back(binding.exists(d.effects) ? at(d.slots[static_cast<std::size_t>(binding.slot)]).data : nullptr);
         if (call.slots.empty()) call.slots.push_back(nullptr); // the kernel's struct of slots holds at least one
         if (d.tiles.on()) {
-            std::size_t n = 0;
-            for (const compute::Buffer list : {d.tiles.list, d.tiles.dispatch, d.tiles.activity}) {
-                const Memory* memory = buffers_.find(list);
-                if (memory == nullptr || memory->host) return fail(Code::bad_argument, where, "active tiles without their lists");
-                call.tiles[n++] = memory->data;
-            }
+            call.tiles = {at(d.tiles.list).data, at(d.tiles.dispatch).data, at(d.tiles.activity).data};
         }
         if (d.range.i1 <= d.range.i0 || d.range.j1 <= d.range.j0) return Call(NoCall{});
         const auto groups = [](int first, int last, int size) {
             return static_cast<std::uint32_t>((last - first - 1) / size + 1);
         };
-        const int columns = info.fused() ? FUSED_COLUMNS : pipeline->group_x;
-        const int rows = info.fused() ? FUSED_ROWS : pipeline->group_y;
+        const int columns = info.fused() ? FUSED_COLUMNS : pipeline.group_x;
+        const int rows = info.fused() ? FUSED_ROWS : pipeline.group_y;
         call.groups = dim3(groups(d.range.i0, d.range.i1, columns), groups(d.range.j0, d.range.j1, rows));
-        call.threads = dim3(static_cast<std::uint32_t>(pipeline->group_x), static_cast<std::uint32_t>(pipeline->group_y));
+        call.threads = dim3(static_cast<std::uint32_t>(pipeline.group_x), static_cast<std::uint32_t>(pipeline.group_y));
         // Enough groups to fill the GPU; each takes every so many-th tile of the list.
         if (d.tiles.on() && info.extent != compute::Extent::rim) call.groups = dim3(active_groups);
         if (call.groups.x > most_groups_x || call.groups.y > most_groups_y) {
-            return fail(Code::not_supported, where,
-                        std::to_string(call.groups.x) + " x " + std::to_string(call.groups.y) + " groups; CUDA allows " +
-                            std::to_string(most_groups_x) + " x " + std::to_string(most_groups_y));
+            return error(Code::not_supported, "program '" + builder_.label() + "', dispatch '" + d.label +
+                                                  "': " + std::to_string(call.groups.x) + " x " + std::to_string(call.groups.y) +
+                                                  " groups; CUDA allows " + std::to_string(most_groups_x) + " x " +
+                                                  std::to_string(most_groups_y));
         }
         return Call(std::move(call));
     }
 
     Result<Call> plan(const compute::Copy& copy) const {
-        const Memory* from = buffers_.find(copy.from);
-        const Memory* to = buffers_.find(copy.to);
-        if (from == nullptr || to == nullptr) {
-            return fail(Code::bad_argument, "copy",
-                        "no buffer has the handle " + std::to_string((from == nullptr ? copy.from : copy.to).id));
-        }
-        const auto outside = [&](const Memory& m, std::uint64_t offset) {
-            return offset > m.bytes || copy.bytes > m.bytes - offset;
-        };
-        if (outside(*from, copy.from_offset) || outside(*to, copy.to_offset)) {
-            return fail(Code::bad_argument, "copy from '" + from->label + "' to '" + to->label + "'",
-                        std::to_string(copy.bytes) + " bytes from offset " + std::to_string(copy.from_offset) + " to " +
-                            std::to_string(copy.to_offset) + " reach past the " + std::to_string(from->bytes) + " and " +
-                            std::to_string(to->bytes) + " bytes of the buffers");
-        }
         if (copy.bytes == 0) return Call(NoCall{});
-        return Call(CopyCall{to->data + copy.to_offset, from->data + copy.from_offset, copy.bytes});
+        return Call(CopyCall{at(copy.to).data + copy.to_offset, at(copy.from).data + copy.from_offset, copy.bytes});
     }
 
     Result<Call> plan(const compute::Fill& fill) const {
-        const Memory* memory = buffers_.find(fill.buffer);
-        if (memory == nullptr)
-            return fail(Code::bad_argument, "fill", "no buffer has the handle " + std::to_string(fill.buffer.id));
-        if (memory->host) return fail(Code::bad_argument, "fill", compute::only_copies(memory->label));
-        if (memory->bytes < 4) return Call(NoCall{});
-        return Call(FillCall{memory->data, memory->bytes / 4, fill.word});
+        const Memory& memory = at(fill.buffer);
+        if (memory.bytes < 4) return Call(NoCall{});
+        return Call(FillCall{memory.data, memory.bytes / 4, fill.word});
     }
 
     Result<Call> plan(const compute::Timestamp&) { return Call(TimestampCall{timestamps_++}); }
 
   private:
-    Status fail(Code code, const std::string& where, const std::string& what) const {
-        return error(code, "program '" + builder_.label() + "', " + where + ": " + what);
-    }
+    const Memory& at(compute::Buffer buffer) const { return *buffers_.find(buffer); }
 
-    const Context& c_;
     const Buffers& buffers_;
     const Pipelines& pipelines_;
     const compute::ProgramBuilder& builder_;
@@ -158,7 +114,7 @@ class Planner {
 
 Result<Plan> plan_calls(const Context& context, const Buffers& buffers, const Pipelines& pipelines,
                         const compute::ProgramBuilder& builder) {
-    Planner planner(context, buffers, pipelines, builder);
+    Planner planner(buffers, pipelines, builder);
     Plan plan;
     for (const compute::Op& op : builder.ops()) {
         auto call = std::visit([&](const auto& o) { return planner.plan(o); }, op);

@@ -36,7 +36,7 @@ struct Plan {
     std::vector<std::vector<int>> waits; // for each call the earlier calls it waits for
 };
 
-/// Errors: bad_argument (handles, ranges), not_supported (too many groups).
+/// Errors: not_supported (too many groups).
 Result<Plan> plan_calls(const Context& context, const Buffers& buffers, const Pipelines& pipelines,
                         const compute::ProgramBuilder& builder);
 

@@ -1,5 +1,4 @@
 #include "backends/cuda/program.hpp"
-#include "engine/compute/hazards.hpp"
 
 namespace wadi::cuda {
 namespace {
@@ -24,7 +23,6 @@ struct GraphOwner {
 
 Result<std::unique_ptr<CompiledProgram>>
 CompiledProgram::compile(const ProgramParts& parts, const compute::ProgramBuilder& builder, const WorldParams& params) {
-    if (Status s = compute::validate(builder); !s) return s;
     auto plan = plan_calls(parts.context, parts.buffers, parts.pipelines, builder);
     if (!plan) return plan.status();
     std::unique_ptr<CompiledProgram> program(new CompiledProgram(parts.context, params, parts.submissions.input()));

@@ -11,7 +11,7 @@ __global__ void run(const Operands* operands, float* results, unsigned tries) {
     if (n >= tries) return;
     const float a = operands[n].a;
     const float b = operands[n].b;
-    float* r = results + 6 * n; // results_per_try
+    float* r = results + 6 * n; // exact_float_results_per_try
     r[0] = a + b;
     r[1] = a - b;
     r[2] = a * b;

@@ -24,7 +24,7 @@ class Submissions {
     Status begin(std::size_t slot, const StepInput& input);
     Result<compute::Ticket> finish(std::size_t slot, compute::Program program);
 
-    /// Errors: bad_argument (a ticket that was never given out), device_lost.
+    /// Errors: device_lost.
     Result<bool> finished(compute::Ticket ticket);
     Status wait(compute::Ticket ticket);
     /// The program that a ticket ran; null once its slot is in use again.
@@ -37,7 +37,6 @@ class Submissions {
         compute::Program program;
         std::uint64_t ticket = 0;
     };
-    Status check_given_out(compute::Ticket ticket) const;
 
     Context& c_;
     Memory input_;

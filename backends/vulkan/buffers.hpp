@@ -1,8 +1,7 @@
 // The buffers that the engine made, by handle, and the null buffer that stands in for absent ones.
 #pragma once
+#include "backends/common/handle_table.hpp"
 #include "backends/vulkan/memory.hpp"
-#include <memory>
-#include <vector>
 
 namespace wadi::vulkan {
 
@@ -13,34 +12,26 @@ class Buffers {
     Buffers(const Buffers&) = delete;
     Buffers& operator=(const Buffers&) = delete;
     Status open();
-    /// Errors: bad_argument (size), out_of_memory.
+    /// Errors: out_of_memory.
     Result<compute::Buffer> create(const compute::BufferDesc& desc);
     /// Nothing may use the buffer any more.
     void destroy(compute::Buffer buffer);
     /// Null for a handle that is not alive.
-    const Memory* find(compute::Buffer buffer) const;
+    const Memory* find(compute::Buffer buffer) const { return buffers_.find(buffer.id); }
     /// Bound where a condition is off; no stage touches it. The validation layers do not know that: what they take for a write
     /// of one set and a read of the next must not meet, so each set of a program has a slice of its own.
     VkDescriptorBufferInfo null_slice(std::uint64_t set) const {
         return {null_.buffer, (set % null_slices) * null_slice_bytes, null_slice_bytes};
     }
 
-    /// Empty unless made for the host.
-    std::span<std::byte> mapped(compute::Buffer buffer) const;
-
-    Status write(compute::Buffer buffer, std::uint64_t offset, std::span<const std::byte> bytes);
-    Status read(compute::Buffer buffer, std::uint64_t offset, std::span<std::byte> bytes);
-
   private:
     static constexpr std::uint64_t null_slice_bytes = 256; // the largest minStorageBufferOffsetAlignment that is allowed
     static constexpr std::uint64_t null_slices = 256;      // more than the sets of the longest program
 
-    Result<const Memory*> find_range(compute::Buffer buffer, std::uint64_t offset, std::uint64_t bytes, const char* verb) const;
-
     Context& c_;
     Transfers& transfers_;
     Memory null_;
-    std::vector<std::unique_ptr<Memory>> buffers_; // handle id - 1 is the place; ids are never used again
+    backends::HandleTable<Memory> buffers_;
 };
 
 } // namespace wadi::vulkan

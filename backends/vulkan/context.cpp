@@ -44,10 +44,12 @@ void read_properties(Context& c, const PhysicalDevice& chosen) {
 
     const VkPhysicalDeviceLimits& limits = properties.properties.limits;
     for (int axis = 0; axis < 2; ++axis) {
-        c.limits.group_size[axis] = limits.maxComputeWorkGroupSize[axis];
         c.limits.group_count[axis] = limits.maxComputeWorkGroupCount[axis];
     }
-    c.limits.group_threads = limits.maxComputeWorkGroupInvocations;
+    const auto number = [](std::uint32_t limit) { return static_cast<int>(std::min(limit, std::uint32_t{1} << 30)); };
+    auto& groups = c.capabilities.groups;
+    groups = {number(limits.maxComputeWorkGroupSize[0]), number(limits.maxComputeWorkGroupSize[1]),
+              number(limits.maxComputeWorkGroupInvocations), 64};
     c.limits.storage_buffers = std::min(limits.maxPerStageDescriptorStorageBuffers, limits.maxDescriptorSetStorageBuffers);
     c.limits.timestamp_nanoseconds = static_cast<double>(limits.timestampPeriod);
     const std::uint32_t bits = chosen.timestamp_bits;
@@ -55,10 +57,10 @@ void read_properties(Context& c, const PhysicalDevice& chosen) {
 
     std::size_t bindings = 0;
     for (const auto& stage : compute::stage_table()) bindings = std::max(bindings, stage.fused() ? stage.bindings.size() : 0);
-    c.capabilities.fused_stages =
-        c.limits.group_size[0] >= compute::fused_group_x && c.limits.group_size[1] >= compute::fused_group_y &&
-        c.limits.group_threads >= compute::fused_group_x * compute::fused_group_y &&
-        limits.maxComputeSharedMemorySize >= compute::fused_shared_bytes && c.limits.storage_buffers >= bindings;
+    c.capabilities.fused_stages = groups.x >= int{compute::fused_group_x} && groups.y >= int{compute::fused_group_y} &&
+                                  groups.threads >= int{compute::fused_group_x * compute::fused_group_y} &&
+                                  limits.maxComputeSharedMemorySize >= compute::fused_shared_bytes &&
+                                  c.limits.storage_buffers >= bindings;
     // H100: below it too few tiles fill the GPU (engine/README.md). A software device gains nothing.
     const bool gpu = chosen.info.kind != compute::DeviceKind::software_gpu && chosen.info.kind != compute::DeviceKind::cpu;
     c.capabilities.fused_gain_cells = gpu ? std::int64_t{1} << 18 : 0;

@@ -9,8 +9,6 @@ namespace wadi::vulkan {
 
 /// Numbers of the physical device that the backend respects.
 struct Limits {
-    std::uint32_t group_size[2] = {}; // threads along i and j
-    std::uint32_t group_threads = 0;  // in all
     std::uint32_t group_count[2] = {};
     std::uint32_t storage_buffers = 0; // of one stage
     double timestamp_nanoseconds = 0;  // of one tick

@@ -2,7 +2,6 @@
 #include "backends/vulkan/memory.hpp"
 #include <algorithm>
 #include <map>
-#include <new>
 
 namespace wadi::vulkan {
 namespace {
@@ -68,24 +67,18 @@ class VulkanLender final : public compute::Lender {
 } // namespace
 
 Result<std::shared_ptr<compute::Lender>> lend(const compute::DeviceOptions& options) {
-    using Lent = Result<std::shared_ptr<compute::Lender>>;
-    try {
-        auto context = Context::open(0, options);
-        if (!context) return context.status();
-        const Context& c = **context;
-        const auto lacks = [&](const char* what) {
-            return error(Code::not_supported,
-                         "CUDA beside the host's Vulkan device " + c.capabilities.name + ": the device was created without " +
-                             what +
-                             "; without it run on a device of your own and read host outputs (wadi_world_set_host_outputs)");
-        };
-        if (c.vk.vkGetMemoryFdKHR == nullptr) return lacks(VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME);
-        if (c.vk.vkGetSemaphoreFdKHR == nullptr) return lacks(VK_KHR_EXTERNAL_SEMAPHORE_FD_EXTENSION_NAME);
-        if (!c.timeline) return lacks("timeline semaphores (wadi_vulkan_host.timeline_semaphore)");
-        return Lent(std::make_shared<VulkanLender>(std::move(*context)));
-    } catch (const std::bad_alloc&) {
-        return error(Code::out_of_memory, "out of memory"); // short enough to need none
-    }
+    auto context = Context::open(0, options);
+    if (!context) return context.status();
+    const Context& c = **context;
+    const auto lacks = [&](const char* what) {
+        return error(Code::not_supported,
+                     "CUDA beside the host's Vulkan device " + c.capabilities.name + ": the device was created without " + what +
+                         "; without it run on a device of your own and read host outputs (wadi_world_set_host_outputs)");
+    };
+    if (c.vk.vkGetMemoryFdKHR == nullptr) return lacks(VK_KHR_EXTERNAL_MEMORY_FD_EXTENSION_NAME);
+    if (c.vk.vkGetSemaphoreFdKHR == nullptr) return lacks(VK_KHR_EXTERNAL_SEMAPHORE_FD_EXTENSION_NAME);
+    if (!c.timeline) return lacks("timeline semaphores (wadi_vulkan_host.timeline_semaphore)");
+    return std::shared_ptr<compute::Lender>(std::make_shared<VulkanLender>(std::move(*context)));
 }
 
 } // namespace wadi::vulkan

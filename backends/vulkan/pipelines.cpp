@@ -1,43 +1,8 @@
 #include "backends/vulkan/pipelines.hpp"
 #include "engine/compute/stage_table.hpp"
-#include <algorithm>
 #include <cstddef>
 
 namespace wadi::vulkan {
-namespace {
-
-// Threads of a group where the caller leaves it open: 64x4 suits stencils (GPU measurements), rim stages have one row.
-Constants default_group(compute::Extent extent, const Limits& limits) {
-    Constants group;
-    group.group_x = std::min({64u, limits.group_size[0], limits.group_threads});
-    const std::uint32_t rows = extent == compute::Extent::rim ? 1u : 4u;
-    group.group_y = std::min({rows, limits.group_size[1], limits.group_threads / group.group_x});
-    return group;
-}
-
-Result<Constants> choose_group(const compute::StageInfo& info, compute::GroupSize asked, const Limits& limits) {
-    Constants group = default_group(info.extent, limits);
-    if (asked.tile > 0 && !info.marks)
-        return error(Code::bad_argument, "stage " + std::string(info.name) + " cannot run over active tiles");
-    group.active_tiles = asked.tile > 0 ? 1 : 0;
-    if (info.fused())
-        asked = {int{compute::fused_group_x}, int{compute::fused_group_y}, 0}; // the only groups that it is written for
-    // As list_active_tiles counts the groups of a tile.
-    if (asked.tile > 0 && info.extent != compute::Extent::rim)
-        asked = {asked.tile, std::min(asked.tile, 256 / asked.tile), asked.tile};
-    const bool negative = asked.x < 0 || asked.y < 0;
-    if (asked.x > 0) group.group_x = static_cast<std::uint32_t>(asked.x);
-    if (asked.y > 0) group.group_y = static_cast<std::uint32_t>(asked.y);
-    const bool fits = group.group_x <= limits.group_size[0] && group.group_y <= limits.group_size[1] &&
-                      std::uint64_t{group.group_x} * group.group_y <= limits.group_threads;
-    if (!negative && fits) return group;
-    return error(Code::bad_argument, "group size of stage " + std::string(info.name) + " is " + std::to_string(asked.x) + " x " +
-                                         std::to_string(asked.y) + "; allowed are 0 to " + std::to_string(limits.group_size[0]) +
-                                         " x 0 to " + std::to_string(limits.group_size[1]) + " and at most " +
-                                         std::to_string(limits.group_threads) + " threads");
-}
-
-} // namespace
 
 Result<VkDescriptorSetLayout> create_set_layout(Context& c, std::uint32_t uniforms, std::uint32_t storage,
                                                 std::string_view label) {
@@ -147,39 +112,17 @@ Status Pipelines::prepare_stage(int stage, bool half) {
 }
 
 Result<compute::Pipeline> Pipelines::create(int stage, std::uint32_t effects, compute::GroupSize group) {
-    const auto table = compute::stage_table();
-    if (stage < 0 || stage >= static_cast<int>(table.size())) {
-        return error(Code::bad_argument, "stage index " + std::to_string(stage) + " is outside 0 to " +
-                                             std::to_string(static_cast<int>(table.size()) - 1));
-    }
-    const compute::StageInfo& info = table[static_cast<std::size_t>(stage)];
-    auto constants = choose_group(info, group, c_.limits);
-    if (!constants) return constants.status();
-    constants->effects = effects & info.tested_effects;
-    constants->corrected_division = c_.corrected_division ? 1 : 0;
-    const auto same = [&](const StagePipeline& p) {
-        return p.stage == stage && p.effects == constants->effects && p.group_x == constants->group_x &&
-               p.group_y == constants->group_y && p.active_tiles == (constants->active_tiles != 0);
-    };
-    const auto known = std::find_if(pipelines_.begin(), pipelines_.end(), same);
-    if (known != pipelines_.end()) return compute::Pipeline{static_cast<std::uint32_t>(known - pipelines_.begin()) + 1};
-
-    const bool half = (constants->effects & EFFECT_HALF_STORAGE) != 0; // no stage asks for it but those with a module for it
-    if (half && !c_.capabilities.half_storage)
-        return error(Code::not_supported, c_.capabilities.name + " has no buffers of 16-bit floats, or no leave to use them");
+    const Constants constants{effects, static_cast<std::uint32_t>(group.x), static_cast<std::uint32_t>(group.y),
+                              c_.corrected_division ? 1 : 0, group.tile > 0 ? 1u : 0u};
+    const bool half = (effects & EFFECT_HALF_STORAGE) != 0; // no stage asks for it but those with a module for it
     if (Status s = prepare_stage(stage, half); !s) return s;
     pipelines_.reserve(pipelines_.size() + 1); // so that nothing can fail once the pipeline exists
     const StageObjects& objects = stages_[static_cast<std::size_t>(stage)];
-    auto handle =
-        create_compute_pipeline(c_, cache_, half ? objects.half_module : objects.module, objects.layout, *constants, info.name);
+    auto handle = create_compute_pipeline(c_, cache_, half ? objects.half_module : objects.module, objects.layout, constants,
+                                          compute::stage_table()[static_cast<std::size_t>(stage)].name);
     if (!handle) return handle.status();
-    pipelines_.push_back(
-        {stage, constants->effects, constants->group_x, constants->group_y, constants->active_tiles != 0, *handle});
+    pipelines_.push_back({constants.group_x, constants.group_y, *handle});
     return compute::Pipeline{static_cast<std::uint32_t>(pipelines_.size())};
-}
-
-const StagePipeline* Pipelines::find(compute::Pipeline pipeline) const {
-    return pipeline.id == 0 || pipeline.id > pipelines_.size() ? nullptr : &pipelines_[pipeline.id - 1];
 }
 
 } // namespace wadi::vulkan

@@ -37,10 +37,7 @@ struct StageObjects {
 };
 
 struct StagePipeline {
-    int stage = -1;
-    std::uint32_t effects = 0; // only bits that the stage tests
     std::uint32_t group_x = 0, group_y = 0;
-    bool active_tiles = false;
     VkPipeline handle = VK_NULL_HANDLE;
 };
 
@@ -52,10 +49,9 @@ class Pipelines {
     Pipelines(const Pipelines&) = delete;
     Pipelines& operator=(const Pipelines&) = delete;
     Status open();
-    /// Errors: bad_argument (stage, group size), not_supported (no SPIR-V, too many bindings), out_of_memory.
+    /// Errors: not_supported (no SPIR-V, too many bindings), out_of_memory.
     Result<compute::Pipeline> create(int stage, std::uint32_t effects, compute::GroupSize group);
-    /// Null for a handle that was never given out.
-    const StagePipeline* find(compute::Pipeline pipeline) const;
+    const StagePipeline& at(compute::Pipeline pipeline) const { return pipelines_[pipeline.id - 1]; }
     /// Of a stage that has a pipeline.
     const StageObjects& stage(int index) const { return stages_[static_cast<std::size_t>(index)]; }
 

@@ -6,7 +6,7 @@
 namespace wadi::vulkan {
 namespace {
 
-using SetKey = std::pair<int, std::vector<std::uint32_t>>; // stage and the ids of its slots
+using SetKey = std::pair<int, std::vector<std::uint32_t>>; // stage and the ids of its slots, 0 where nothing is bound
 
 Kinds kinds_of(const compute::Op& op) {
     return {std::holds_alternative<compute::Dispatch>(op),
@@ -71,45 +71,19 @@ class Planner {
         if (const auto* d = over_tiles(op)) groups_seen_ = d->tiles.dispatch;
     }
 
-    Status fail(Code code, const std::string& where, const std::string& what) const {
-        return error(code, "program '" + builder_.label() + "', " + where + ": " + what);
+    Status too_many(const compute::Dispatch& d, const std::string& what, const std::string& most) const {
+        return error(Code::not_supported, "program '" + builder_.label() + "', dispatch '" + d.label + "': " + what + "; " +
+                                              c_.capabilities.name + " allows " + most);
     }
 
     static bool marks(int stage) { return compute::stage_table()[static_cast<std::size_t>(stage)].marks; }
 
     static SetKey key_of(const compute::Dispatch& d) {
         SetKey key{d.stage, {}};
-        for (const compute::Buffer b : d.slots) key.second.push_back(b.id);
+        for (const auto& binding : compute::stage_table()[static_cast<std::size_t>(d.stage)].bindings)
+            key.second.push_back(binding.exists(d.effects) ? d.slots[static_cast<std::size_t>(binding.slot)].id : 0);
         if (marks(d.stage)) key.second.insert(key.second.end(), {d.tiles.list.id, d.tiles.activity.id});
         return key;
-    }
-
-    Status check_dispatch(const compute::Dispatch& d) const {
-        const std::string where = "dispatch '" + d.label + "'";
-        const StagePipeline* pipeline = p_.pipelines.find(d.pipeline);
-        if (pipeline == nullptr)
-            return fail(Code::bad_argument, where, "no pipeline has the handle " + std::to_string(d.pipeline.id));
-        const compute::StageInfo& info = compute::stage_table()[static_cast<std::size_t>(d.stage)];
-        if (pipeline->stage != d.stage || pipeline->effects != (d.effects & info.tested_effects)) {
-            return fail(Code::bad_argument, where,
-                        "the pipeline was made for another stage or other effects than " + std::string(info.name));
-        }
-        if (pipeline->active_tiles != d.tiles.on())
-            return fail(Code::bad_argument, where, "the pipeline was made with or without active tiles, the dispatch is not");
-        for (const compute::Buffer b : {d.tiles.activity, d.tiles.list, d.tiles.dispatch}) {
-            if (d.tiles.on() && (p_.buffers.find(b) == nullptr || !p_.buffers.mapped(b).empty()))
-                return fail(Code::bad_argument, where, "active tiles without their lists");
-        }
-        for (std::size_t slot = 0; slot < d.slots.size(); ++slot) {
-            if (d.slots[slot].id != 0 && p_.buffers.find(d.slots[slot]) == nullptr) {
-                return fail(Code::bad_argument, where,
-                            "no buffer has the handle " + std::to_string(d.slots[slot].id) + " of binding " +
-                                std::string(info.bindings[slot].name));
-            }
-            if (!p_.buffers.mapped(d.slots[slot]).empty())
-                return fail(Code::bad_argument, where, compute::only_copies(p_.buffers.find(d.slots[slot])->label));
-        }
-        return ok_status();
     }
 
     // Dispatches of one stage with the same buffers share a set.
@@ -118,7 +92,6 @@ class Planner {
         for (const compute::Op& op : builder_.ops()) {
             const auto* d = std::get_if<compute::Dispatch>(&op);
             if (d == nullptr) continue;
-            if (Status s = check_dispatch(*d); !s) return s;
             if (sets_.emplace(key_of(*d), VkDescriptorSet{VK_NULL_HANDLE}).second)
                 storage += static_cast<std::uint32_t>(key_of(*d).second.size());
         }
@@ -173,7 +146,7 @@ class Planner {
     Status add(const compute::Dispatch& d) {
         if (d.range.i1 <= d.range.i0 || d.range.j1 <= d.range.j0) return ok_status();
         if (over_tiles(d) != nullptr) return add_over_tiles(d);
-        const StagePipeline& pipeline = *p_.pipelines.find(d.pipeline);
+        const StagePipeline& pipeline = p_.pipelines.at(d.pipeline);
         const auto groups = [](int first, int last, std::uint32_t size) {
             return (static_cast<std::uint32_t>(last - first) + size - 1) / size;
         };
@@ -182,8 +155,7 @@ class Planner {
         const auto rows = info.fused() ? std::uint32_t{FUSED_ROWS} : pipeline.group_y;
         const std::uint32_t x = groups(d.range.i0, d.range.i1, columns), y = groups(d.range.j0, d.range.j1, rows);
         if (x > c_.limits.group_count[0] || y > c_.limits.group_count[1]) {
-            return fail(Code::not_supported, "dispatch '" + d.label + "'",
-                        std::to_string(x) + " x " + std::to_string(y) + " groups; " + c_.capabilities.name + " allows " +
+            return too_many(d, std::to_string(x) + " x " + std::to_string(y) + " groups",
                             std::to_string(c_.limits.group_count[0]) + " x " + std::to_string(c_.limits.group_count[1]));
         }
         plan_.commands.emplace_back(
@@ -194,47 +166,26 @@ class Planner {
     Status add_over_tiles(const compute::Dispatch& d) {
         const Memory* list = p_.buffers.find(d.tiles.list);
         if (list->bytes / 4 > c_.limits.group_count[0]) {
-            return fail(Code::not_supported, "dispatch '" + d.label + "'",
-                        std::to_string(list->bytes / 4) + " active tiles; " + c_.capabilities.name + " allows " +
-                            std::to_string(c_.limits.group_count[0]));
+            return too_many(d, std::to_string(list->bytes / 4) + " active tiles", std::to_string(c_.limits.group_count[0]));
         }
         const VkBuffer groups = p_.buffers.find(d.tiles.dispatch)->buffer;
         const bool fused = compute::stage_table()[static_cast<std::size_t>(d.stage)].fused();
-        plan_.commands.emplace_back(DispatchCommand{p_.pipelines.find(d.pipeline)->handle, p_.pipelines.stage(d.stage).layout,
+        plan_.commands.emplace_back(DispatchCommand{p_.pipelines.at(d.pipeline).handle, p_.pipelines.stage(d.stage).layout,
                                                     sets_.at(key_of(d)), 0, 0, groups, fused ? VkDeviceSize{16} : 0});
         return ok_status();
     }
 
     Status add(const compute::Copy& copy) {
-        const Memory* from = p_.buffers.find(copy.from);
-        const Memory* to = p_.buffers.find(copy.to);
-        if (from == nullptr || to == nullptr) {
-            return fail(Code::bad_argument, "copy",
-                        "no buffer has the handle " + std::to_string((from == nullptr ? copy.from : copy.to).id));
-        }
-        const std::string where = "copy from '" + from->label + "' to '" + to->label + "'";
-        const auto outside = [&](const Memory& m, std::uint64_t offset) {
-            return offset > m.bytes || copy.bytes > m.bytes - offset;
-        };
-        if (outside(*from, copy.from_offset) || outside(*to, copy.to_offset)) {
-            return fail(Code::bad_argument, where,
-                        std::to_string(copy.bytes) + " bytes from offset " + std::to_string(copy.from_offset) + " to " +
-                            std::to_string(copy.to_offset) + " reach past the " + std::to_string(from->bytes) + " and " +
-                            std::to_string(to->bytes) + " bytes of the buffers");
-        }
-        if (copy.bytes > 0) {
-            plan_.commands.emplace_back(CopyCommand{from->buffer, to->buffer, {copy.from_offset, copy.to_offset, copy.bytes}});
-            host_reads_ |= to->mapped != nullptr;
-        }
+        if (copy.bytes == 0) return ok_status();
+        const Memory& to = *p_.buffers.find(copy.to);
+        plan_.commands.emplace_back(
+            CopyCommand{p_.buffers.find(copy.from)->buffer, to.buffer, {copy.from_offset, copy.to_offset, copy.bytes}});
+        host_reads_ |= to.mapped != nullptr;
         return ok_status();
     }
 
     Status add(const compute::Fill& fill) {
-        const Memory* memory = p_.buffers.find(fill.buffer);
-        if (memory == nullptr)
-            return fail(Code::bad_argument, "fill", "no buffer has the handle " + std::to_string(fill.buffer.id));
-        if (memory->mapped != nullptr) return fail(Code::bad_argument, "fill", compute::only_copies(memory->label));
-        plan_.commands.emplace_back(FillCommand{memory->buffer, fill.word});
+        plan_.commands.emplace_back(FillCommand{p_.buffers.find(fill.buffer)->buffer, fill.word});
         return ok_status();
     }
 

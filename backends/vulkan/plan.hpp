@@ -9,7 +9,7 @@ struct Plan {
     std::vector<Command> commands;
 };
 
-/// Resolves a program that validate() accepted. Writes every descriptor set that it will ever need.
+/// Resolves a program that the front end accepted. Writes every descriptor set that it will ever need.
 Status plan_commands(const ProgramParts& parts, const compute::ProgramBuilder& builder, VkBuffer params, Plan& plan);
 
 } // namespace wadi::vulkan

@@ -1,12 +1,10 @@
 #include "backends/vulkan/program.hpp"
 #include "backends/vulkan/plan.hpp"
-#include "engine/compute/hazards.hpp"
 
 namespace wadi::vulkan {
 
 Result<std::unique_ptr<CompiledProgram>>
 CompiledProgram::compile(const ProgramParts& parts, const compute::ProgramBuilder& builder, const WorldParams& params) {
-    if (Status s = compute::validate(builder); !s) return s;
     std::unique_ptr<CompiledProgram> program(new CompiledProgram(parts.context));
     program->label_ = builder.label();
     if (Status s = program->write_params(parts.transfers, params); !s) return s;

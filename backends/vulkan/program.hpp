@@ -44,7 +44,7 @@ struct ProgramParts {
 
 class CompiledProgram {
   public:
-    /// Errors: those of validate(), bad_argument (handles, ranges), not_supported (too many groups), out_of_memory.
+    /// Errors: not_supported (too many groups), out_of_memory.
     static Result<std::unique_ptr<CompiledProgram>> compile(const ProgramParts& parts, const compute::ProgramBuilder& builder,
                                                             const WorldParams& params);
     ~CompiledProgram();

@@ -7,7 +7,7 @@ layout(local_size_x_id = 1, local_size_y_id = 2, local_size_z = 1) in;
 layout(std430, set = 0, binding = 0) readonly buffer operands_block { vec2 operands[]; }; // any sign; positive
 layout(std430, set = 0, binding = 1) writeonly buffer results_block { float results[]; };
 
-#define RESULTS 6 // as in vulkan_self_test.cpp
+#define RESULTS 6 // exact_float_results_per_try
 
 void main() {
     uint n = gl_GlobalInvocationID.x;

@@ -1,6 +1,6 @@
 #include "backends/vulkan/self_test.hpp"
+#include "backends/common/exact_float.hpp"
 #include "backends/vulkan/pipelines.hpp"
-#include <cmath>
 #include <cstring>
 
 namespace wadi::vulkan {
@@ -10,67 +10,9 @@ constexpr std::uint32_t self_test_spirv[] = {
 #include "self_test.inc"
 };
 
-constexpr std::uint32_t tries = 16384;
-constexpr std::uint32_t results_per_try = 6; // RESULTS in self_test.comp
 constexpr std::uint32_t group_threads = 64;
 
-struct Operands {
-    float a, b;
-};
-
-// Quotients as near to the middle between two floats as quotients come, where the smallest error rounds the wrong way: Q is odd
-// and has 25 bits, and a = (Q b - s) / 2^25 is whole, so that a/b = (Q - s/b) / 2^25 with s = +-1.
-Operands hard_quotient(std::uint64_t random) {
-    const std::uint64_t modulus = std::uint64_t{1} << 25;
-    for (std::uint64_t b = (random & 0x7fffffu) | 0x800001u;; b += 2) {
-        if (b >= std::uint64_t{1} << 24) b = 0x800001u;
-        std::uint64_t inverse = b; // of b modulo 2^25: each round doubles the bits that are right
-        for (int round = 0; round < 5; ++round) inverse = inverse * (2 - b * inverse) % modulus;
-        const bool minus = (random >> 40 & 1u) != 0;
-        const std::uint64_t q = minus ? (modulus - inverse) % modulus : inverse;
-        if (q < modulus / 2) continue; // a float, not the middle between two
-        const std::uint64_t a = (minus ? q * b + 1 : q * b - 1) / modulus;
-        return {static_cast<float>(a), static_cast<float>(b)};
-    }
-}
-
-// Random mantissas with exponents that no result of the test takes out of the normal range, since devices may flush
-// denormals (stages keep them out). The generator is splitmix64: the same values everywhere.
-std::vector<Operands> make_operands() {
-    std::uint64_t state = 1;
-    const auto random = [&state] {
-        state += 0x9e3779b97f4a7c15u;
-        std::uint64_t bits = (state ^ (state >> 30)) * 0xbf58476d1ce4e5b9u;
-        bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebu;
-        return bits ^ (bits >> 31);
-    };
-    const auto draw = [&random](int exponents) {
-        const std::uint64_t bits = random();
-        const float mantissa = 1.0f + static_cast<float>(bits & 0x7fffffu) * 0x1p-23f;
-        const int exponent = static_cast<int>((bits >> 32) % static_cast<std::uint64_t>(2 * exponents)) - exponents;
-        return std::ldexp((bits >> 31 & 1u) != 0 ? -mantissa : mantissa, exponent);
-    };
-    std::vector<Operands> operands(tries);
-    for (std::uint32_t n = 0; n < tries; ++n) {
-        // A quarter of the pairs are far apart, the others as close as the terms of one equation are.
-        const int exponents = n % 4 == 0 ? 40 : 6;
-        operands[n].a = n % 64 == 0 ? 0.0f : n % 64 == 2 ? -0.0f : draw(exponents);
-        operands[n].b = std::fabs(draw(exponents));
-        if (n % 2 == 1) operands[n] = hard_quotient(random());
-    }
-    return operands;
-}
-
-// Rounds after every operation: contraction is off in the whole build.
-std::vector<float> expected(const std::vector<Operands>& operands) {
-    std::vector<float> results;
-    results.reserve(operands.size() * results_per_try);
-    for (const auto& [a, b] : operands) {
-        const float product = a * b;
-        results.insert(results.end(), {a + b, a - b, product, product + a, a / b, std::sqrt(b)});
-    }
-    return results;
-}
+using backends::Operands;
 
 struct SelfTest {
     Context& c;
@@ -102,7 +44,7 @@ struct SelfTest {
 
     Status prepare(std::span<const Operands> values) {
         const VkBufferUsageFlags usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-        const std::uint64_t result_bytes = values.size() * results_per_try * sizeof(float);
+        const std::uint64_t result_bytes = values.size() * backends::exact_float_results_per_try * sizeof(float);
         if (Status s = take(operands, allocate(c, values.size_bytes(), usage, Place::device, "self-test operands")); !s) return s;
         if (Status s = take(results, allocate(c, result_bytes, usage, Place::device, "self-test results")); !s) return s;
         if (Status s = transfers.write(operands, 0, std::as_bytes(values)); !s) return s;
@@ -148,7 +90,7 @@ struct SelfTest {
         if (!commands) return commands.status();
         c.vk.vkCmdBindPipeline(*commands, VK_PIPELINE_BIND_POINT_COMPUTE, pipeline);
         c.vk.vkCmdBindDescriptorSets(*commands, VK_PIPELINE_BIND_POINT_COMPUTE, layout, 0, 1, &set, 0, nullptr);
-        c.vk.vkCmdDispatch(*commands, tries / group_threads, 1, 1);
+        c.vk.vkCmdDispatch(*commands, backends::exact_float_tries / group_threads, 1, 1);
         if (Status s = once.submit(); !s) return s;
         std::vector<float> got(wanted.size());
         if (Status s = transfers.read(results, 0, std::as_writable_bytes(std::span(got))); !s) return s;
@@ -162,8 +104,8 @@ Status run_self_test(Context& c, OneTimeCommands& once, Transfers& transfers) {
 #ifdef WADI_RELAXED_FLOAT
     return ok_status(); // native quotient and root, bits not promised
 #endif
-    const std::vector<Operands> operands = make_operands();
-    const std::vector<float> wanted = expected(operands);
+    const auto operands = backends::exact_float_operands();
+    const auto wanted = backends::exact_float_results(operands);
     SelfTest test{c, once, transfers, {}, {}};
     if (Status s = test.prepare(operands); !s) return s;
     for (const bool corrected : {false, true}) {
@@ -175,10 +117,7 @@ Status run_self_test(Context& c, OneTimeCommands& once, Transfers& transfers) {
             return ok_status();
         }
     }
-    if (c.options.log) {
-        c.options.log(1, "vulkan: " + c.capabilities.name +
-                             " does not compute + - * / sqrt as the CPU does; results will differ in their last bits");
-    }
+    if (c.options.log) c.options.log(1, "vulkan: " + backends::inexact_float_warning(c.capabilities.name));
     return ok_status();
 }
 

@@ -37,7 +37,7 @@ class Submissions {
     /// not_ready while recorded work has not run: what goes to the queue now would overtake it.
     Status check_order();
 
-    /// Errors: bad_argument (a ticket that was never given out), device_lost.
+    /// Errors: device_lost.
     Result<bool> finished(compute::Ticket ticket);
     /// A recorded ticket that has not finished is not_ready: only the host can bring it about.
     Status wait(compute::Ticket ticket);
@@ -57,7 +57,7 @@ class Submissions {
     Status record_input(const Slot& slot, const StepInput& input);
     Status send(const Slot& slot, std::uint64_t ticket, VkCommandBuffer commands);
     void record_boundary(VkCommandBuffer commands, const StepInput& input);
-    Status check_host_semaphore(const compute::SyncPoint& point, const char* call) const;
+    Status check_timeline() const;
     Result<std::uint64_t> value_of(VkSemaphore semaphore);
 
     Context& c_;

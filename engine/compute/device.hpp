@@ -18,6 +18,13 @@ namespace wadi::compute {
 
 enum class DeviceKind : std::uint8_t { cpu, integrated_gpu, discrete_gpu, virtual_gpu, software_gpu };
 
+/// Threads of a group. All 0: the device has no groups and ignores GroupSize.
+struct GroupLimits {
+    int x = 0, y = 0; // at most, along i and j
+    int threads = 0;  // at most, in all
+    int rim = 0;      // of a rim stage's group, where the caller leaves it open
+};
+
 /// Filled once when a device is opened.
 struct Capabilities {
     std::string backend; // "cpu", "vulkan", "cuda"
@@ -26,7 +33,8 @@ struct Capabilities {
     DeviceKind kind = DeviceKind::cpu;
     std::uint64_t memory_bytes = 0;         // of the largest device-local heap; 0 = unknown
     std::uint64_t largest_buffer_bytes = 0; // of one buffer bound to a stage
-    bool exact_float = false;               // measured: + - * / sqrt agree with the CPU in every bit
+    GroupLimits groups;
+    bool exact_float = false; // measured: + - * / sqrt agree with the CPU in every bit
     bool timestamps = false;
     bool half_storage = false;         // buffers of 16-bit floats
     bool fused_stages = false;         // groups of fused_group_x x fused_group_y threads that share fused_shared_bytes
@@ -86,10 +94,11 @@ struct BufferDesc {
 };
 
 /// Threads per group along i and j (GPU backends; the CPU ignores it). 0 = the backend's choice for the stage.
-/// tile: side of the active tiles that the pipeline's dispatches run over, 0 = none; over them cells and faces have groups of a
-/// tile's width whatever x and y say.
+/// tile: side of the active tiles that the pipeline's dispatches run over, 0 = none; over them x and y are ignored, and cells and
+/// faces have groups of a tile's width.
 struct GroupSize {
     int x = 0, y = 0, tile = 0;
+    friend bool operator==(GroupSize, GroupSize) = default;
 };
 
 struct Timing {
@@ -111,9 +120,10 @@ struct Ticket {
     std::uint64_t value = 0;
 };
 
-/// A device runs programs. Calls come from one thread at a time. Nothing is thrown but std::bad_alloc when the host itself has
-/// no memory left, which the plugin turns into an error.
-/// After device_lost every call that needs the device returns device_lost.
+/// A device runs programs. Calls come from one thread at a time, and no exception leaves one.
+/// After device_lost every call that needs the device returns device_lost, and finished() is true.
+/// What bad_argument stands for here, the front end of all backends refuses (backends/common/front_end.hpp); a backend, which
+/// implements the same calls behind it, is never given such arguments, and may throw std::bad_alloc.
 class Device {
   public:
     virtual ~Device() = default;
@@ -136,10 +146,12 @@ class Device {
     virtual Status read(Buffer buffer, std::uint64_t offset, std::span<std::byte> bytes) = 0;
 
     /// A stage specialised for a mask. Only the stage's tested_effects of `effects` matter; equal requests share one pipeline.
+    /// Errors: bad_argument (no such stage, group size, active tiles for a stage that has no marks), not_supported.
     virtual Result<Pipeline> create_pipeline(int stage, std::uint32_t effects, GroupSize group) = 0;
 
-    /// Records a program once, with its parameters frozen in. Errors: those of validate(), out_of_memory, bad_argument (a buffer
-    /// or pipeline that does not exist, a pipeline of another stage or other tested effects, a copy past a buffer's end).
+    /// Records a program once, with its parameters frozen in. Errors: out_of_memory, not_supported (more than the device can run
+    /// at once), bad_argument (a stage, buffer or pipeline that does not exist; too few or too many slots; a pipeline of another
+    /// stage, other tested effects or other active tiles; a buffer bound twice and written; a copy past a buffer's end).
     virtual Result<Program> compile(const ProgramBuilder& builder, const WorldParams& params) = 0;
     /// Frees a program. Null is ignored. Waits for work in flight.
     virtual void destroy_program(Program program) = 0;
@@ -147,30 +159,33 @@ class Device {
     /// Replays a program with this step's input. Returns at once unless the ring of submissions in flight is full. Tickets count
     /// up from 1. Errors: bad_argument (no such program).
     virtual Result<Ticket> submit(Program program, const StepInput& input) = 0;
+    /// False for a ticket that was never given out.
     virtual bool finished(Ticket ticket) = 0;
+    /// Errors: bad_argument (a ticket that was never given out).
     virtual Status wait(Ticket ticket) = 0;
-    /// Time between consecutive timestamps of a finished submission that contained any; empty if there were none or
-    /// the ticket is older than the ring.
+    /// Time between consecutive timestamps of a submission that contained any; empty if there were none or the ticket is older
+    /// than the ring. Errors: bad_argument (a ticket that was never given out, or has not finished).
     virtual Result<std::vector<Timing>> timings(Ticket ticket) = 0;
 
     /// What a host passes to its own API. Errors: bad_argument (no such buffer).
     virtual Result<NativeBuffer> native(Buffer buffer) = 0;
     /// The next submission waits for the host's semaphores; signal() sets one once everything submitted so far is done. Neither
     /// waits. Errors: not_supported (no timeline semaphores, or another API's device), bad_argument (null semaphore).
-    virtual Status wait_before(std::span<const SyncPoint> points) { return no_host_sync(points.size()); }
-    virtual Status signal_after(const SyncPoint&) { return no_host_sync(1); }
+    virtual Status wait_before(std::span<const SyncPoint>) { return no_host_sync(); }
+    virtual Status signal_after(const SyncPoint&) { return no_host_sync(); }
     /// From here to end_recording() every submit() goes into the host's command buffer (VkCommandBuffer, recording, of the
     /// device's queue family, outside a render pass) instead of the queue. The host promises to submit it, in the order of
     /// recording, with a signal of `promise`; tickets finish when that is reached. Until then calls that would reach the queue
     /// ahead of it (read, write, submit outside a recording) are refused with not_ready. Errors: not_supported, bad_argument.
-    virtual Status begin_recording(void*, const SyncPoint&) { return no_host_sync(1); }
-    virtual Status end_recording() { return no_host_sync(1); }
+    virtual Status begin_recording(void*, const SyncPoint&) { return no_host_sync(); }
+    virtual Status end_recording() { return no_host_sync(); }
 
-    /// Makes every later call return device_lost, as a real fault would: for tests of the host's reaction.
-    virtual void inject_device_lost() = 0;
+    /// Makes every later call return device_lost, as a real fault would: for tests of the host's reaction. Of the front end
+    /// alone; a backend inherits this.
+    virtual void inject_device_lost() {}
 
   private:
-    Status no_host_sync(std::size_t points) const;
+    Status no_host_sync() const;
 };
 
 } // namespace wadi::compute

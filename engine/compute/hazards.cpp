@@ -6,8 +6,6 @@ namespace wadi::compute {
 
 namespace {
 
-bool exists(const StageBinding& binding, std::uint32_t effects) { return (effects & binding.condition) == binding.condition; }
-
 struct Touched {
     bool read = false, written = false;
 };
@@ -18,7 +16,7 @@ std::vector<BufferUse> buffer_uses(const Op& op) {
     std::vector<BufferUse> uses;
     if (const auto* dispatch = std::get_if<Dispatch>(&op)) {
         for (const auto& binding : stage_table()[static_cast<std::size_t>(dispatch->stage)].bindings) {
-            if (!exists(binding, dispatch->effects)) continue;
+            if (!binding.exists(dispatch->effects)) continue;
             uses.push_back({dispatch->slots[static_cast<std::size_t>(binding.slot)], binding.access != Access::out,
                             binding.access != Access::in});
         }
@@ -89,53 +87,6 @@ std::vector<std::vector<int>> plan_dependencies(const std::vector<Op>& ops) {
         }
     }
     return edges;
-}
-
-Status validate(const ProgramBuilder& builder) {
-    const auto fail = [&](const std::string& what) {
-        return error(Code::bad_argument, "program '" + builder.label() + "': " + what);
-    };
-    for (const auto& op : builder.ops()) {
-        if (const auto* copy = std::get_if<Copy>(&op)) {
-            if (copy->from.id == 0 || copy->to.id == 0) return fail("copy from or to a null buffer");
-            if (copy->from == copy->to) return fail("copy within one buffer");
-        } else if (const auto* fill = std::get_if<Fill>(&op)) {
-            if (fill->buffer.id == 0) return fail("fill of a null buffer");
-        } else if (const auto* d = std::get_if<Dispatch>(&op)) {
-            if (d->stage < 0 || static_cast<std::size_t>(d->stage) >= stage_table().size())
-                return fail("'" + d->label + "': no such stage");
-            const auto& stage = stage_table()[static_cast<std::size_t>(d->stage)];
-            const std::string where = "'" + d->label + "' (" + std::string(stage.name) + ")";
-            if (d->pipeline.id == 0) return fail(where + ": null pipeline");
-            if (d->slots.size() != stage.bindings.size()) {
-                return fail(where + ": " + std::to_string(d->slots.size()) + " slots, the stage has " +
-                            std::to_string(stage.bindings.size()));
-            }
-            if (d->tiles.on()) {
-                if (!stage.marks) return fail(where + ": the stage cannot run over active tiles");
-                for (const auto list : {d->tiles.flags, d->tiles.counts, d->tiles.list, d->tiles.dispatch})
-                    if (list.id == 0) return fail(where + ": active tiles without their lists");
-            }
-            std::map<std::uint32_t, Touched> touched;
-            for (const auto& binding : stage.bindings) {
-                if (!exists(binding, d->effects)) continue;
-                const auto buffer = d->slots[static_cast<std::size_t>(binding.slot)];
-                const std::string name(binding.name);
-                if (buffer.id == 0) return fail(where + ": no buffer for " + name);
-                const bool writes = binding.access != Access::in;
-                auto& seen = touched[buffer.id];
-                if (seen.written || (writes && seen.read))
-                    return fail(where + ": the buffer of " + name + " is bound twice and written");
-                seen.read |= !writes;
-                seen.written |= writes;
-            }
-        }
-    }
-    return ok_status();
-}
-
-std::string only_copies(const std::string& label) {
-    return "buffer '" + label + "' is the host's memory, which only copies may use";
 }
 
 } // namespace wadi::compute

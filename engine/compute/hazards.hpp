@@ -1,8 +1,6 @@
 // The barrier planner: from the access table alone it decides before which operations a barrier is needed.
 #pragma once
 #include "engine/compute/program.hpp"
-#include "engine/compute/status.hpp"
-#include <string>
 #include <vector>
 
 namespace wadi::compute {
@@ -25,12 +23,5 @@ std::vector<bool> plan_barriers(const std::vector<Op>& ops);
 /// Edges for graph backends: for each operation the earlier operations it must wait for (transitively reduced
 /// only as far as the last writer and the readers since).
 std::vector<std::vector<int>> plan_dependencies(const std::vector<Op>& ops);
-
-/// Rejects a program that no backend may run: wrong slot counts, null where a buffer must be, one buffer bound
-/// twice in a dispatch with a write among them. The message names the operation's label and the binding.
-Status validate(const ProgramBuilder& builder);
-
-/// Why compile() refuses a dispatch or fill of a buffer made for upload or readback.
-std::string only_copies(const std::string& label);
 
 } // namespace wadi::compute

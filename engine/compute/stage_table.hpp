@@ -29,6 +29,8 @@ struct StageBinding {
     Access access;
     Scalar type;
     std::uint32_t condition; // all these effect bits must be on for the buffer to exist; 0 = always
+
+    bool exists(std::uint32_t effects) const { return (effects & condition) == condition; }
 };
 
 /// Cells from a thread's own index to the farthest that it reads.

@@ -9,7 +9,8 @@ namespace {
 
 std::vector<CaseSpec> list() {
     std::vector<CaseSpec> cases;
-    for (const auto contracts : {buffer_contracts(), program_contracts(), device_contracts(), host_contracts()})
+    for (const auto contracts :
+         {buffer_contracts(), program_contracts(), refusal_contracts(), device_contracts(), host_contracts()})
         for (const Contract& contract : contracts) cases.push_back({contract.name, {}});
     return cases;
 }
@@ -17,7 +18,8 @@ std::vector<CaseSpec> list() {
 Verdict run(const CaseSpec& spec, Session& session) {
     auto device = session.device();
     if (!device) return verdict_of(device.status());
-    for (const auto contracts : {buffer_contracts(), program_contracts(), device_contracts(), host_contracts()}) {
+    for (const auto contracts :
+         {buffer_contracts(), program_contracts(), refusal_contracts(), device_contracts(), host_contracts()}) {
         for (const Contract& contract : contracts) {
             if (spec.name != contract.name) continue;
             Expect expect;

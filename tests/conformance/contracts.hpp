@@ -14,6 +14,7 @@ struct Contract {
 
 std::span<const Contract> buffer_contracts();
 std::span<const Contract> program_contracts();
+std::span<const Contract> refusal_contracts();
 std::span<const Contract> device_contracts();
 std::span<const Contract> host_contracts();
 
@@ -30,5 +31,29 @@ WorldParams small_params();
 /// apply_rain under EFFECT_WATER over `water` and `terrain` (fields) and `ledger`.
 Result<compute::Dispatch> rain_dispatch(compute::Device& device, compute::Buffer terrain, compute::Buffer water,
                                         compute::Buffer ledger);
+
+/// Buffers of a rain dispatch: fields of zeros and a ledger.
+struct Rain {
+    explicit Rain(compute::Device& d) : device(d) {
+        const FieldLayout layout{small_params().nx, small_params().ny};
+        terrain = buffer_of(device, std::vector<std::uint32_t>(layout.size(), 0));
+        water = buffer_of(device, std::vector<std::uint32_t>(layout.size(), 0));
+        ledger = buffer_of(device,
+                           std::vector<std::uint32_t>(
+                               std::size_t{2 * LEDGER_ENTRIES} * static_cast<std::size_t>(layout.strips() * layout.pitch()), 0));
+    }
+    ~Rain() {
+        for (const compute::Buffer buffer : {terrain, water, ledger}) device.destroy_buffer(buffer);
+    }
+    Rain(const Rain&) = delete;
+    Rain& operator=(const Rain&) = delete;
+    float depth() { // of the cell (2, 3)
+        float value = -1;
+        const FieldLayout layout{small_params().nx, small_params().ny};
+        return device.read(water, layout.index(2, 3) * 4, std::as_writable_bytes(std::span(&value, 1))) ? value : -1;
+    }
+    compute::Device& device;
+    compute::Buffer terrain, water, ledger;
+};
 
 } // namespace wadi::conformance

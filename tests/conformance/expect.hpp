@@ -25,6 +25,12 @@ class Expect {
         that(found, what + " gave " + code_name(status.code) + ", wanted " + names);
         that(status || !status.message.empty(), what + ": an error without a message");
     }
+    /// A bad argument, in these words.
+    void refused(const Status& status, const std::string& words, const std::string& what) {
+        code(status, {Code::bad_argument}, what);
+        that(status.message.find(words) != std::string::npos,
+             what + ": \"" + status.message + "\" does not say \"" + words + "\"");
+    }
     const Verdict& verdict() const { return verdict_; }
 
   private:

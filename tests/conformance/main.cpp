@@ -110,7 +110,7 @@ Result<std::vector<Target>> choose_targets(const Options& options, std::vector<s
             std::find_if(backends.begin(), backends.end(), [&](const backends::Backend& b) { return name == b.name; });
         if (built != backends.end()) {
             std::string why;
-            built->enumerate(why);
+            backends::list_devices(*built, why);
             absent.emplace_back(name, why);
             continue;
         }

@@ -7,7 +7,7 @@ std::vector<Target> all_targets() {
     std::vector<Target> targets;
     for (const auto& backend : backends::all()) {
         std::string why;
-        for (const auto& info : backend.enumerate(why)) targets.push_back({&backend, info});
+        for (const auto& info : backends::list_devices(backend, why)) targets.push_back({&backend, info});
     }
     return targets;
 }
@@ -22,7 +22,7 @@ Session::Session(Target target, const compute::DeviceOptions& options)
 
 Result<std::unique_ptr<compute::Device>> Session::fresh(compute::DeviceOptions options) {
     options.log = options_.log;
-    return target_.backend->open(target_.info.index, options);
+    return backends::open_device(*target_.backend, target_.info.index, options);
 }
 
 Result<compute::Device*> Session::device() {

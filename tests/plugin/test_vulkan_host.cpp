@@ -95,9 +95,12 @@ TEST_CASE("a host's Vulkan device is refused by name where it cannot serve") {
     wadi_world_id world{};
     CHECK(create("cpu", &host.vulkan, world) == WADI_ERROR_NOT_SUPPORTED);
     CHECK(error_mentions("the backend is cpu"));
-    CHECK(create("cuda", &host.vulkan, world) == WADI_ERROR_NOT_SUPPORTED);
-    CHECK(error_mentions("VK_KHR_external_memory_fd"));
-    CHECK(error_mentions("wadi_world_set_host_outputs"));
+    if (create("cuda", &host.vulkan, world) == WADI_ERROR_NOT_FOUND) {
+        CHECK(error_mentions("no backend 'cuda' in this build"));
+    } else {
+        CHECK(error_mentions("VK_KHR_external_memory_fd"));
+        CHECK(error_mentions("wadi_world_set_host_outputs"));
+    }
     auto wrong = host.vulkan;
     wrong.struct_size = 7;
     CHECK(create("vulkan", &wrong, world) == WADI_ERROR_BAD_ARGUMENT);
@@ -127,7 +130,9 @@ TEST_CASE("semaphores and recordings refuse null handles, worlds elsewhere and e
     CHECK(wadi_vulkan_signal(elsewhere.id, &point) == WADI_ERROR_NOT_SUPPORTED);
     CHECK(wadi_vulkan_begin_recording(here.id, VK_NULL_HANDLE, &point) == WADI_ERROR_BAD_ARGUMENT);
     CHECK(wadi_vulkan_end_recording(here.id) == WADI_ERROR_BAD_ARGUMENT);
-    CHECK(wadi_vulkan_begin_recording(elsewhere.id, VK_NULL_HANDLE, &point) == WADI_ERROR_NOT_SUPPORTED);
+    int stranger = 0; // nobody looks into it
+    const auto commands = reinterpret_cast<VkCommandBuffer>(&stranger);
+    CHECK(wadi_vulkan_begin_recording(elsewhere.id, commands, &point) == WADI_ERROR_NOT_SUPPORTED);
     step(here, 3);
     step(elsewhere, 3);
     CHECK(hash_of(here) == hash_of(elsewhere));

@@ -98,7 +98,7 @@ std::unique_ptr<World> make_world(const Scene& scene, const Target& target) {
 bool has_backend(const std::string& name) {
     std::string why;
     for (const auto& backend : backends::all()) {
-        if (name == backend.name) return !backend.enumerate(why).empty();
+        if (name == backend.name) return !backends::list_devices(backend, why).empty();
     }
     return false;
 }

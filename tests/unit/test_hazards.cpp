@@ -60,23 +60,3 @@ TEST_CASE("dependencies name the last writer, and the readers before a write") {
     CHECK(edges[2] == std::vector{0});
     CHECK(edges[3] == std::vector{1, 2});
 }
-
-TEST_CASE("validate refuses what no backend may run, and names it") {
-    const auto message = [](const Op& op) {
-        ProgramBuilder builder("test");
-        if (const auto* dispatch = std::get_if<Dispatch>(&op)) builder.dispatch(*dispatch);
-        if (const auto* copied = std::get_if<Copy>(&op)) builder.copy(*copied);
-        return validate(builder).message;
-    };
-    CHECK(message(velocity(a, b, c, d)).empty());
-    CHECK(message(velocity(a, b, c, c)).find("bound twice") != std::string::npos);
-    CHECK(message(velocity(a, b, a, d)).find("bound twice") != std::string::npos);
-    CHECK(message(velocity(a, b, c, Buffer{})).find("centre_velocity_y") != std::string::npos);
-    auto few = velocity(a, b, c, d);
-    few.slots.pop_back();
-    CHECK(message(few).find("3 slots") != std::string::npos);
-    auto none = velocity(a, b, c, d);
-    none.stage = -1;
-    CHECK(message(none).find("no such stage") != std::string::npos);
-    CHECK(message(copy(a, a)).find("within one buffer") != std::string::npos);
-}
