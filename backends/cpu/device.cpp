@@ -121,7 +121,7 @@ Result<compute::Program> CpuDevice::compile(const compute::ProgramBuilder& build
     for (std::size_t n = 0; n < builder.ops().size(); ++n) {
         const auto& op = builder.ops()[n];
         Step step;
-        step.barrier_before = barriers[n] || full_barriers_;
+        step.barrier_before = barriers[n].memory || full_barriers_;
         if (const auto* d = std::get_if<compute::Dispatch>(&op)) {
             const auto& stage = compute::stage_table()[static_cast<std::size_t>(d->stage)];
             step.block = pipelines_[d->pipeline.id - 1];

@@ -21,19 +21,18 @@ class Planner {
     Status run() {
         if (Status s = create_sets(); !s) return s;
         const auto& ops = builder_.ops();
-        const std::vector<bool> planned = compute::plan_barriers(ops);
+        const auto planned = compute::plan_barriers(ops);
         Kinds before;
         for (std::size_t n = 0; n < ops.size(); ++n) {
             if (c_.options.full_barriers) {
                 constexpr Kinds all{.compute = true, .transfer = true};
                 plan_.commands.emplace_back(BarrierCommand{all, {.compute = true, .transfer = true, .indirect = true}});
-            } else if (planned[n] || reads_groups(ops[n])) {
+            } else if (planned[n].memory || planned[n].groups) {
                 Kinds after = kinds_until_barrier(ops, planned, n);
-                after.indirect = reads_groups(ops[n]);
+                after.indirect = planned[n].groups;
                 if (!before.compute && !before.transfer) before.compute = true; // an earlier submission's
                 plan_.commands.emplace_back(BarrierCommand{before, after});
             }
-            note_groups(ops[n]);
             const Kinds kinds = kinds_of(ops[n]);
             before = {before.compute || kinds.compute, before.transfer || kinds.transfer};
             if (Status s = std::visit([&](const auto& op) { return add(op); }, ops[n]); !s) return s;
@@ -45,30 +44,14 @@ class Planner {
   private:
     // A barrier names all kinds of commands ahead of it in the program, not only those since the previous barrier:
     // so the last barrier ahead of an operation alone orders it after everything it conflicts with.
-    static Kinds kinds_until_barrier(const std::vector<compute::Op>& ops, const std::vector<bool>& planned, std::size_t first) {
+    static Kinds kinds_until_barrier(const std::vector<compute::Op>& ops, const std::vector<compute::Barrier>& planned,
+                                     std::size_t first) {
         Kinds all = kinds_of(ops[first]);
-        for (std::size_t n = first + 1; n < ops.size() && !planned[n]; ++n) {
+        for (std::size_t n = first + 1; n < ops.size() && !planned[n].memory; ++n) {
             const Kinds kinds = kinds_of(ops[n]);
             all = {all.compute || kinds.compute, all.transfer || kinds.transfer};
         }
         return all;
-    }
-
-    static const compute::Dispatch* over_tiles(const compute::Op& op) {
-        const auto* d = std::get_if<compute::Dispatch>(&op);
-        if (d == nullptr || !d->tiles.on()) return nullptr;
-        return compute::stage_table()[static_cast<std::size_t>(d->stage)].extent == compute::Extent::rim ? nullptr : d;
-    }
-    // A barrier that lets a dispatch read its groups costs more than others: only the first behind each change of them has one.
-    bool reads_groups(const compute::Op& op) const {
-        const auto* d = over_tiles(op);
-        return d != nullptr && !(d->tiles.dispatch == groups_seen_);
-    }
-    void note_groups(const compute::Op& op) {
-        for (const auto& use : compute::buffer_uses(op)) {
-            if (use.writes && use.buffer == groups_seen_) groups_seen_ = {};
-        }
-        if (const auto* d = over_tiles(op)) groups_seen_ = d->tiles.dispatch;
     }
 
     Status too_many(const compute::Dispatch& d, const std::string& what, const std::string& most) const {
@@ -145,12 +128,12 @@ class Planner {
 
     Status add(const compute::Dispatch& d) {
         if (d.range.i1 <= d.range.i0 || d.range.j1 <= d.range.j0) return ok_status();
-        if (over_tiles(d) != nullptr) return add_over_tiles(d);
+        const compute::StageInfo& info = compute::stage_table()[static_cast<std::size_t>(d.stage)];
+        if (d.tiles.on() && info.extent != compute::Extent::rim) return add_over_tiles(d);
         const StagePipeline& pipeline = p_.pipelines.at(d.pipeline);
         const auto groups = [](int first, int last, std::uint32_t size) {
             return (static_cast<std::uint32_t>(last - first) + size - 1) / size;
         };
-        const compute::StageInfo& info = compute::stage_table()[static_cast<std::size_t>(d.stage)];
         const auto columns = info.fused() ? std::uint32_t{FUSED_COLUMNS} : pipeline.group_x;
         const auto rows = info.fused() ? std::uint32_t{FUSED_ROWS} : pipeline.group_y;
         const std::uint32_t x = groups(d.range.i0, d.range.i1, columns), y = groups(d.range.j0, d.range.j1, rows);
@@ -201,8 +184,7 @@ class Planner {
     Plan& plan_;
     std::map<SetKey, VkDescriptorSet> sets_;
     std::uint32_t timestamps_ = 0;
-    compute::Buffer groups_seen_; // since the last barrier that lets a dispatch read them
-    bool host_reads_ = false;     // a copy goes to mapped memory
+    bool host_reads_ = false; // a copy goes to mapped memory
 };
 
 } // namespace

@@ -1,6 +1,7 @@
 #include "engine/compute/hazards.hpp"
 #include <algorithm>
 #include <map>
+#include <set>
 
 namespace wadi::compute {
 
@@ -23,7 +24,9 @@ std::vector<BufferUse> buffer_uses(const Op& op) {
         const auto& tiles = dispatch->tiles;
         if (tiles.on()) {
             uses.push_back({tiles.activity, true, true});
-            for (const auto list : {tiles.flags, tiles.counts, tiles.list, tiles.dispatch}) uses.push_back({list, true, false});
+            for (const auto list : {tiles.flags, tiles.counts, tiles.list}) uses.push_back({list, true, false});
+            const auto extent = stage_table()[static_cast<std::size_t>(dispatch->stage)].extent;
+            uses.push_back({tiles.dispatch, true, false, extent != Extent::rim});
         }
     } else if (const auto* copy = std::get_if<Copy>(&op)) {
         uses.push_back({copy->from, true, false});
@@ -34,9 +37,10 @@ std::vector<BufferUse> buffer_uses(const Op& op) {
     return uses;
 }
 
-std::vector<bool> plan_barriers(const std::vector<Op>& ops) {
-    std::vector<bool> barrier_before(ops.size(), false);
+std::vector<Barrier> plan_barriers(const std::vector<Op>& ops) {
+    std::vector<Barrier> barriers(ops.size());
     std::map<std::uint32_t, Touched> since_barrier;
+    std::set<std::uint32_t> groups_seen; // and not written since
     for (std::size_t n = 0; n < ops.size(); ++n) {
         const auto uses = buffer_uses(ops[n]);
         const bool conflict = std::any_of(uses.begin(), uses.end(), [&](const BufferUse& use) {
@@ -44,16 +48,18 @@ std::vector<bool> plan_barriers(const std::vector<Op>& ops) {
             return found != since_barrier.end() && (found->second.written || (use.writes && found->second.read));
         });
         if (conflict) {
-            barrier_before[n] = true;
+            barriers[n].memory = true;
             since_barrier.clear();
         }
         for (const auto& use : uses) {
             auto& touched = since_barrier[use.buffer.id];
             touched.read |= use.reads;
             touched.written |= use.writes;
+            if (use.groups) barriers[n].groups |= groups_seen.insert(use.buffer.id).second;
+            if (use.writes) groups_seen.erase(use.buffer.id);
         }
     }
-    return barrier_before;
+    return barriers;
 }
 
 std::vector<std::vector<int>> plan_dependencies(const std::vector<Op>& ops) {

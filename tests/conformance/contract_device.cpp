@@ -51,6 +51,7 @@ void device_lost(Session& session, Device&, Expect& expect) {
         expect.code(device.wait(*ticket), lost, "wait");
         expect.code(device.timings(*ticket).status(), lost, "timings");
         expect.that(!device.capabilities().name.empty(), "a lost device has no capabilities");
+        expect.that(device.finished({ticket->value + 1}), "on a lost device something is still going to finish");
     }
     device.destroy_program(*program);
     device.destroy_buffer(buffer);
