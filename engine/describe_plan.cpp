@@ -25,11 +25,12 @@ void list_passes(std::ostringstream& out, const std::vector<PlanPass>& passes) {
 
 } // namespace
 
-std::string World::describe_plan() const {
-    const auto& plan = state_.plan();
+std::string describe_plan(const WorldState& world) {
+    const auto& plan = world.plan();
+    const auto& settings = world.settings();
     std::ostringstream out;
-    out << "grid " << state_.layout().nx << " x " << state_.layout().ny << ", dx " << settings().grid.dx << " m, dt "
-        << settings().dt << " s, method " << settings().method.name << ", T = " << plan.substeps;
+    out << "grid " << world.layout().nx << " x " << world.layout().ny << ", dx " << settings.grid.dx << " m, dt " << settings.dt
+        << " s, method " << settings.method.name << ", T = " << plan.substeps;
     for (const auto& choice : choice_table())
         if ((plan.effects & choice.bit) != 0) out << ", " << choice.name;
     out << "\neffects\n";
@@ -37,7 +38,7 @@ std::string World::describe_plan() const {
         const auto& effect = effect_table()[n];
         char line[160];
         std::snprintf(line, sizeof line, "  %-3s %-14s %s\n", (plan.effects & effect.bit) != 0 ? "on" : "-", effect.name,
-                      effects().reasons[n].c_str());
+                      world.effects().reasons[n].c_str());
         out << line;
     }
     out << "stages " << (plan.fused ? "fused where the effects allow" : "one by one") << "\n";
@@ -67,7 +68,7 @@ std::string World::describe_plan() const {
         << "  state    " << state_names << "\n";
     if (!scratch_names.empty()) out << "  scratch  " << scratch_names << "  (@n: shared memory block)\n";
     out << "bytes per cell: " << plan.bytes_per_cell() << " (state " << state_bytes << ", ping-pong " << partner_bytes
-        << ", scratch " << 4 * plan.scratch_blocks << "); on the device " << device_bytes() / 1024
+        << ", scratch " << 4 * plan.scratch_blocks << "); on the device " << world.device().bytes() / 1024
         << " KiB with padding, ledgers and outputs\n";
     char line[160];
     std::snprintf(line, sizeof line,

@@ -1,4 +1,5 @@
-// A world: its state on a device, and the parts that step it and answer for it. Each part has a file of its own.
+// A world: its state on a device, and the parts that step it and answer for it. Each part has a file of its own, and brings the
+// world to a boundary between two steps where it needs one (Stepper::finish_step).
 #pragma once
 #include "engine/edits/command_log.hpp"
 #include "engine/frames/frame_driver.hpp"
@@ -29,85 +30,50 @@ class World {
     /// once.
     Status update(std::uint64_t nanoseconds, Frame& frame);
     Status set_update_settings(const UpdateSettings& settings);
-    Outputs& outputs() { return outputs_; }
-    std::uint64_t steps() const { return state_.steps; }
-    double time() const { return static_cast<double>(state_.steps) * settings().dt; }
 
-    /// Fields, statistics and hash of the state between two steps: what is left of a step begun in parts is done first.
-    Status read(const std::string& name, std::span<float> values);
-    Status read(const std::string& name, const Region& region, std::span<float> values);
-    Result<WorldStats> stats();
-    Result<std::vector<float>> read_raw(const std::string& field);
-
-    /// The hash of the statistics alone.
-    Result<std::uint64_t> hash();
-
-    /// Everything that the next step depends on, to the bit (snapshot_format.hpp). `to` has snapshots().bytes() bytes.
-    Status save(std::span<std::byte> to);
-    /// Goes back (or on) to a snapshot of a world of the same level; errors: Snapshots::load. Edits that wait and frames kept for
-    /// roll-back belong to another past: they are forgotten.
-    Status load(std::span<const std::byte> from);
-    Snapshots& snapshots() { return snapshots_; }
-
-    const RollBack& roll_back() const { return roll_back_; }
-    /// Goes to the newest kept step <= `step`; errors: RollBack::go_back. Edits that wait are forgotten.
-    Result<std::uint64_t> roll_back_to(std::uint64_t step);
-    /// RollBack::set for the state between two steps.
-    Status set_rollback(std::uint32_t frames, std::uint32_t interval);
-    Queries& queries() { return queries_; }
-
-    /// Edits queued for their steps; heights written and effects dropped between two steps; the log of all that
-    /// (command_log.hpp).
-    Status edit(std::span<const Edit> edits) { return commands_.edit(edits); }
-    Status write_region(EditLayer layer, const Region& region, std::span<const float> values);
-    Status trim();
-    /// A number of the material, by its index in material_keys(), from the next step on.
-    Status set_material(int key, double value);
-    /// Compiles now what edits of new materials would need later.
-    Status prepare() { return stepper_.prepare(); }
-    Edits& edits() { return edits_; }
-    CommandLog& commands() { return commands_; }
-
-    Status set_profiling(bool on) { return stepper_.set_profiling(on); }
-    /// Mean over the steps since profiling was switched on.
-    Result<std::vector<StageTime>> stage_times() { return stepper_.stage_times(); }
-
-    Stepper& stepper() { return stepper_; }
+    /// What the world is: effects, buffers, whether its device is lost.
+    const WorldState& state() const { return state_; }
     const Settings& settings() const { return state_.settings(); }
     const StepPlan& plan() const { return state_.plan(); }
-    const EffectChoice& effects() const { return state_.effects(); }
-    /// device_lost with its text once the device is lost.
-    const Status& lost() const { return state_.lost(); }
     compute::Device& device() const { return *state_.device(); }
-    std::uint64_t device_bytes() const { return state_.device().bytes(); }
-    const std::vector<MemoryItem>& memory() const { return state_.device().memory(); }
-    /// The plan as text: effects and reasons, passes, buffers, bytes per cell.
-    std::string describe_plan() const;
+    std::uint64_t steps() const { return state_.steps; }
+    /// Simulated [s].
+    double time() const { return static_cast<double>(state_.steps) * settings().dt; }
+
+    /// Compiling ahead, profiling, a step in parts.
+    Stepper& stepper() { return stepper_; }
+    Outputs& outputs() { return outputs_; }
+    /// Fields, statistics, hash.
+    StateReader& reader() { return reader_; }
+    Snapshots& snapshots() { return snapshots_; }
+    RollBack& roll_back() { return roll_back_; }
+    Queries& queries() { return queries_; }
+    /// Images to stamp.
+    Edits& edits() { return edits_; }
+    /// Everything that a host does to the running world.
+    CommandLog& commands() { return commands_; }
 
   private:
-    World(const Settings& settings, std::unique_ptr<compute::Device> device, compute::GroupSize group)
-        : state_(settings, std::move(device), group) {
-        stepper_.set_before_step([this] { return edits_.before_step(); });
-        stepper_.set_after_step([this] {
-            auto status = roll_back_.after_step();
-            return status ? at_boundary() : status;
-        });
-    }
-    /// Brings the world to a boundary between two steps.
-    Status finish_step();
-    /// What waits for such a boundary.
+    World(const Settings& settings, std::unique_ptr<compute::Device> device, compute::GroupSize group);
+    /// Stepper::Hooks.
+    Status after_step();
+    Status jumped();
+    /// What waited for a boundary between two steps.
     Status at_boundary();
 
     WorldState state_; // first: the parts refer to it
     Stepper stepper_{state_};
     FrameDriver frames_{state_, stepper_};
     Outputs outputs_{state_};
-    StateReader reader_{state_};
-    Snapshots snapshots_{state_, stepper_};
-    Edits edits_{state_, stepper_};
+    StateReader reader_{state_, stepper_};
     RollBack roll_back_{state_, stepper_};
+    Snapshots snapshots_{state_, stepper_, roll_back_};
+    Edits edits_{state_, stepper_};
     Queries queries_{state_, stepper_};
     CommandLog commands_{state_, stepper_, edits_};
 };
+
+/// The plan as text: effects and reasons, passes, buffers, bytes per cell.
+std::string describe_plan(const WorldState& world);
 
 } // namespace wadi

@@ -88,7 +88,7 @@ wadi_result host(Result<Level> level, const wadi_device_options* options, wadi_w
         for (const auto& warning : level->warnings) log(1, level->name + ": " + warning);
         const auto& grid = level->settings.grid;
         log(2, level->name + ": " + std::to_string(grid.nx) + " x " + std::to_string(grid.ny) + " cells on " +
-                   (*world)->device().capabilities().name + ", effects " + effect_names((*world)->effects().mask));
+                   (*world)->device().capabilities().name + ", effects " + effect_names((*world)->state().effects().mask));
     }
     *id = plugin::worlds().add({std::move(*world), level->name, level->duration, level->warnings, {}});
     return report(ok_status());

@@ -61,7 +61,7 @@ wadi_result wadi_world_edit(wadi_world_id id, const wadi_edit* edits, uint32_t c
             if (!edit) return report(edit.status());
             list.push_back(*edit);
         }
-        return report(hosted.world->edit(list));
+        return report(hosted.world->commands().edit(list));
     });
 }
 
@@ -82,7 +82,7 @@ wadi_result wadi_world_read_region(wadi_world_id id, wadi_field field, const wad
         if (plan_name(field) == nullptr)
             return bad_argument("wadi_world_read_region: no field " + std::to_string(static_cast<int>(field)));
         if (values == nullptr) return bad_argument("wadi_world_read_region: values is NULL");
-        return report(hosted.world->read(plan_name(field), to_region(*region), {values, count}));
+        return report(hosted.world->reader().read(plan_name(field), to_region(*region), {values, count}));
     });
 }
 
@@ -105,16 +105,16 @@ wadi_result wadi_world_write_region(wadi_world_id id, wadi_field field, const wa
             return bad_argument("wadi_world_write_region: field " + std::to_string(static_cast<int>(field)) +
                                 " is not terrain, sand height or water height");
         }
-        return report(hosted.world->write_region(layer, to_region(*region), {values, count}));
+        return report(hosted.world->commands().write_region(layer, to_region(*region), {values, count}));
     });
 }
 
 wadi_result wadi_world_prepare_effects(wadi_world_id id) {
-    return with_world(__func__, id, [&](HostedWorld& hosted) { return report(hosted.world->prepare()); });
+    return with_world(__func__, id, [&](HostedWorld& hosted) { return report(hosted.world->stepper().prepare()); });
 }
 
 wadi_result wadi_world_trim(wadi_world_id id) {
-    return with_world(__func__, id, [&](HostedWorld& hosted) { return report(hosted.world->trim()); });
+    return with_world(__func__, id, [&](HostedWorld& hosted) { return report(hosted.world->commands().trim()); });
 }
 
 wadi_result wadi_world_get_material(wadi_world_id id, wadi_material_info* infos, uint32_t* count) {
@@ -137,7 +137,7 @@ wadi_result wadi_world_set_material(wadi_world_id id, const char* name, double v
     return with_world(__func__, id, [&](HostedWorld& hosted) {
         if (name == nullptr) return bad_argument("wadi_world_set_material: name is NULL");
         const int key = find_material_key(name);
-        if (key >= 0) return report(hosted.world->set_material(key, value));
+        if (key >= 0) return report(hosted.world->commands().set_material(key, value));
         std::vector<std::string> known;
         for (const auto& k : material_keys()) known.push_back(k.name);
         return report(error(Code::not_found, std::string("wadi_world_set_material: the material has no number \"") + name + "\"" +

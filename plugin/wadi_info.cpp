@@ -29,7 +29,7 @@ wadi_result wadi_world_get_info(wadi_world_id id, wadi_world_info* info) {
         info->passes_per_water_step = static_cast<uint32_t>(world.plan().water_passes.size());
         info->passes_per_sand_substep = static_cast<uint32_t>(world.plan().substep_passes.size());
         info->bytes_per_cell = world.plan().bytes_per_cell();
-        info->device_bytes = world.device_bytes();
+        info->device_bytes = world.state().device().bytes();
         copy_text(info->backend, capabilities.backend);
         copy_text(info->device_name, capabilities.name + " (" + capabilities.driver + ")");
         info->exact_float = capabilities.exact_float ? 1 : 0;
@@ -53,7 +53,7 @@ const char* wadi_world_get_warning(wadi_world_id id, uint32_t n) {
 size_t wadi_world_describe_plan(wadi_world_id id, char* text, size_t size) {
     size_t length = 0;
     with_world(__func__, id, [&](HostedWorld& hosted) {
-        const std::string plan = hosted.world->describe_plan();
+        const std::string plan = describe_plan(hosted.world->state());
         length = plan.size();
         if (text != nullptr && size > 0) std::snprintf(text, size, "%s", plan.c_str());
         return report(ok_status());
@@ -62,13 +62,13 @@ size_t wadi_world_describe_plan(wadi_world_id id, char* text, size_t size) {
 }
 
 wadi_result wadi_world_set_profiling(wadi_world_id id, int32_t on) {
-    return with_world(__func__, id, [&](HostedWorld& hosted) { return report(hosted.world->set_profiling(on != 0)); });
+    return with_world(__func__, id, [&](HostedWorld& hosted) { return report(hosted.world->stepper().set_profiling(on != 0)); });
 }
 
 wadi_result wadi_world_get_stage_timings(wadi_world_id id, wadi_stage_timing* timings, uint32_t* count) {
     return with_world(__func__, id, [&](HostedWorld& hosted) {
         if (count == nullptr) return bad_argument("wadi_world_get_stage_timings: count is NULL");
-        auto times = hosted.world->stage_times();
+        auto times = hosted.world->stepper().stage_times();
         if (!times) return report(times.status());
         const uint32_t capacity = timings != nullptr ? *count : 0;
         *count = static_cast<uint32_t>(times->size());

@@ -9,7 +9,7 @@ extern "C" {
 wadi_result wadi_world_get_memory(wadi_world_id id, wadi_memory_item* items, uint32_t* count) {
     return with_world(__func__, id, [&](HostedWorld& hosted) {
         if (count == nullptr) return bad_argument("wadi_world_get_memory: count is NULL");
-        const auto& memory = hosted.world->memory();
+        const auto& memory = hosted.world->state().device().memory();
         const uint32_t capacity = items != nullptr ? *count : 0;
         *count = static_cast<uint32_t>(memory.size());
         for (uint32_t n = 0; n < std::min(capacity, *count); ++n) {
@@ -23,7 +23,7 @@ wadi_result wadi_world_get_memory(wadi_world_id id, wadi_memory_item* items, uin
 wadi_result wadi_world_get_effects(wadi_world_id id, wadi_effect_info* effects, uint32_t* count) {
     return with_world(__func__, id, [&](HostedWorld& hosted) {
         if (count == nullptr) return bad_argument("wadi_world_get_effects: count is NULL");
-        const auto& choice = hosted.world->effects();
+        const auto& choice = hosted.world->state().effects();
         const auto table = effect_table();
         const uint32_t capacity = effects != nullptr ? *count : 0;
         *count = static_cast<uint32_t>(table.size());
@@ -37,7 +37,7 @@ wadi_result wadi_world_get_effects(wadi_world_id id, wadi_effect_info* effects, 
 }
 
 wadi_result wadi_world_get_error(wadi_world_id id) {
-    return with_world(__func__, id, [&](HostedWorld& hosted) { return report(hosted.world->lost()); });
+    return with_world(__func__, id, [&](HostedWorld& hosted) { return report(hosted.world->state().lost()); });
 }
 
 } // extern "C"

@@ -18,14 +18,14 @@ wadi_result wadi_world_save(wadi_world_id id, void* data, size_t* size) {
         if (size == nullptr) return bad_argument("wadi_world_save: size is NULL");
         const size_t capacity = *size;
         *size = hosted.world->snapshots().bytes();
-        return report(data == nullptr ? ok_status() : hosted.world->save(bytes_at(data, capacity)));
+        return report(data == nullptr ? ok_status() : hosted.world->snapshots().save(bytes_at(data, capacity)));
     });
 }
 
 wadi_result wadi_world_load(wadi_world_id id, const void* data, size_t size) {
     return with_world(__func__, id, [&](HostedWorld& hosted) {
         if (data == nullptr) return bad_argument("wadi_world_load: data is NULL");
-        return report(hosted.world->load({static_cast<const std::byte*>(data), size}));
+        return report(hosted.world->snapshots().load({static_cast<const std::byte*>(data), size}));
     });
 }
 
@@ -33,7 +33,7 @@ wadi_result wadi_world_save_file(wadi_world_id id, const char* path) {
     return with_world(__func__, id, [&](HostedWorld& hosted) {
         if (path == nullptr) return bad_argument("wadi_world_save_file: path is NULL");
         std::vector<std::byte> bytes(hosted.world->snapshots().bytes());
-        if (auto status = hosted.world->save(bytes); !status) return report(status);
+        if (auto status = hosted.world->snapshots().save(bytes); !status) return report(status);
         return report(write_snapshot_file(path, bytes));
     });
 }
@@ -42,7 +42,7 @@ wadi_result wadi_world_load_file(wadi_world_id id, const char* path) {
     return with_world(__func__, id, [&](HostedWorld& hosted) {
         if (path == nullptr) return bad_argument("wadi_world_load_file: path is NULL");
         auto bytes = read_snapshot_file(path);
-        return report(bytes ? hosted.world->load(*bytes) : bytes.status());
+        return report(bytes ? hosted.world->snapshots().load(*bytes) : bytes.status());
     });
 }
 
@@ -68,7 +68,7 @@ wadi_result wadi_world_end_save(wadi_world_id id, uint64_t ticket, void* data, s
 
 wadi_result wadi_world_set_rollback(wadi_world_id id, uint32_t frames, uint32_t interval_steps) {
     return with_world(__func__, id,
-                      [&](HostedWorld& hosted) { return report(hosted.world->set_rollback(frames, interval_steps)); });
+                      [&](HostedWorld& hosted) { return report(hosted.world->roll_back().set(frames, interval_steps)); });
 }
 
 wadi_result wadi_world_get_rollback_steps(wadi_world_id id, uint64_t* steps, uint32_t* count) {
@@ -84,7 +84,7 @@ wadi_result wadi_world_get_rollback_steps(wadi_world_id id, uint64_t* steps, uin
 
 wadi_result wadi_world_roll_back(wadi_world_id id, uint64_t step, uint64_t* reached) {
     return with_world(__func__, id, [&](HostedWorld& hosted) {
-        auto to = hosted.world->roll_back_to(step);
+        auto to = hosted.world->roll_back().go_back(step);
         if (to && reached != nullptr) *reached = *to;
         return report(to.status());
     });
@@ -93,7 +93,7 @@ wadi_result wadi_world_roll_back(wadi_world_id id, uint64_t step, uint64_t* reac
 wadi_result wadi_world_get_hash(wadi_world_id id, uint64_t* hash) {
     return with_world(__func__, id, [&](HostedWorld& hosted) {
         if (hash == nullptr) return bad_argument("wadi_world_get_hash: hash is NULL");
-        auto now = hosted.world->hash();
+        auto now = hosted.world->reader().hash();
         if (now) *hash = *now;
         return report(now.status());
     });

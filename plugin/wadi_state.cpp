@@ -57,7 +57,7 @@ wadi_result wadi_world_read_field(wadi_world_id id, wadi_field field, float* val
             return bad_argument("wadi_world_read_field: values is NULL or count is " + std::to_string(count) +
                                 ", not nx * ny = " + std::to_string(cells));
         }
-        return report(hosted.world->read(plan_name(field), {values, cells}));
+        return report(hosted.world->reader().read(plan_name(field), {values, cells}));
     });
 }
 
@@ -65,7 +65,7 @@ wadi_result wadi_world_get_stats(wadi_world_id id, wadi_world_stats* stats) {
     return with_world(__func__, id, [&](HostedWorld& hosted) {
         if (!right_size(stats)) return wrong_struct<wadi_world_stats>("wadi_world_get_stats", "stats");
         auto& world = *hosted.world;
-        auto now = world.stats();
+        auto now = world.reader().stats();
         if (!now) return report(now.status());
         const double dx = world.settings().grid.dx, volume = now->quantum * dx * dx;
         const auto cubic_metres = [&](std::int64_t quanta) { return static_cast<double>(quanta) * volume; };

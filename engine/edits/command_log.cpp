@@ -23,18 +23,21 @@ Status CommandLog::edit(std::span<const Edit> edits) {
 }
 
 Status CommandLog::write_region(EditLayer layer, const Region& region, std::span<const float> values) {
-    auto status = wadi::write_region(state_, stepper_, layer, region, values);
+    auto status = stepper_.finish_step();
+    if (status) status = wadi::write_region(state_, stepper_, layer, region, values);
     if (status && remember_) note(RegionWrite{state_.steps, layer, region, {values.begin(), values.end()}});
     return status;
 }
 
 Status CommandLog::trim() {
-    auto status = wadi::trim(state_, stepper_);
+    auto status = stepper_.finish_step();
+    if (status) status = wadi::trim(state_, stepper_);
     if (status) note(Trim{state_.steps});
     return status;
 }
 
 Status CommandLog::set_material(int key, double value) {
+    if (auto status = stepper_.finish_step(); !status) return status;
     if (auto status = check_material_change("set_material", state_.settings(), key, value); !status) return status;
     Material material = state_.settings().material;
     set_material_value(material, key, value);

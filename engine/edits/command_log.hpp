@@ -39,12 +39,13 @@ class CommandLog {
   public:
     CommandLog(WorldState& state, Stepper& stepper, Edits& edits) : state_(state), stepper_(stepper), edits_(edits) {}
 
-    /// Errors: bad_argument, and nothing is queued.
+    /// Queues edits for their steps. Errors: bad_argument, and nothing is queued.
     Status edit(std::span<const Edit> edits);
-    /// Between two steps only; errors: regions.hpp.
+    /// The state between two steps is changed: what is left of a step begun in parts runs first. Errors: regions.hpp.
     Status write_region(EditLayer layer, const Region& region, std::span<const float> values);
     Status trim();
-    /// Errors, nothing changed: check_material_change(), Stepper::set_material().
+    /// A number of the material, by its index in material_keys(), from the next step on. Errors, nothing changed:
+    /// check_material_change(), Stepper::set_material().
     Status set_material(int key, double value);
 
     /// Begins an empty log, or drops it.

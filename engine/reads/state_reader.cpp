@@ -34,6 +34,7 @@ Result<std::vector<float>> StateReader::read_buffer(compute::Buffer from) {
 }
 
 Result<std::vector<float>> StateReader::read_raw(const std::string& field) {
+    if (auto status = stepper_.finish_step(); !status) return status;
     std::vector<float> raw(state_.layout().size());
     if (auto status = state_.fields().read(field, 0, raw); !status) return status;
     return raw;
@@ -81,7 +82,8 @@ Status StateReader::publish(const std::string& stage, const std::map<std::string
 }
 
 Status StateReader::read(const std::string& name, const Region& region, std::span<float> values) {
-    if (!state_.lost()) return state_.lost();
+    if (auto status = check_region("read", region, state_.settings().grid, values.size()); !status) return status;
+    if (auto status = stepper_.finish_step(); !status) return status;
     for (const char* published : {"water_depth", "free_surface", "surface_saturation"}) {
         if (name != published) continue;
         const std::string stage = name == "surface_saturation" ? "publish_saturation" : "publish_" + name;
@@ -106,6 +108,10 @@ Status StateReader::read(const std::string& name, const Region& region, std::spa
                       values);
 }
 
+Status StateReader::read(const std::string& name, std::span<float> values) {
+    return read(name, {0, 0, state_.layout().nx, state_.layout().ny}, values);
+}
+
 Result<std::uint64_t> StateReader::hash_fields(const Look& look) {
     std::uint64_t hash = 0;
     for (std::size_t n = 0; n < std::size(hashed_fields); ++n) {
@@ -128,10 +134,13 @@ Result<std::uint64_t> StateReader::hash_fields(const Look& look) {
     return hash;
 }
 
-Result<std::uint64_t> StateReader::hash() { return state_.lost() ? hash_fields({}) : Result<std::uint64_t>(state_.lost()); }
+Result<std::uint64_t> StateReader::hash() {
+    auto status = stepper_.finish_step();
+    return status ? hash_fields({}) : Result<std::uint64_t>(status);
+}
 
 Result<WorldStats> StateReader::stats() {
-    if (!state_.lost()) return state_.lost();
+    if (auto status = stepper_.finish_step(); !status) return status;
     WorldStats s;
     const double quantum = ledger_quantum(state_.settings().method);
     s.quantum = quantum;

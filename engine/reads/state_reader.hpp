@@ -1,8 +1,9 @@
-// Reading a world's state on the host: fields, ledger, statistics, hash. Every call waits for the device.
+// Reading a world's state between two steps on the host: fields, ledger, statistics, hash. Every call waits for the device.
 #pragma once
 #include "engine/step/ledger.hpp"
 #include "engine/step/region.hpp"
 #include "engine/step/state_program.hpp"
+#include "engine/step/stepper.hpp"
 #include <functional>
 #include <span>
 
@@ -21,12 +22,14 @@ struct WorldStats {
 
 class StateReader {
   public:
-    explicit StateReader(WorldState& state) : state_(state) {}
+    StateReader(WorldState& state, Stepper& stepper) : state_(state), stepper_(stepper) {}
 
     /// The floats in a region of a field by its plan name ("water_height", ...), at cell centres for velocities, or of a
     /// published field ("water_depth", "free_surface", "surface_saturation"). A field the mask lacks is zero.
-    /// Errors: bad_argument for any other name; device_lost.
+    /// Errors: bad_argument for any other name, and those of check_region(); device_lost.
     Status read(const std::string& name, const Region& region, std::span<float> values);
+    /// All cells.
+    Status read(const std::string& name, std::span<float> values);
     Result<WorldStats> stats();
     /// The hash of the statistics alone: fields are read, nothing is run.
     Result<std::uint64_t> hash();
@@ -46,6 +49,7 @@ class StateReader {
     Result<std::uint64_t> hash_fields(const Look& look);
 
     WorldState& state_;
+    Stepper& stepper_;
     std::array<compute::Buffer, 2> output_{}; // of publish stages, made when first asked for
     std::map<std::string, std::unique_ptr<StateProgram>> programs_;
 };

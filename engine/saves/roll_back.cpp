@@ -4,12 +4,12 @@
 namespace wadi {
 
 Status RollBack::set(std::uint32_t frames, std::uint32_t interval) {
+    if (auto status = stepper_.finish_step(); !status) return status;
     if (frames > most_frames) {
         return error(Code::bad_argument,
                      "set_rollback: frames is " + std::to_string(frames) + ", allowed are 0 ... " + std::to_string(most_frames));
     }
     if (frames > 0 && interval == 0) return error(Code::bad_argument, "set_rollback: interval_steps is 0, allowed are 1 or more");
-    if (!state_.lost()) return state_.lost();
     clear();
     frames_.reserve(frames); // programs refer to their frame
     for (std::uint32_t n = 0; n < frames; ++n) frames_.emplace_back(state_.device());
@@ -93,8 +93,8 @@ Result<std::uint64_t> RollBack::go_back(std::uint64_t step) {
         if (auto status = fit(); !status) return status; // effects may have changed with it
     }
     if (auto ticket = newest->restore->submit(); !ticket) return ticket.status();
-    stepper_.set_totals(newest->totals);
     for (auto& frame : frames_) frame.kept &= frame.totals.steps <= newest->totals.steps;
+    if (auto status = stepper_.go_to(newest->totals); !status) return status;
     return newest->totals.steps;
 }
 

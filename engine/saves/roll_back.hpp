@@ -11,14 +11,14 @@ class RollBack {
 
     RollBack(WorldState& state, Stepper& stepper) : state_(state), stepper_(stepper) {}
 
-    /// Keeps the newest `frames` of: the state now, and every step that is a multiple of `interval`. 0 frames frees everything.
-    /// Earlier frames are forgotten. Errors: bad_argument, out_of_memory (roll-back is then off).
+    /// Keeps the newest `frames` of: the state between two steps now, and every step that is a multiple of `interval`. 0 frames
+    /// frees everything. Earlier frames are forgotten. Errors: bad_argument, out_of_memory (roll-back is then off).
     Status set(std::uint32_t frames, std::uint32_t interval);
     /// Steps that can be gone back to, oldest first.
     std::vector<std::uint64_t> steps() const;
-    /// Goes to the newest kept step <= `step`, which it returns, and forgets the later ones. Parts of a step are given up.
-    /// Waits only where the material was another then. Errors: bad_argument (nothing so old is kept), those of
-    /// Stepper::set_material().
+    /// Goes to the newest kept step <= `step`, which it returns, and forgets the later ones, as it does edits and commands that
+    /// wait. Parts of a step are given up. Waits only where the material was another then. Errors: bad_argument (nothing so old
+    /// is kept), those of Stepper::set_material().
     Result<std::uint64_t> go_back(std::uint64_t step);
     /// Keeps the state if its step is due.
     Status after_step();

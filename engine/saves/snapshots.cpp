@@ -19,6 +19,7 @@ SnapshotHeader Snapshots::header() const {
 }
 
 Status Snapshots::save(std::span<std::byte> to) {
+    if (auto status = stepper_.finish_step(); !status) return status;
     const auto header = this->header();
     if (to.size() < header.bytes()) {
         return error(Code::bad_argument, "save: size is " + std::to_string(to.size()) + ", the snapshot needs " +
@@ -90,10 +91,10 @@ Status Snapshots::write_fields(const SnapshotHeader& header, std::span<const std
 }
 
 Status Snapshots::load(std::span<const std::byte> from) {
+    if (auto status = stepper_.finish_step(); !status) return status;
     auto header = read_header(from);
     if (!header) return header.status();
     if (auto status = check(*header); !status) return status;
-    if (!state_.lost()) return state_.lost();
     const Material before = state_.settings().material;
     if (auto status = stepper_.set_material(header->material); !status) return status;
     if ((header->effects & ~state_.plan().effects) != 0) {
@@ -103,8 +104,9 @@ Status Snapshots::load(std::span<const std::byte> from) {
             return status;
         }
     }
-    stepper_.set_totals(header->totals);
-    return write_fields(*header, from);
+    if (auto status = write_fields(*header, from); !status) return status;
+    if (auto status = stepper_.go_to(header->totals); !status) return status;
+    return roll_back_.restart();
 }
 
 Status Snapshots::make_buffers() {

@@ -1,5 +1,6 @@
 // Saving and loading a world's state, to the bit: at once, or copied by the device and put together beside the host's thread.
 #pragma once
+#include "engine/saves/roll_back.hpp"
 #include "engine/saves/snapshot_format.hpp"
 #include "engine/saves/worker.hpp"
 #include "engine/step/state_program.hpp"
@@ -9,16 +10,17 @@ namespace wadi {
 
 class Snapshots {
   public:
-    Snapshots(WorldState& state, Stepper& stepper) : state_(state), stepper_(stepper) {}
+    Snapshots(WorldState& state, Stepper& stepper, RollBack& roll_back)
+        : state_(state), stepper_(stepper), roll_back_(roll_back) {}
 
     /// Bytes of a snapshot of the world as it is planned now.
     std::uint64_t bytes() const { return header().bytes(); }
-    /// Writes bytes() bytes; between two steps only. Waits for the device.
+    /// Writes bytes() bytes: everything that the next step depends on, to the bit (snapshot_format.hpp). Waits for the device.
     Status save(std::span<std::byte> to);
-    /// Goes to the state of a snapshot of the same level; between two steps only. The world is promoted to the snapshot's
-    /// effects; what those lacked is zero, as it was there. Waits. Errors: bad_file (not a whole, unchanged snapshot of a known
-    /// version), bad_argument (of another level, or with effects that this world's level forces off), out_of_memory; the world is
-    /// then unchanged.
+    /// Goes back (or on) to a snapshot of a world of the same level. The world is promoted to the snapshot's effects; what those
+    /// lacked is zero, as it was there. Edits and commands that wait and frames kept for roll-back are forgotten. Waits. Errors:
+    /// bad_file (not a whole, unchanged snapshot of a known version), bad_argument (of another level, or with effects that this
+    /// world's level forces off), out_of_memory; the world is then unchanged.
     Status load(std::span<const std::byte> from);
 
     /// Has the device copy the state as it is after the steps asked for so far; never waits but allocates at its first call.
@@ -44,6 +46,7 @@ class Snapshots {
 
     WorldState& state_;
     Stepper& stepper_;
+    RollBack& roll_back_;
 
     Phase phase_ = Phase::none;
     std::uint64_t ticket_ = 0;

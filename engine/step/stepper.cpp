@@ -150,14 +150,12 @@ Status Stepper::finish(int parts) {
     return parts_done_ < this->parts() ? ok_status() : complete_step();
 }
 
-Status Stepper::begin_step() { return before_step_ ? before_step_() : ok_status(); }
-
 Status Stepper::complete_step() {
     parts_done_ = 0;
     asleep_ = false;
     state_.fields().end_turn();
     ++state_.steps;
-    return after_step_ ? after_step_() : ok_status();
+    return hooks_.after_step();
 }
 
 StepInput Stepper::next_input() {
@@ -178,7 +176,7 @@ void Stepper::note_submitted(const StepInput& input) {
 
 HostTotals Stepper::totals() const { return {state_.steps, state_.sand_initial, state_.water_initial, inputs_.totals()}; }
 
-void Stepper::set_totals(const HostTotals& totals) {
+Status Stepper::go_to(const HostTotals& totals) {
     parts_done_ = 0;
     asleep_ = false;
     state_.tiles().wake_all();
@@ -186,12 +184,20 @@ void Stepper::set_totals(const HostTotals& totals) {
     state_.sand_initial = totals.sand_initial;
     state_.water_initial = totals.water_initial;
     inputs_.set_totals(totals.inputs);
+    return hooks_.jumped();
+}
+
+Status Stepper::finish_step() {
+    if (parts_done_ == 0) return state_.lost();
+    auto status = step();
+    if (status) hooks_.finished_early();
+    return status;
 }
 
 Status Stepper::step_part() {
     if (!state_.lost()) return state_.lost();
     if (parts_done_ == 0) {
-        if (auto status = begin_step(); !status) return status;
+        if (auto status = hooks_.before_step(); !status) return status;
         input_ = next_input();
         asleep_ = may_sleep(input_);
     }
@@ -201,7 +207,7 @@ Status Stepper::step_part() {
 Status Stepper::step() {
     if (!state_.lost()) return state_.lost();
     if (parts_done_ > 0) return finish(parts());
-    if (auto status = begin_step(); !status) return status;
+    if (auto status = hooks_.before_step(); !status) return status;
     const auto turn = static_cast<std::size_t>(state_.fields().turn());
     const StepInput input = next_input();
     if (may_sleep(input)) return complete_step();

@@ -27,6 +27,9 @@ class Stepper {
 
     /// Records the step programs for the state's plan, and which buffers are current before each. After a change of the plan too.
     Status record();
+    /// Brings the world to a boundary between two steps: submits what is left of a step that was begun in parts. Every part that
+    /// must see or change the state between two steps asks for it first. Errors: device_lost, and those of step().
+    Status finish_step();
     /// Submits one whole water step, or what is left of one that was begun in parts. Nothing, where the world is asleep.
     Status step();
     /// Submits the next of a water step's parts: the water passes, then each sand substep. The same bits as step().
@@ -55,27 +58,31 @@ class Stepper {
     /// Compiles what any hold() that the level allows would need.
     Status prepare();
 
-    /// Called ahead of the first pass of every step: edits.
-    void set_before_step(std::function<Status()> call) { before_step_ = std::move(call); }
-    /// Called whenever a step has become whole: work that was asked for in the middle of a step, or that is due every so many.
-    void set_after_step(std::function<Status()> call) { after_step_ = std::move(call); }
+    /// Who must hear of a step; all are set before the first one.
+    struct Hooks {
+        /// Ahead of the first pass of every step: edits.
+        std::function<Status()> before_step;
+        /// A step has become whole: work that was asked for in the middle of a step, or that is due every so many.
+        std::function<Status()> after_step;
+        /// finish_step() has submitted what was left of a step: the clock of frames is behind it.
+        std::function<void()> finished_early;
+        /// The world went to another step: what waits belongs to another past.
+        std::function<Status()> jumped;
+    };
+    void set_hooks(Hooks hooks) { hooks_ = std::move(hooks); }
 
     HostTotals totals() const;
-    /// Goes to another step boundary. Parts already submitted are given up: the caller overwrites every kept field.
-    void set_totals(const HostTotals& totals);
+    /// Goes to another step boundary, whose kept fields the caller has written or submitted. Parts of a step are given up.
+    Status go_to(const HostTotals& totals);
 
     Status set_profiling(bool on);
     /// Mean over the steps since profiling was switched on; steps in parts are not timed.
     Result<std::vector<StageTime>> stage_times();
 
-    StepInputs& inputs() { return inputs_; }
-    const StepInputs& inputs() const { return inputs_; }
-
   private:
     Result<compute::Program> record_step(int turn, Parity& parity, bool timestamps);
     Status record_parts(std::size_t turn);
     Status finish(int parts);
-    Status begin_step();
     Status complete_step();
     Status collect_timings(bool all);
     void drop_programs();
@@ -93,7 +100,7 @@ class Stepper {
     int parts_done_ = 0;
     compute::Ticket ticket_;
     StepInput input_{}; // of the step whose parts are being submitted
-    std::function<Status()> before_step_, after_step_;
+    Hooks hooks_;
     bool profiling_ = false;
     std::vector<compute::Ticket> pending_timings_;
     std::map<std::string, double> stage_milliseconds_;

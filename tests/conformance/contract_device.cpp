@@ -65,8 +65,8 @@ void world_after_loss(Session& session, Device&, Expect& expect) {
     (*world)->device().inject_device_lost();
     std::vector<float> field(33 * 17);
     expect.code((*world)->step(1), lost, "step of a World whose device is lost");
-    expect.code((*world)->read("water_height", field), lost, "read of a World whose device is lost");
-    expect.code((*world)->stats().status(), lost, "stats of a World whose device is lost");
+    expect.code((*world)->reader().read("water_height", field), lost, "read of a World whose device is lost");
+    expect.code((*world)->reader().stats().status(), lost, "stats of a World whose device is lost");
     auto after = open_world(session, *scene, session.options());
     expect.ok(after.status(), "a World on a device opened anew");
     if (after) expect.ok((*after)->step(1), "step on a device opened anew");

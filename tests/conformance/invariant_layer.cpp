@@ -176,7 +176,7 @@ Result<Scene> scene_of(const CaseSpec& spec) {
 
 // Depths, speeds, finiteness and mass.
 Verdict check_bounds(World& world) {
-    auto stats = world.stats();
+    auto stats = world.reader().stats();
     if (!stats) return verdict_of(stats.status());
     const WorldParams params = derive_params(world.settings());
     const WorldStats& s = *stats;

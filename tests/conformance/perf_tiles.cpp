@@ -51,12 +51,12 @@ Result<std::uint64_t> measure(Session& session, const Scene& scene, double share
     }
     if (!warm) return warm.status();
     std::sort(times.begin(), times.end());
-    auto stats = (*world)->stats();
+    auto stats = (*world)->reader().stats();
     if (!stats) return stats.status();
     const double awake = stats->tiles > 0 ? static_cast<double>(stats->active_tiles) / static_cast<double>(stats->tiles) : 1.0;
     std::printf("%s,%d,%.3f,%d,%s,%.3f,%.4f,%.4f,%.4f,%.1f,%016llx\n", session.target().label().c_str(), options.size, share,
                 scene.settings.active_tiles, (*world)->plan().fused ? "yes" : "no", awake, times.front(), times[times.size() / 2],
-                times.back(), static_cast<double>((*world)->device_bytes()) / 1048576,
+                times.back(), static_cast<double>((*world)->state().device().bytes()) / 1048576,
                 static_cast<unsigned long long>(stats->hash));
     std::fflush(stdout);
     return stats->hash;

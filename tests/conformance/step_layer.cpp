@@ -133,7 +133,7 @@ Verdict against_reference_run(const Scene& scene, int steps, Session& session) {
     Verdict verdict;
     for (const auto& field : (*world)->plan().fields) {
         if (field.role != FieldRole::state) continue;
-        auto got = (*world)->read_raw(field.name);
+        auto got = (*world)->reader().read_raw(field.name);
         if (!got) return verdict_of(got.status());
         const auto low = reference_field(references.narrow, "", {field.name, false}, true);
         const auto high = reference_field(references.wide, "", {field.name, false}, true);

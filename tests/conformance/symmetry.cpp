@@ -105,7 +105,7 @@ Verdict compare_images(World& world, World& image, Symmetry symmetry) {
         const bool shear = field.name == "stretch_xy", turn = field.name == "rotation";
         const bool odd = turn || (symmetry == Symmetry::mirror_x && (face_x || shear)) ||
                          (symmetry == Symmetry::mirror_y && (face_y || shear));
-        auto a = world.read_raw(field.name), b = image.read_raw(twin);
+        auto a = world.reader().read_raw(field.name), b = image.reader().read_raw(twin);
         if (!a) return verdict_of(a.status());
         if (!b) return verdict_of(b.status());
         for (int j = 0; j < ny + (face_y ? 1 : 0); ++j) {

@@ -19,8 +19,8 @@ Verdict same_state(World& got, World& expected) {
     const FieldLayout layout{got.settings().grid.nx, got.settings().grid.ny};
     for (const auto& field : expected.plan().fields) {
         if (field.role != FieldRole::state) continue;
-        auto a = got.read_raw(field.name);
-        auto b = expected.read_raw(field.name);
+        auto a = got.reader().read_raw(field.name);
+        auto b = expected.reader().read_raw(field.name);
         if (!a) return verdict_of(a.status());
         if (!b) return verdict_of(b.status());
         const Verdict verdict = compare_bits(field.name, *a, *b, layout, whole_layout(layout));

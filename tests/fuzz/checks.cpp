@@ -19,7 +19,7 @@ Base run_base(const Case& c, Session& session) {
         if (done == c.steps - 1) base.hash_before = hash(run);
         step(run, 1);
         if (!run.good() || (done > 2 && done % 8 != 0 && done != c.steps - 1)) continue;
-        auto stats = run.world->stats();
+        auto stats = run.world->reader().stats();
         run.note("stats", stats.status());
         if (!stats) break;
         base.finite = stats->not_finite == 0;
@@ -56,8 +56,8 @@ std::string check_save(const Case& c, Session& session, const Base& base, Random
     step(first, at);
     if (!first.good()) return first.failure;
     std::vector<std::byte> bytes(first.world->snapshots().bytes());
-    first.note("save", first.world->save(bytes));
-    if (second.good()) second.note("load", second.world->load(bytes));
+    first.note("save", first.world->snapshots().save(bytes));
+    if (second.good()) second.note("load", second.world->snapshots().load(bytes));
     queue(second, c, static_cast<std::uint64_t>(at));
     step(second, c.steps - at);
     if (!first.failure.empty()) return first.failure;
@@ -159,7 +159,7 @@ std::string check_reference(const Case& c, Session& session) {
         for (const auto& [name, mine, theirs] :
              {std::tuple{"sand_height", &narrow.sand, &wide.sand}, std::tuple{"water_height", &narrow.water, &wide.water}}) {
             std::vector<float> got(mine->size());
-            if (run.good()) run.note("read", run.world->read(name, got));
+            if (run.good()) run.note("read", run.world->reader().read(name, got));
             if (!run.good()) return run.failure;
             double size = 0, spread = 0, off = 0;
             for (std::size_t n = 0; n < got.size(); ++n) {

@@ -21,7 +21,7 @@ class Host {
         case 0:
             return stamp();
         case 1:
-            return expect("trim", run_.world->trim(), true);
+            return expect("trim", run_.world->commands().trim(), true);
         case 2:
             return change_material();
         case 3:
@@ -71,14 +71,14 @@ class Host {
         edit.y1 = edit.y0 + random_.log(0.1, 40) * grid_.dx;
         edit.amount = random_.real(-size_, size_);
         if (edit.layer == EditLayer::terrain) raised_ += std::fabs(edit.amount);
-        expect("stamp", run_.world->edit(std::span(&edit, 1)), false);
+        expect("stamp", run_.world->commands().edit(std::span(&edit, 1)), false);
     }
 
     void write_region() {
         const EditLayer to = layer();
         const Region r = region();
         if (to == EditLayer::terrain) raised_ += size_;
-        expect("write_region", run_.world->write_region(to, r, image(r.cells(), 0, size_)), false);
+        expect("write_region", run_.world->commands().write_region(to, r, image(r.cells(), 0, size_)), false);
     }
 
     // With one value that is none, or a corner outside: refused, and not a bit has changed.
@@ -90,7 +90,7 @@ class Host {
         else
             r.i0 += grid_.nx;
         const std::uint64_t before = hash(run_);
-        const auto status = run_.world->write_region(layer(), r, values);
+        const auto status = run_.world->commands().write_region(layer(), r, values);
         if (status || status.code != Code::bad_argument) run_.failure = "a wrong region was not refused as bad_argument";
         if (hash(run_) != before && run_.good()) run_.failure = "a refused region changed the state";
     }
@@ -100,7 +100,7 @@ class Host {
         const auto& known = material_keys()[static_cast<std::size_t>(key)];
         const double now = material_value(run_.world->settings().material, key);
         const double value = random_.chance(0.1) ? known.most : std::max(now, 1e-3) * random_.log(0.1, 10);
-        expect("set_material", run_.world->set_material(key, std::clamp(value, known.least, known.most)), false);
+        expect("set_material", run_.world->commands().set_material(key, std::clamp(value, known.least, known.most)), false);
     }
 
     Run& run_;
@@ -118,7 +118,7 @@ std::string check_log(const Case& c, Session& session, const Base& base) {
         for (Edit edit : c.commands) {
             if (edit.step != static_cast<std::uint64_t>(done)) continue;
             edit.step = 0; // the next one
-            run.note("edit", run.world->edit(std::span(&edit, 1)));
+            run.note("edit", run.world->commands().edit(std::span(&edit, 1)));
         }
         step(run, 1);
     }
@@ -141,7 +141,7 @@ std::string check_calls(const Case& c, const Case& twin, Session& session) {
         while (run.good() && random.chance(0.35)) host.call();
         step(run, 1);
         if (!run.good() || (done % 8 != 0 && done != c.steps)) continue;
-        auto stats = run.world->stats();
+        auto stats = run.world->reader().stats();
         run.note("stats", stats.status());
         if (!stats) break;
         if (stats->not_finite > 0 && c.scene.settings.method.name == "published") return {};

@@ -29,7 +29,7 @@ void queue(Run& run, const Case& c, std::uint64_t from) {
     std::vector<Edit> later;
     for (const Edit& edit : c.commands)
         if (edit.step >= from) later.push_back(edit);
-    if (run.good() && !later.empty()) run.note("edit", run.world->edit(later));
+    if (run.good() && !later.empty()) run.note("edit", run.world->commands().edit(later));
 }
 
 void step(Run& run, int count) {
@@ -38,7 +38,7 @@ void step(Run& run, int count) {
 
 std::uint64_t hash(Run& run) {
     if (!run.good()) return 0;
-    auto value = run.world->hash();
+    auto value = run.world->reader().hash();
     run.note("hash", value.status());
     return value ? *value : 0;
 }

@@ -65,7 +65,7 @@ bool rim_is_dry(Run& run) {
     const Grid& grid = run.world->settings().grid;
     for (const char* name : {"sand_height", "water_height"}) {
         std::vector<float> heights(static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny));
-        run.note("read", run.world->read(name, heights));
+        run.note("read", run.world->reader().read(name, heights));
         if (!run.good()) return false;
         for (int j = 0; j < grid.ny; ++j)
             for (int i = 0; i < grid.nx; ++i) {
@@ -97,7 +97,7 @@ std::string check_shift(const Case& c, const Case& twin, Session& session, Rando
     const FieldLayout layout{one.world->settings().grid.nx, one.world->settings().grid.ny};
     for (const auto& field : one.world->plan().fields) {
         if (field.role != FieldRole::state) continue;
-        auto here = one.world->read_raw(field.name), there = other.world->read_raw(field.name);
+        auto here = one.world->reader().read_raw(field.name), there = other.world->reader().read_raw(field.name);
         one.note("read", here.status());
         other.note("read", there.status());
         if (!here || !there) return one.failure + other.failure;

@@ -22,13 +22,13 @@ struct Cells {
 inline Cells cells_of(World& world, const char* field) {
     const auto& g = world.settings().grid;
     Cells cells{g.nx, g.ny, std::vector<float>(static_cast<std::size_t>(g.nx) * static_cast<std::size_t>(g.ny))};
-    const auto status = world.read(field, cells.values);
+    const auto status = world.reader().read(field, cells.values);
     REQUIRE_MESSAGE(status, status.message);
     return cells;
 }
 
 inline WorldStats stats_of(World& world) {
-    auto stats = world.stats();
+    auto stats = world.reader().stats();
     REQUIRE_MESSAGE(stats, stats.status().message);
     return *stats;
 }

@@ -15,7 +15,7 @@ namespace {
 
 /// Tiles that ran in the last step, as their share of all.
 double awake(World& world) {
-    const auto stats = world.stats();
+    const auto stats = world.reader().stats();
     REQUIRE(stats);
     REQUIRE(stats->tiles > 0);
     return static_cast<double>(stats->active_tiles) / static_cast<double>(stats->tiles);
@@ -34,7 +34,7 @@ struct Twins {
     }
     bool equal() {
         for (const auto& [name, values] : state_of(*dense)) {
-            const auto other = sparse->read_raw(name);
+            const auto other = sparse->reader().read_raw(name);
             REQUIRE(other);
             if (std::memcmp(values.data(), other->data(), values.size() * 4) != 0) {
                 MESSAGE(name << " differs after step " << dense->steps());
@@ -56,8 +56,8 @@ struct Twins {
         return -1;
     }
     void edit(Edit edit) {
-        REQUIRE(dense->edit(std::span(&edit, 1)));
-        REQUIRE(sparse->edit(std::span(&edit, 1)));
+        REQUIRE(dense->commands().edit(std::span(&edit, 1)));
+        REQUIRE(sparse->commands().edit(std::span(&edit, 1)));
     }
     std::unique_ptr<World> dense, sparse;
 };
@@ -129,7 +129,8 @@ TEST_CASE("active tiles: water runs no stage of the sand, dry sand none of the w
             if (!twins.sparse->device().capabilities().exact_float) continue;
             REQUIRE(twins.sparse->plan().tiles_by_material);
             for (Twins* t : {&twins, &wet, &dry}) CHECK(t->differ(backend == "cpu" ? 8 : 4, 2) == -1);
-            const auto both = twins.sparse->stats(), water = wet.sparse->stats(), sand = dry.sparse->stats();
+            const auto both = twins.sparse->reader().stats(), water = wet.sparse->reader().stats(),
+                       sand = dry.sparse->reader().stats();
             REQUIRE((both && water && sand));
             CHECK(water->active_tiles > 8);
             CHECK(water->active_sand_tiles == 0);
@@ -209,12 +210,12 @@ TEST_CASE("active tiles: a step carries a change no further than the plan's reac
             auto one = make_world(scene), other = make_world(scene);
             for (World* world : {one.get(), other.get()}) step(*world, few_steps ? 8 : 20);
             for (const auto layer : {EditLayer::sand, EditLayer::water, EditLayer::terrain})
-                REQUIRE(other->write_region(layer, {at_x, at_y, 1, 1}, std::vector<float>{0.55F}));
+                REQUIRE(other->commands().write_region(layer, {at_x, at_y, 1, 1}, std::vector<float>{0.55F}));
             step(*one, 1);
             step(*other, 1);
             int furthest = 0;
             for (const auto& [name, values] : state_of(*one)) {
-                const auto theirs = other->read_raw(name);
+                const auto theirs = other->reader().read_raw(name);
                 REQUIRE(theirs);
                 const FieldLayout layout{192, 160};
                 for (int j = 0; j <= 160; ++j)
@@ -269,7 +270,7 @@ TEST_CASE("active tiles: dry ground sleeps from the third step on, and an edit p
 
 TEST_CASE("active tiles: snapshots, roll-back, regions and other material wake what they change") {
     Twins twins(pond_and_pile(), 8);
-    for (World* world : {twins.dense.get(), twins.sparse.get()}) REQUIRE(world->set_rollback(4, few_steps ? 10 : 50));
+    for (World* world : {twins.dense.get(), twins.sparse.get()}) REQUIRE(world->roll_back().set(4, few_steps ? 10 : 50));
     twins.step(few_steps ? 15 : 300);
     CHECK(twins.equal());
     const auto sleeping = save(*twins.dense);
@@ -277,20 +278,20 @@ TEST_CASE("active tiles: snapshots, roll-back, regions and other material wake w
     twins.edit(pour(EditLayer::water, 24, 16, 0.5));
     twins.step(few_steps ? 5 : 50);
     CHECK(twins.equal());
-    for (World* world : {twins.dense.get(), twins.sparse.get()}) REQUIRE(world->load(sleeping));
+    for (World* world : {twins.dense.get(), twins.sparse.get()}) REQUIRE(world->snapshots().load(sleeping));
     CHECK(twins.differ(few_steps ? 5 : 20) == -1);
     const std::uint64_t back = few_steps ? 12 : 60;
     twins.step(few_steps ? 20 : 200);
-    for (World* world : {twins.dense.get(), twins.sparse.get()}) REQUIRE(world->roll_back_to(world->steps() - back));
+    for (World* world : {twins.dense.get(), twins.sparse.get()}) REQUIRE(world->roll_back().go_back(world->steps() - back));
     CHECK(twins.differ(few_steps ? 5 : 20) == -1);
     const std::vector<float> heights(40, 0.6F);
     for (World* world : {twins.dense.get(), twins.sparse.get()})
-        REQUIRE(world->write_region(EditLayer::water, {100, 60, 8, 5}, heights));
+        REQUIRE(world->commands().write_region(EditLayer::water, {100, 60, 8, 5}, heights));
     CHECK(twins.differ(few_steps ? 5 : 30) == -1);
     for (World* world : {twins.dense.get(), twins.sparse.get()}) {
         const auto keys = material_keys();
         const auto key = std::find_if(keys.begin(), keys.end(), [](const auto& k) { return std::string(k.name) == "friction"; });
-        REQUIRE(world->set_material(static_cast<int>(key - keys.begin()), 0.1));
+        REQUIRE(world->commands().set_material(static_cast<int>(key - keys.begin()), 0.1));
     }
     CHECK(twins.differ(few_steps ? 10 : 60, 2) == -1);
 }
@@ -372,7 +373,7 @@ TEST_CASE("active tiles: more of them than settings.active_tiles_most are told t
     run(20); // few are active by then
     CHECK(told.size() == 1);
     const std::vector<float> heights(1, 0.1F);
-    REQUIRE(world->write_region(EditLayer::terrain, {3, 3, 1, 1}, heights)); // wakes all
+    REQUIRE(world->commands().write_region(EditLayer::terrain, {3, 3, 1, 1}, heights)); // wakes all
     run(4);
     CHECK(told.size() == 2);
 }
@@ -380,9 +381,9 @@ TEST_CASE("active tiles: more of them than settings.active_tiles_most are told t
 TEST_CASE("active tiles: steps in parts and profiled steps are the same steps") {
     Twins twins(pond_and_pile(), 8);
     const int steps = few_steps ? 8 : 30;
-    REQUIRE(twins.sparse->set_profiling(true));
+    REQUIRE(twins.sparse->stepper().set_profiling(true));
     twins.step(steps);
-    REQUIRE(twins.sparse->set_profiling(false));
+    REQUIRE(twins.sparse->stepper().set_profiling(false));
     for (int n = 0; n < steps; ++n) {
         for (int part = 0; part < twins.sparse->stepper().parts(); ++part) REQUIRE(twins.sparse->stepper().step_part());
         test::step(*twins.dense, 1);

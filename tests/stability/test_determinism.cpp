@@ -74,10 +74,10 @@ TEST_CASE("barriers everywhere, recording anew and profiling change no bit, on e
         CHECK(run(scene, 20, full) == expected);
         CHECK(run(scene, 20, anew) == expected);
         auto profiled = make_world(scene, {backend});
-        REQUIRE(profiled->set_profiling(true));
+        REQUIRE(profiled->stepper().set_profiling(true));
         step(*profiled, 20);
         CHECK(hash_of(*profiled) == expected);
-        auto times = profiled->stage_times();
+        auto times = profiled->stepper().stage_times();
         REQUIRE(times);
         CHECK(times->size() == 14);
         for (const auto& time : *times) CHECK_MESSAGE(time.milliseconds > 0, time.stage);
@@ -114,7 +114,7 @@ TEST_CASE("pipelines specialised for a scene's mask give the bits of pipelines w
         step(*full_world, 100);
         CHECK(hash_of(*lean_world) == lean);
         for (const auto& field : state_of(*lean_world)) {
-            const auto full = full_world->read_raw(field.first);
+            const auto full = full_world->reader().read_raw(field.first);
             REQUIRE(full);
             CHECK_MESSAGE(*full == field.second, field.first);
         }
@@ -133,19 +133,19 @@ TEST_CASE("saved, stepped on, restored and stepped again: the same bits, on ever
         const auto saved = save(*world);
         step(*world, 20);
         CHECK(hash_of(*world) == expected);
-        REQUIRE(world->load(saved));
+        REQUIRE(world->snapshots().load(saved));
         CHECK(world->steps() == 25);
         step(*world, 20);
         CHECK(hash_of(*world) == expected);
         auto other = make_world(scene); // on the CPU
         step(*other, 3);
-        REQUIRE(other->load(saved));
+        REQUIRE(other->snapshots().load(saved));
         step(*other, 20);
         CHECK(hash_of(*other) == expected);
-        auto stats = other->stats();
+        auto stats = other->reader().stats();
         REQUIRE(stats);
         CHECK(stats->water_quanta == stats->water_initial + stats->ledger.water_in - stats->ledger.water_out);
-        CHECK(make_world(mixed_scene(48, 41))->load(saved).code == Code::bad_argument);
+        CHECK(make_world(mixed_scene(48, 41))->snapshots().load(saved).code == Code::bad_argument);
     }
 }
 
@@ -213,13 +213,13 @@ TEST_CASE("a lost device is reported by every call, and only by worlds on it") {
         });
         world->device().inject_device_lost();
         CHECK(world->step(1).code == Code::device_lost);
-        CHECK(world->stats().status().code == Code::device_lost);
+        CHECK(world->reader().stats().status().code == Code::device_lost);
         std::vector<float> cells(256);
-        CHECK(world->read("water_height", cells).code == Code::device_lost);
+        CHECK(world->reader().read("water_height", cells).code == Code::device_lost);
         REQUIRE(errors.size() == 1); // told once
         CHECK(errors[0].starts_with("step 3: "));
         // The last snapshot survives the device.
-        REQUIRE(other->load(saved));
+        REQUIRE(other->snapshots().load(saved));
         step(*other, 1);
         CHECK(hash_of(*other) == run(mixed_scene(16, 16), 4));
     }

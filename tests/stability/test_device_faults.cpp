@@ -111,26 +111,26 @@ template <class Note> void session(Device& device, FaultyDevice::Plan& plan, Not
     note(made.status());
     if (!made) return;
     World& world = **made;
-    note(world.set_rollback(2, 1));
+    note(world.roll_back().set(2, 1));
     note(world.outputs().set_mask(1));
     note(world.step(2));
     const Edit edits[] = {pour(EditLayer::sand), pour(EditLayer::water)};
     if (plan.lost) return; // an edit is only queued
-    note(world.edit(edits));
+    note(world.commands().edit(edits));
     note(world.step(2));
     Frame frame;
     note(world.update(50'000'000, frame));
     std::vector<std::byte> bytes(world.snapshots().bytes());
-    const auto saved = world.save(bytes);
+    const auto saved = world.snapshots().save(bytes);
     note(saved);
     note(world.step(1));
-    if (saved) note(world.load(bytes));
+    if (saved) note(world.snapshots().load(bytes));
     std::vector<float> cells(9 * 7);
-    note(world.read("free_surface", cells));
-    const auto stats = world.stats();
+    note(world.reader().read("free_surface", cells));
+    const auto stats = world.reader().stats();
     note(stats.status());
     if (stats) CHECK(books_hold(world, *stats)); // after a lack of memory too
-    note(world.write_region(EditLayer::sand, {1, 1, 2, 2}, std::vector<float>(4, 0.1F)));
+    note(world.commands().write_region(EditLayer::sand, {1, 1, 2, 2}, std::vector<float>(4, 0.1F)));
     note(world.step(1));
 }
 

@@ -23,7 +23,7 @@ Scene drowned_dune() {
 double speed_after(const Scene& scene, int steps) {
     auto world = make_world(scene);
     step(*world, steps);
-    const auto stats = world->stats();
+    const auto stats = world->reader().stats();
     REQUIRE(stats);
     CHECK(stats->not_finite == 0);
     return stats->largest_water_speed;
@@ -45,7 +45,7 @@ double speed_of_pair(DragFriction form, double exchange) {
     scene.settings.method.drag_friction = form;
     auto world = make_world(scene);
     step(*world, 4);
-    const auto raw = world->read_raw("mixed_velocity_x");
+    const auto raw = world->reader().read_raw("mixed_velocity_x");
     REQUIRE(raw);
     return static_cast<double>(std::abs((*raw)[FieldLayout{24, 16}.index(12, 8)]));
 }
@@ -82,7 +82,7 @@ TEST_CASE("explicit drag and Laplacian diffusion, velocities in flux form or tra
             CAPTURE(backend);
             auto world = make_world(scene, {.backend = backend, .shared_device = true});
             step(*world, 60);
-            const auto stats = world->stats();
+            const auto stats = world->reader().stats();
             REQUIRE(stats);
             CHECK(stats->water_quanta == stats->water_initial);
             if (hash == 0) hash = hash_of(*world);

@@ -58,7 +58,7 @@ std::uint32_t make_stamp(World& world, int nx, int ny) {
 std::vector<float> read(World& world, const char* field) {
     const auto& grid = world.settings().grid;
     std::vector<float> values(static_cast<std::size_t>(grid.nx * grid.ny));
-    const auto status = world.read(field, values);
+    const auto status = world.reader().read(field, values);
     REQUIRE_MESSAGE(status, status.message);
     return values;
 }
@@ -134,7 +134,7 @@ TEST_CASE("terrain edits repeat the edge in the ghosts") {
         auto world = make_world(scene);
         edit_world(*world, {brush(EditLayer::terrain, 0, 0, 3, 0.5), brush(EditLayer::terrain, 0.5 * nx, 0.5 * ny, 4, -0.75, 1)});
         step(*world, 1);
-        auto raw = world->read_raw("terrain");
+        auto raw = world->reader().read_raw("terrain");
         REQUIRE(raw);
         const FieldLayout layout{nx, ny};
         CHECK((*raw)[layout.index(0, 0)] != 0.0F);
@@ -278,7 +278,7 @@ TEST_CASE("edits that are no edits are refused by name, and nothing is queued") 
     const auto refused = [&](auto change, const char* name) {
         Edit bad = good;
         change(bad);
-        const auto status = world->edit(std::vector<Edit>{good, bad});
+        const auto status = world->commands().edit(std::vector<Edit>{good, bad});
         CHECK_MESSAGE(status.code == Code::bad_argument, name);
         CHECK_MESSAGE(status.message.find("edits[1]." + std::string(name)) != std::string::npos, status.message);
     };

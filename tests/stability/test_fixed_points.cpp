@@ -71,7 +71,7 @@ TEST_CASE("negative control: a lake that is not level moves, and without quantum
     restless.settings.method.quantum = 0;
     auto world = make_world(restless);
     step(*world, 2000);
-    auto stats = world->stats();
+    auto stats = world->reader().stats();
     CHECK(stats->largest_water_speed < 1e-3);
 }
 

@@ -21,11 +21,11 @@ compute::DeviceCounters cost_of_update(World& world, std::uint64_t nanoseconds =
     std::vector<float> wait(columns * rows);
     for (int n = 0; n < 12; ++n) { // every parity with every set
         REQUIRE(world.update(step_time, frame));
-        REQUIRE(world.read("terrain", wait));
+        REQUIRE(world.reader().read("terrain", wait));
     }
     compute::DeviceCounters cost;
     for (int n = 0; n < 12; ++n) {
-        REQUIRE(world.read("terrain", wait));
+        REQUIRE(world.reader().read("terrain", wait));
         const auto before = world.device().counters();
         REQUIRE(world.update(nanoseconds, frame));
         const auto after = world.device().counters();
@@ -91,12 +91,12 @@ TEST_CASE("a load in the middle of a spread step leaves the clock owing that ste
     auto world = make("cpu");
     REQUIRE(world->set_update_settings({.spread = true}));
     std::vector<std::byte> saved(world->snapshots().bytes());
-    REQUIRE(world->save(saved));
+    REQUIRE(world->snapshots().save(saved));
     Frame frame;
     REQUIRE(world->update(step_time / 2, frame));
     const auto ahead = test::hash_of(*world); // finishes the step
     CHECK(world->steps() == 1);
-    REQUIRE(world->load(saved));
+    REQUIRE(world->snapshots().load(saved));
     CHECK(world->steps() == 0);
     REQUIRE(world->update(step_time / 2, frame));
     CHECK(frame.total_steps == 1);

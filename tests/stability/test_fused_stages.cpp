@@ -40,7 +40,7 @@ TEST_CASE("fused stages: every level gives the bits of its stages one by one") {
             CAPTURE(backend);
             auto world = fused(scene, backend);
             if (!world) continue;
-            CHECK(world->describe_plan().find("stages fused") != std::string::npos);
+            CHECK(describe_plan(world->state()).find("stages fused") != std::string::npos);
             step(*world, steps);
             CHECK(hash_of(*world) == hash_of(*expected));
         }
@@ -74,8 +74,8 @@ TEST_CASE("fused stages: edits that bring sand or water, steps in parts, snapsho
         CHECK(world->steps() == expected->steps());
         CHECK(hash_of(*world) == hash_of(*expected));
         auto back = apart(scene), again = fused(scene, backend);
-        REQUIRE(back->load(save(*world)));
-        REQUIRE(again->load(save(*expected)));
+        REQUIRE(back->snapshots().load(save(*world)));
+        REQUIRE(again->snapshots().load(save(*expected)));
         for (auto* w : {expected.get(), world.get(), back.get(), again.get()}) step(*w, 8);
         CHECK(hash_of(*world) == hash_of(*expected));
         CHECK(hash_of(*back) == hash_of(*expected));

@@ -75,7 +75,7 @@ TEST_CASE("half storage: the same bits on every backend, fused, over active tile
                     if (!device.exact_float || (fused && !device.fused_stages)) continue;
                     step(*world, steps / 2);
                     auto again = make_world(plain);
-                    REQUIRE(again->load(save(*world)));
+                    REQUIRE(again->snapshots().load(save(*world)));
                     for (auto* w : {world.get(), again.get()}) step(*w, steps - steps / 2);
                     CHECK(hash_of(*world) == hash_of(*expected));
                     CHECK(hash_of(*again) == hash_of(*expected));
@@ -96,7 +96,7 @@ TEST_CASE("half storage: mass is exact, a lake and a pile rest, and the error is
     step(*half_world, steps);
     step(*fine_world, 2 * steps);
     const auto difference = [&](World& a, World& b, const char* field) {
-        const auto x = a.read_raw(field), y = b.read_raw(field);
+        const auto x = a.reader().read_raw(field), y = b.reader().read_raw(field);
         REQUIRE((x && y));
         double sum = 0, all = 0;
         for (std::size_t n = 0; n < x->size(); ++n) {
@@ -111,12 +111,12 @@ TEST_CASE("half storage: mass is exact, a lake and a pile rest, and the error is
         CHECK(by_half > 0);
         CHECK(by_half < by_dt);
     }
-    const auto stats = half_world->stats();
+    const auto stats = half_world->reader().stats();
     REQUIRE(stats);
     CHECK(stats->sand_quanta == stats->sand_initial + stats->ledger.sand_in - stats->ledger.sand_out);
     CHECK(stats->water_quanta == stats->water_initial + stats->ledger.water_in - stats->ledger.water_out);
     CHECK(half_world->plan().bytes_per_cell() < 0.8 * full_world->plan().bytes_per_cell());
-    CHECK(half_world->device_bytes() < full_world->device_bytes());
+    CHECK(half_world->state().device().bytes() < full_world->state().device().bytes());
 
     auto still = halved(flat_scene(40, 30, 0.2, 0.01));
     still.fill(still.fields.terrain, [](double x, double y) { return 0.5 + 0.4 * std::sin(x) * std::cos(y); });
@@ -124,11 +124,11 @@ TEST_CASE("half storage: mass is exact, a lake and a pile rest, and the error is
                [](double x, double y) { return std::max(0.0, 0.8 - (0.5 + 0.4 * std::sin(x) * std::cos(y))); });
     auto lake = make_world(still);
     step(*lake, few_steps ? 5 : 20);
-    const auto settled = lake->stats();
+    const auto settled = lake->reader().stats();
     REQUIRE(settled);
     const auto before = hash_of(*lake);
     step(*lake, few_steps ? 10 : 200);
-    CHECK(lake->stats()->largest_water_speed == 0);
+    CHECK(lake->reader().stats()->largest_water_speed == 0);
     CHECK(hash_of(*lake) == before);
 }
 
@@ -143,7 +143,7 @@ TEST_CASE("half storage: no speed is rounded above the clamp") {
     auto world = make_world(scene);
     for (int n = 0; n < 20; ++n) {
         step(*world, 1);
-        const auto stats = world->stats();
+        const auto stats = world->reader().stats();
         REQUIRE(stats);
         CHECK(stats->largest_water_speed <= 0.35 * 0.2 / 0.1);
         if (n == 10) CHECK(stats->largest_water_speed > 0.99 * 0.35 * 0.2 / 0.1);
@@ -154,7 +154,7 @@ TEST_CASE("half storage: regions, edits and fields of a world read and write pla
     auto scene = halved(mixed_scene(40, 30));
     auto world = make_world(scene);
     step(*world, 5);
-    const auto stretch = world->read_raw("stretch_xx"), velocity = world->read_raw("sand_velocity_x");
+    const auto stretch = world->reader().read_raw("stretch_xx"), velocity = world->reader().read_raw("sand_velocity_x");
     REQUIRE((stretch && velocity));
     float most = 0;
     for (const float v : *velocity) {
@@ -163,13 +163,13 @@ TEST_CASE("half storage: regions, edits and fields of a world read and write pla
     }
     CHECK(most > 1e-3F);
     std::vector<float> cells(40 * 30);
-    REQUIRE(world->read("stretch_xx", cells));
+    REQUIRE(world->reader().read("stretch_xx", cells));
     const FieldLayout layout{40, 30};
     for (int j = 0; j < 30; ++j)
         for (int i = 0; i < 40; ++i) CHECK(cells[static_cast<std::size_t>(j * 40 + i)] == (*stretch)[layout.index(i, j)]);
     edit_world(*world, {brush(EditLayer::sand, 4, 3, 1, 0.3)});
     step(*world, 5);
-    const auto stats = world->stats();
+    const auto stats = world->reader().stats();
     REQUIRE(stats);
     CHECK(stats->not_finite == 0);
 }

@@ -50,7 +50,7 @@ TEST_CASE("initial + in - out = now to the last bit, with every effect on, on ev
         auto world = make_world(everything(48, 40), {.backend = backend, .shared_device = true});
         CHECK(world->plan().effects == 2047);
         step(*world, backend == "cpu" ? 300 : 100);
-        auto stats = world->stats();
+        auto stats = world->reader().stats();
         REQUIRE(stats);
         check_exact(*world, *stats);
         CHECK(stats->ledger.water_in > 0);
@@ -72,7 +72,7 @@ TEST_CASE("any time step from 1e-5 to 1 s: exact, positive, finite") {
             scene.settings.method.largest_height = 1024;
             auto world = make_world(scene);
             step(*world, 200);
-            auto stats = world->stats();
+            auto stats = world->reader().stats();
             REQUIRE(stats);
             check_exact(*world, *stats);
         }
@@ -88,7 +88,7 @@ TEST_CASE("one-cell and one-row grids run") {
         scene.fill(scene.fields.water, [](double, double) { return 0.5; });
         auto world = make_world(scene);
         step(*world, 100);
-        auto stats = world->stats();
+        auto stats = world->reader().stats();
         REQUIRE(stats);
         check_exact(*world, *stats);
     }
@@ -99,7 +99,7 @@ TEST_CASE("plain float heights drift, and only a little; without the limiter mas
     scene.settings.method.quantum = 0;
     auto world = make_world(scene);
     step(*world, 1000);
-    auto drift = world->stats();
+    auto drift = world->reader().stats();
     CHECK(std::abs(static_cast<double>(drift->water_quanta - drift->water_initial)) / static_cast<double>(drift->water_initial) <
           5e-6);
     scene.settings.method.outflow_limiter = false;
@@ -108,6 +108,6 @@ TEST_CASE("plain float heights drift, and only a little; without the limiter mas
     scene.settings.dt = 0.2;
     auto bare = make_world(scene);
     step(*bare, 200);
-    auto lost = bare->stats();
+    auto lost = bare->reader().stats();
     CHECK((lost->not_finite > 0 || lost->water_quanta != lost->water_initial));
 }

@@ -23,7 +23,7 @@ double drift_of_dam_break(bool limiter) {
     scene.settings.method.outflow_limiter = limiter;
     auto world = make_world(scene);
     step(*world, 100);
-    const auto stats = world->stats();
+    const auto stats = world->reader().stats();
     REQUIRE(stats);
     return static_cast<double>(stats->water_quanta - stats->water_initial) / static_cast<double>(stats->water_initial);
 }
@@ -54,7 +54,7 @@ TEST_CASE("robust and published run dam_break, piles and canyon, each with the s
                     make_world(level_with(row.name, row.nx, row.ny, method), {.backend = backend, .shared_device = true});
                 CHECK(((world->plan().effects & EFFECT_SEMI_LAGRANGIAN) != 0) == (std::string(method) == "published"));
                 step(*world, row.steps);
-                const auto stats = world->stats();
+                const auto stats = world->reader().stats();
                 REQUIRE(stats);
                 CHECK(stats->not_finite == 0);
                 CHECK(stats->smallest_height >= 0);

@@ -76,7 +76,7 @@ TEST_CASE("terrain, then water, then sand: the bits of a world that had every ef
 TEST_CASE("a promotion keeps what runs in parts and what is profiled going") {
     const auto scene = dry_valley(false);
     auto parts = make_world(scene), whole = make_world(scene);
-    REQUIRE(parts->set_profiling(true));
+    REQUIRE(parts->stepper().set_profiling(true));
     for (int n = 0; n < 6; ++n) {
         for (auto* world : {parts.get(), whole.get()}) {
             if (n == 1) edit_world(*world, {disc(EditLayer::water, 2, 2, 1, 0.5)});
@@ -89,7 +89,7 @@ TEST_CASE("a promotion keeps what runs in parts and what is profiled going") {
     }
     CHECK(hash_of(*parts) == hash_of(*whole));
     step(*parts, 3);
-    auto times = parts->stage_times();
+    auto times = parts->stepper().stage_times();
     REQUIRE(times);
     CHECK(times->size() > 10);
 }
@@ -99,8 +99,8 @@ TEST_CASE("preparing for every material changes neither plan nor memory nor bits
         auto scene = dry_valley(false);
         if (*off != '\0') scene.settings.effects = {{off, Force::off}};
         auto prepared = make_world(scene), plain = make_world(scene);
-        REQUIRE(prepared->prepare());
-        CHECK(prepared->device_bytes() == plain->device_bytes());
+        REQUIRE(prepared->stepper().prepare());
+        CHECK(prepared->state().device().bytes() == plain->state().device().bytes());
         CHECK(prepared->plan().effects == plain->plan().effects);
         for (auto* world : {prepared.get(), plain.get()}) {
             edit_world(*world, {disc(*off == 'w' ? EditLayer::sand : EditLayer::water, 3, 2, 1, 0.5)});
@@ -116,30 +116,30 @@ TEST_CASE("trim brings passes and memory back, and a trimmed world goes on as on
     step(*world, 1);
     edit_world(*world, {disc(EditLayer::terrain, 2, 2, 1, 0.1)}); // what edits themselves need is there from now on
     step(*world, 1);
-    REQUIRE(world->stats()); // needs a buffer of its own
-    const auto bytes = world->device_bytes();
+    REQUIRE(world->reader().stats()); // needs a buffer of its own
+    const auto bytes = world->state().device().bytes();
     const auto count = passes(*world);
-    const auto buffers = world->memory().size();
+    const auto buffers = world->state().device().memory().size();
     for (int n = 0; n < 3; ++n) {
         edit_world(*world, {disc(EditLayer::water, 5, 2, 1, 0.5)});
         edit_world(*world, {disc(EditLayer::sand, 3, 2, 1, 0.5)});
         step(*world, 20);
-        CHECK(world->device_bytes() > bytes);
+        CHECK(world->state().device().bytes() > bytes);
         CHECK(passes(*world) > count);
-        REQUIRE(world->trim());
+        REQUIRE(world->commands().trim());
         CHECK(passes(*world) > count); // it still holds both
         edit_world(*world, {disc(EditLayer::sand, 3, 2, 20, -16)});
         step(*world, 1);
-        REQUIRE(world->trim());
+        REQUIRE(world->commands().trim());
         CHECK((world->plan().effects & EFFECT_WATER) != 0);
         CHECK((world->plan().effects & (EFFECT_SAND | EFFECT_MIXTURE)) == 0);
         edit_world(*world, {disc(EditLayer::water, 3, 2, 20, -16)});
         step(*world, 1);
-        REQUIRE(world->trim());
+        REQUIRE(world->commands().trim());
         CHECK(passes(*world) == count);
-        CHECK(world->device_bytes() == bytes);
-        CHECK(world->memory().size() == buffers);
-        auto s = world->stats();
+        CHECK(world->state().device().bytes() == bytes);
+        CHECK(world->state().device().memory().size() == buffers);
+        auto s = world->reader().stats();
         REQUIRE(s);
         CHECK(s->ledger.water_in == s->ledger.water_out); // what left through the side is still in the books
         CHECK(s->ledger.water_out > 0);
@@ -196,7 +196,7 @@ TEST_CASE("a snapshot of a promoted world promotes the world it is loaded into")
     const auto bytes = save(*world);
     const auto hash = hash_of(*world);
     REQUIRE(fresh->stepper().step_part());
-    REQUIRE(fresh->load(bytes));
+    REQUIRE(fresh->snapshots().load(bytes));
     CHECK(hash_of(*fresh) == hash);
     step(*fresh, 3);
     step(*world, 3);
@@ -204,7 +204,7 @@ TEST_CASE("a snapshot of a promoted world promotes the world it is loaded into")
     auto forced = scene;
     forced.settings.effects = {{"sand", Force::off}};
     auto closed = make_world(forced);
-    CHECK(closed->load(bytes).code == Code::bad_argument);
+    CHECK(closed->snapshots().load(bytes).code == Code::bad_argument);
 }
 
 TEST_CASE("regions are written to the quantum, booked and checked") {
@@ -217,11 +217,11 @@ TEST_CASE("regions are written to the quantum, booked and checked") {
             return v;
         };
         const auto write = [&](EditLayer layer, const Region& region, double base) {
-            const auto status = world->write_region(layer, region, values(region, base));
+            const auto status = world->commands().write_region(layer, region, values(region, base));
             REQUIRE_MESSAGE(status, status.message);
         };
         write(EditLayer::terrain, corner, 0.5);
-        auto raw = world->read_raw("terrain");
+        auto raw = world->reader().read_raw("terrain");
         REQUIRE(raw);
         const FieldLayout layout{28, 24};
         for (int j = -GHOST; j < 24 + 1 + GHOST; ++j)
@@ -231,8 +231,8 @@ TEST_CASE("regions are written to the quantum, booked and checked") {
         write(EditLayer::water, middle, 0.7);
         write(EditLayer::sand, corner, 0.3);
         std::vector<float> back(middle.cells());
-        REQUIRE(world->read("water_height", middle, back));
-        const double quantum = world->stats()->quantum;
+        REQUIRE(world->reader().read("water_height", middle, back));
+        const double quantum = world->reader().stats()->quantum;
         const auto wanted = values(middle, 0.7);
         for (std::size_t n = 0; n < back.size(); ++n) {
             CHECK(std::abs(static_cast<double>(back[n]) - static_cast<double>(wanted[n])) <= quantum / 2);
@@ -249,7 +249,7 @@ TEST_CASE("regions are written to the quantum, booked and checked") {
 
         const auto hash = hash_of(*world);
         const auto refused = [&](EditLayer layer, const Region& region, std::vector<float> v, const char* text) {
-            const auto status = world->write_region(layer, region, v);
+            const auto status = world->commands().write_region(layer, region, v);
             CHECK(status.code == Code::bad_argument);
             CHECK_MESSAGE(status.message.find(text) != std::string::npos, status.message);
         };

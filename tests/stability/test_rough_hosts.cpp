@@ -63,9 +63,9 @@ TEST_CASE("a field that the effects lack reads as zero, one of another name is r
     scene.fill(scene.fields.water, [](double, double) { return 0.5; });
     auto world = make_world(scene);
     std::vector<float> values(64, 1);
-    REQUIRE(world->read("sand_height", values));
+    REQUIRE(world->reader().read("sand_height", values));
     CHECK(values == std::vector<float>(64, 0));
-    const auto status = world->read("sand_hieght", values);
+    const auto status = world->reader().read("sand_hieght", values);
     CHECK(status.code == Code::bad_argument);
     CHECK(status.message == "read: no field is called 'sand_hieght'");
 }

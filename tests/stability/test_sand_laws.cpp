@@ -21,7 +21,7 @@ double run_out(double aspect, double friction) {
                [&](double x, double y) { return std::hypot(x - middle, y - middle) < radius ? aspect * radius : 0; });
     auto world = make_world(scene);
     step(*world, 500);
-    CHECK(world->stats()->largest_sand_speed == 0); // at rest
+    CHECK(world->reader().stats()->largest_sand_speed == 0); // at rest
     const auto sand = cells_of(*world, "sand_height").values;
     int edge = 0;
     for (int i = n / 2; i < n; ++i) {
@@ -58,7 +58,7 @@ Slopes poured_slope(double friction) {
     step(*world, 100);
     CHECK(cells_of(*world, "sand_height").values ==
           sand); // nothing moves, though a face on the brink may keep a speed too slow to move a quantum
-    CHECK(world->stats()->largest_sand_speed < 2e-3);
+    CHECK(world->reader().stats()->largest_sand_speed < 2e-3);
     const auto at = [&](int i, int j) {
         return static_cast<double>(sand[static_cast<std::size_t>((n / 2 + j) * n + n / 2 + i)]);
     };

@@ -35,7 +35,7 @@ TEST_CASE("asked for in the middle of a step, a save and a query are of the end 
         std::vector<std::byte> bytes(*world->snapshots().saved_bytes(*save_ticket));
         // Nothing can be there before the step is whole, however long one waits.
         std::byte byte[1];
-        REQUIRE(world->device().read(world->memory().front().buffer, 0, byte));
+        REQUIRE(world->device().read(world->state().device().memory().front().buffer, 0, byte));
         CHECK(world->snapshots().end_save(*save_ticket, bytes).code == Code::not_ready);
         CHECK(world->snapshots().begin_save().status().code == Code::not_ready);
         CHECK(world->queries().answer(*query_ticket).status().code == Code::not_ready);
@@ -60,18 +60,18 @@ TEST_CASE("loading and rolling back in the middle of a step end between two step
         auto world = make_world(scene, {backend});
         step(*world, 10);
         const auto saved = save(*world);
-        REQUIRE(world->set_rollback(2, 4));
+        REQUIRE(world->roll_back().set(2, 4));
         step(*world, 5);
         for (const bool back : {true, false}) {
             CAPTURE(back);
             REQUIRE(world->stepper().step_part());
             REQUIRE(world->stepper().step_part());
             if (back) {
-                const auto reached = world->roll_back_to(11); // completing step 16 would have given this frame up
+                const auto reached = world->roll_back().go_back(11); // completing step 16 would have given this frame up
                 REQUIRE(reached);
                 CHECK(*reached == 10);
             } else {
-                REQUIRE(world->load(saved));
+                REQUIRE(world->snapshots().load(saved));
             }
             CHECK(world->stepper().parts_done() == 0);
             step(*world, 20);
@@ -84,7 +84,7 @@ TEST_CASE("steps kept before an edit brought a material can be gone back to, and
     for (const auto& backend : available_backends()) {
         CAPTURE(backend);
         auto world = make_world(flat_scene(24, 20, 0.25, 0.01), {backend});
-        REQUIRE(world->set_rollback(4, 2));
+        REQUIRE(world->roll_back().set(4, 2));
         step(*world, 2);
         Edit edit;
         edit.kind = EditKind::brush;
@@ -94,24 +94,24 @@ TEST_CASE("steps kept before an edit brought a material can be gone back to, and
         edit.amount = 0.5;
         std::uint64_t hashes[2] = {};
         for (auto& hash : hashes) {
-            REQUIRE(world->edit({&edit, 1}));
+            REQUIRE(world->commands().edit({&edit, 1}));
             step(*world, 3);
-            auto stats = world->stats();
+            auto stats = world->reader().stats();
             REQUIRE(stats);
             hash = stats->hash;
             CHECK(stats->water_quanta > 0);
             CHECK(stats->water_quanta == stats->water_initial + stats->ledger.water_in - stats->ledger.water_out);
-            REQUIRE(world->edit({&edit, 1})); // waits, and is forgotten
-            REQUIRE(world->roll_back_to(3));
+            REQUIRE(world->commands().edit({&edit, 1})); // waits, and is forgotten
+            REQUIRE(world->roll_back().go_back(3));
             CHECK(world->steps() == 2);
-            stats = world->stats();
+            stats = world->reader().stats();
             REQUIRE(stats);
             CHECK(stats->water_quanta == 0);
             CHECK(stats->ledger.water_in == 0);
         }
         CHECK(hashes[0] == hashes[1]);
         step(*world, 1);
-        auto stats = world->stats();
+        auto stats = world->reader().stats();
         REQUIRE(stats);
         CHECK(stats->water_quanta == 0);
     }
@@ -121,7 +121,7 @@ TEST_CASE("nothing is allocated or recorded by saves, queries and roll-back afte
     for (const auto& backend : available_backends()) {
         CAPTURE(backend);
         auto world = make_world(mixed_scene(16, 16), {backend});
-        REQUIRE(world->set_rollback(3, 1));
+        REQUIRE(world->roll_back().set(3, 1));
         std::vector<std::byte> bytes(world->snapshots().bytes());
         const float xy[] = {2, 3};
         const auto round = [&](int count) {
@@ -133,7 +133,7 @@ TEST_CASE("nothing is allocated or recorded by saves, queries and roll-back afte
                 REQUIRE(ticket);
                 REQUIRE(fetch(*world, *ticket, bytes));
                 REQUIRE(world->queries().answer(*asked));
-                if (n % 5 == 4) REQUIRE(world->roll_back_to(world->steps() - 1));
+                if (n % 5 == 4) REQUIRE(world->roll_back().go_back(world->steps() - 1));
             }
         };
         round(120);
@@ -150,9 +150,9 @@ TEST_CASE("a lost device ends every call with its text, and the world remembers 
     for (const auto& backend : available_backends()) {
         CAPTURE(backend);
         auto world = make_world(mixed_scene(16, 16), {backend});
-        CHECK(world->lost());
+        CHECK(world->state().lost());
         const auto saved = save(*world);
-        REQUIRE(world->set_rollback(2, 1));
+        REQUIRE(world->roll_back().set(2, 1));
         const auto save_ticket = world->snapshots().begin_save();
         const float xy[] = {1, 1};
         const auto query_ticket = world->queries().ask(xy);
@@ -166,11 +166,11 @@ TEST_CASE("a lost device ends every call with its text, and the world remembers 
         CHECK(world->queries().answer(*query_ticket).status().code == lost);
         CHECK(world->queries().ask(xy).status().code == lost);
         CHECK(world->snapshots().begin_save().status().code == lost);
-        CHECK(world->load(saved).code == lost);
-        CHECK(world->roll_back_to(0).status().code == lost);
-        CHECK(world->set_rollback(1, 1).code == lost);
-        CHECK(world->hash().status().code == lost);
-        CHECK(world->lost().code == lost);
-        CHECK_FALSE(world->lost().message.empty());
+        CHECK(world->snapshots().load(saved).code == lost);
+        CHECK(world->roll_back().go_back(0).status().code == lost);
+        CHECK(world->roll_back().set(1, 1).code == lost);
+        CHECK(world->reader().hash().status().code == lost);
+        CHECK(world->state().lost().code == lost);
+        CHECK_FALSE(world->state().lost().message.empty());
     }
 }

@@ -16,7 +16,7 @@ Scene strained_scene(StrainTransport transport) {
 }
 
 float largest(World& world, const char* field) {
-    const auto raw = world.read_raw(field);
+    const auto raw = world.reader().read_raw(field);
     REQUIRE(raw);
     float most = 0;
     for (const float x : *raw) most = std::max(most, std::abs(x));
@@ -33,7 +33,7 @@ TEST_CASE("strain transports: exact mass, the same bits on every backend, other 
             CAPTURE(backend);
             auto world = make_world(strained_scene(transport), {.backend = backend, .shared_device = true});
             step(*world, 60);
-            const auto stats = world->stats();
+            const auto stats = world->reader().stats();
             REQUIRE(stats);
             CHECK(stats->sand_quanta == stats->sand_initial);
             CHECK(stats->not_finite == 0);

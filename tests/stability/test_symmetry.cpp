@@ -40,7 +40,7 @@ Scene mapped(const Scene& scene, bool transpose, bool mirror) {
 std::vector<float> cells(World& world, const char* field) {
     const auto& g = world.settings().grid;
     std::vector<float> values(static_cast<std::size_t>(g.nx) * static_cast<std::size_t>(g.ny));
-    REQUIRE(world.read(field, values));
+    REQUIRE(world.reader().read(field, values));
     return values;
 }
 

@@ -17,7 +17,7 @@ double front_of_dam_break(VelocityTransport transport) {
     scene.settings.method.velocity_transport = transport;
     auto world = make_world(scene);
     step(*world, 150);
-    const auto depth = world->read_raw("water_height");
+    const auto depth = world->reader().read_raw("water_height");
     REQUIRE(depth);
     const FieldLayout layout{200, 4};
     double front = 0;
@@ -51,7 +51,7 @@ TEST_CASE("a uniform stream keeps every bit of its velocity when traced back") {
     scene.settings.method.velocity_transport = VelocityTransport::semi_lagrangian;
     auto world = make_world(scene);
     step(*world, 3); // the walls' waves have come 3 cells far
-    const auto u = world->read_raw("water_velocity_x");
+    const auto u = world->reader().read_raw("water_velocity_x");
     REQUIRE(u);
     CHECK((*u)[FieldLayout{32, 24}.index(16, 12)] == 0.7F);
 }
@@ -66,7 +66,7 @@ TEST_CASE("traced back: exact mass, the same bits on every backend, other bits t
         CAPTURE(backend);
         auto world = make_world(traced_scene(), {.backend = backend, .shared_device = true});
         step(*world, 60);
-        const auto stats = world->stats();
+        const auto stats = world->reader().stats();
         REQUIRE(stats);
         CHECK(stats->water_quanta == stats->water_initial);
         CHECK(stats->sand_quanta == stats->sand_initial);

@@ -11,7 +11,7 @@ namespace {
 
 std::vector<float> field_of(World& world, const std::string& name, int cells) {
     std::vector<float> values(static_cast<std::size_t>(cells));
-    REQUIRE(world.read(name, values));
+    REQUIRE(world.reader().read(name, values));
     return values;
 }
 

@@ -14,7 +14,7 @@ namespace {
 constexpr double g = 9.81;
 
 std::vector<double> row_of(World& world, const char* field, int nx, int ny) {
-    const auto raw = world.read_raw(field);
+    const auto raw = world.reader().read_raw(field);
     REQUIRE(raw);
     const FieldLayout layout{nx, ny};
     std::vector<double> row;
@@ -122,11 +122,11 @@ TEST_CASE("order of transport: a velocity stays between those of its face and th
         int changed = 0, outside = 0;
         for (int n = 0; n < 10; ++n) {
             const std::array fields = {"water_velocity_x", "water_velocity_y"};
-            const auto before_x = world->read_raw(fields[0]), before_y = world->read_raw(fields[1]);
+            const auto before_x = world->reader().read_raw(fields[0]), before_y = world->reader().read_raw(fields[1]);
             step(*world, 1);
             for (const bool is_y : {false, true}) {
                 const auto& before = is_y ? before_y : before_x;
-                const auto after = world->read_raw(fields[is_y]);
+                const auto after = world->reader().read_raw(fields[is_y]);
                 REQUIRE((before && after));
                 for (int j = 1; j + 1 < ny; ++j) {
                     for (int i = 1; i + 1 < nx; ++i) {
@@ -153,7 +153,7 @@ TEST_CASE("second order of water: exact mass, no negative height, the same bits 
         CAPTURE(backend);
         auto world = make_world(wet_scene(2), {.backend = backend, .shared_device = true});
         step(*world, 60);
-        const auto stats = world->stats();
+        const auto stats = world->reader().stats();
         REQUIRE(stats);
         CHECK(stats->water_quanta == stats->water_initial);
         CHECK(stats->sand_quanta == stats->sand_initial);

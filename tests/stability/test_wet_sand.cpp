@@ -60,7 +60,7 @@ TEST_CASE("a steeper bank slumps at the water line to the slope that buoyant fri
     auto world = make_world(bank(0.8 * FRICTION));
     CHECK(moved(*world, 2500) > 0.005); // the gentle bank's negative control
     CHECK(moved(*world, 1000) < 2e-4);
-    CHECK(world->stats()->largest_sand_speed < 2e-4);
+    CHECK(world->reader().stats()->largest_sand_speed < 2e-4);
     const auto sand = cells_of(*world, "sand_height").values;
     const double held = FRICTION * (1 - 0.5 * 0.45 / 0.5); // full to 0.45 m of 0.5 m, sand twice as dense as water
     double steepest = 0;

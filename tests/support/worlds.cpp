@@ -115,7 +115,7 @@ std::vector<std::pair<std::string, std::vector<float>>> state_of(World& world) {
     std::vector<std::pair<std::string, std::vector<float>>> state;
     for (const auto& field : world.plan().fields) {
         if (field.role != FieldRole::state) continue;
-        auto raw = world.read_raw(field.name);
+        auto raw = world.reader().read_raw(field.name);
         REQUIRE_MESSAGE(raw, raw.status().message);
         state.emplace_back(field.name, *raw);
     }
@@ -123,14 +123,14 @@ std::vector<std::pair<std::string, std::vector<float>>> state_of(World& world) {
 }
 
 std::uint64_t hash_of(World& world) {
-    auto stats = world.stats();
+    auto stats = world.reader().stats();
     REQUIRE_MESSAGE(stats, stats.status().message);
     return stats->hash;
 }
 
 std::vector<std::byte> save(World& world) {
     std::vector<std::byte> bytes(world.snapshots().bytes());
-    const auto status = world.save(bytes);
+    const auto status = world.snapshots().save(bytes);
     REQUIRE_MESSAGE(status, status.message);
     return bytes;
 }
@@ -152,7 +152,7 @@ Edit brush(EditLayer layer, double x, double y, double radius, double amount, do
 }
 
 void edit_world(World& world, const std::vector<Edit>& edits) {
-    const auto status = world.edit(edits);
+    const auto status = world.commands().edit(edits);
     REQUIRE_MESSAGE(status, status.message);
 }
 

@@ -71,7 +71,7 @@ std::vector<std::byte> resealed(const Bytes& bytes) {
 }
 [[maybe_unused]] void snapshot(const Bytes& bytes) {
     World& world = small_world();
-    if (world.load(resealed(bytes)) && !world.step(1)) std::abort();
+    if (world.snapshots().load(resealed(bytes)) && !world.step(1)) std::abort();
 }
 [[maybe_unused]] void commands(const Bytes& bytes) {
     const auto sealed = resealed(bytes);
