@@ -1,77 +1,127 @@
-// The effects and choices of method: what each needs. stagec reads this too, and compiles no mask that lacks what it needs.
+// When each effect is on by itself, and which choice of method sets which bit: a rule beside each row of shaders/effect_rows.hpp.
 #include "engine/settings/effects.hpp"
-#include <array>
+#include <algorithm>
+#include <iterator>
 
 namespace wadi {
 
 namespace {
 
-constexpr std::array<Effect, 12> table = {{
-    {EFFECT_WATER, "water", 0, "water that flows over the ground"},
-    {EFFECT_SAND, "sand", 0, "sand that flows, with Coulomb friction on the ground"},
-    {EFFECT_MIXTURE, "mixture", EFFECT_WATER | EFFECT_SAND, "a second water layer inside the sand with its own velocity"},
-    {EFFECT_DIFFUSION, "diffusion", EFFECT_MIXTURE, "water spreads inside sand"},
-    {EFFECT_DRAG, "drag", EFFECT_WATER | EFFECT_SAND, "momentum exchange between water and sand"},
-    {EFFECT_ELASTOPLASTIC, "elastoplastic", EFFECT_SAND, "sand holds its shape: strain, stress and yield"},
-    {EFFECT_COHESION, "cohesion", EFFECT_ELASTOPLASTIC | EFFECT_WATER, "cohesion follows the saturation of the sand"},
-    {EFFECT_SOURCES, "sources", 0, "points, discs and boxes that add or take water or sand"},
-    {EFFECT_RAIN, "rain", EFFECT_WATER, "rain and evaporation"},
-    {EFFECT_OPEN_SIDES, "open_sides", 0, "sides with discharge, level or outflow"},
-    {EFFECT_BED_FRICTION, "bed_friction", EFFECT_WATER, "Manning-like friction of pure water on its bed"},
-    {EFFECT_BED_SHEAR, "bed_shear", EFFECT_MIXTURE, "pure water drags the sand under it along: bed load"},
-}};
+bool ever_above_zero(const TimeSeries& series) {
+    return std::any_of(series.samples.begin(), series.samples.end(), [](const auto& s) { return s.second > 0; });
+}
 
-constexpr std::array<Choice, 7> choices = {{
-    {EFFECT_SEMI_LAGRANGIAN, "semi_lagrangian", 0,
+bool source_adds(const Settings& s, SourceMaterial material) {
+    return std::any_of(s.sources.begin(), s.sources.end(),
+                       [&](const Source& source) { return source.material == material && ever_above_zero(source.rate); });
+}
+
+consteval EffectRow row(std::uint32_t bit) {
+    for (const auto& row : effect_rows)
+        if (row.bit == bit) return row;
+    for (const auto& row : choice_rows)
+        if (row.bit == bit) return row;
+    throw "no such row"; // is no constant: the build stops
+}
+
+Why above_zero(const char* name, double value) { return {value > 0, name + std::string(value > 0 ? " is above 0" : " is 0")}; }
+
+constexpr Effect effects[] = {
+    {row(EFFECT_WATER), "the level, a source, rain, a discharge or a level side brings water",
+     [](const Settings& s, Content content) -> Why {
+         if (content.water) return {true, "the world holds water"};
+         if (source_adds(s, SourceMaterial::water)) return {true, "a source adds water"};
+         if (ever_above_zero(s.rain)) return {true, "it rains"};
+         for (const auto& side : s.sides)
+             if (side.kind == SideKind::discharge || side.kind == SideKind::level) return {true, "water enters through a side"};
+         return {false, "no water in the world, its sources or its sides"};
+     }},
+    {row(EFFECT_SAND), "the level or a source brings sand",
+     [](const Settings& s, Content content) -> Why {
+         if (content.sand) return {true, "the world holds sand"};
+         if (source_adds(s, SourceMaterial::sand)) return {true, "a source adds sand"};
+         return {false, "no sand in the world or its sources"};
+     }},
+    {row(EFFECT_MIXTURE), "both are on",
+     [](const Settings&, Content) -> Why {
+         return {true, "water and sand can meet"};
+     }},
+    {row(EFFECT_DIFFUSION), "diffusion_rate > 0",
+     [](const Settings& s, Content) { return above_zero("diffusion_rate", s.material.diffusion_rate); }},
+    {row(EFFECT_DRAG), "exchange_rate > 0",
+     [](const Settings& s, Content) { return above_zero("exchange_rate", s.material.exchange_rate); }},
+    {row(EFFECT_ELASTOPLASTIC), "young_modulus > 0",
+     [](const Settings& s, Content) { return above_zero("young_modulus", s.material.young_modulus); }},
+    {row(EFFECT_COHESION), "both are on",
+     [](const Settings&, Content) -> Why {
+         return {true, "sand can get wet"};
+     }},
+    {row(EFFECT_SOURCES), "the level has sources",
+     [](const Settings& s, Content) -> Why {
+         return {!s.sources.empty(), s.sources.empty() ? "no sources" : std::to_string(s.sources.size()) + " sources"};
+     }},
+    {row(EFFECT_RAIN), "rain or evaporation ever above 0",
+     [](const Settings& s, Content) -> Why {
+         const bool on = ever_above_zero(s.rain) || ever_above_zero(s.evaporation);
+         return {on, on ? "rain or evaporation is above 0" : "no rain, no evaporation"};
+     }},
+    {row(EFFECT_OPEN_SIDES), "a side is no wall",
+     [](const Settings& s, Content) -> Why {
+         const bool on =
+             std::any_of(s.sides.begin(), s.sides.end(), [](const Side& side) { return side.kind != SideKind::wall; });
+         return {on, on ? "a side is open" : "all sides are walls"};
+     }},
+    {row(EFFECT_BED_FRICTION), "bed_friction > 0",
+     [](const Settings& s, Content) { return above_zero("bed_friction", s.material.bed_friction); }},
+    {row(EFFECT_BED_SHEAR), "bed_shear > 0",
+     [](const Settings& s, Content) { return above_zero("bed_shear", s.material.bed_shear); }},
+};
+
+constexpr Choice choices[] = {
+    {row(EFFECT_SEMI_LAGRANGIAN), "velocity_transport semi_lagrangian",
      [](const Method& m) { return m.velocity_transport == VelocityTransport::semi_lagrangian; },
      [](Method& m) { m.velocity_transport = VelocityTransport::semi_lagrangian; }},
-    {EFFECT_WHOLE_STRAIN, "whole_strain", EFFECT_ELASTOPLASTIC,
+    {row(EFFECT_WHOLE_STRAIN), "strain_transport polar, direct",
      [](const Method& m) { return m.strain_transport != StrainTransport::left_stretch; },
      [](Method& m) { m.strain_transport = StrainTransport::polar; }},
-    {EFFECT_DIRECT_STRAIN, "direct_strain", EFFECT_WHOLE_STRAIN,
+    {row(EFFECT_DIRECT_STRAIN), "strain_transport direct",
      [](const Method& m) { return m.strain_transport == StrainTransport::direct; },
      [](Method& m) { m.strain_transport = StrainTransport::direct; }},
-    {EFFECT_EXPLICIT_DRAG, "explicit_drag", EFFECT_DRAG,
+    {row(EFFECT_EXPLICIT_DRAG), "drag_friction sequence",
      [](const Method& m) { return m.drag_friction == DragFriction::sequence; },
      [](Method& m) { m.drag_friction = DragFriction::sequence; }},
-    {EFFECT_LAPLACE_DIFFUSION, "laplace_diffusion", EFFECT_DIFFUSION,
-     [](const Method& m) { return m.diffusion == Diffusion::laplacian; }, [](Method& m) { m.diffusion = Diffusion::laplacian; }},
-    {EFFECT_SECOND_ORDER_WATER, "second_order_water", EFFECT_WATER, [](const Method& m) { return m.water_transport_order == 2; },
+    {row(EFFECT_LAPLACE_DIFFUSION), "diffusion laplacian", [](const Method& m) { return m.diffusion == Diffusion::laplacian; },
+     [](Method& m) { m.diffusion = Diffusion::laplacian; }},
+    {row(EFFECT_SECOND_ORDER_WATER), "water_transport_order 2", [](const Method& m) { return m.water_transport_order == 2; },
      [](Method& m) { m.water_transport_order = 2; }},
-    {EFFECT_HALF_STORAGE, "half_storage", 0, [](const Method& m) { return m.half_storage; },
+    {row(EFFECT_HALF_STORAGE), "half_storage true", [](const Method& m) { return m.half_storage; },
      [](Method& m) { m.half_storage = true; }},
-}};
+};
 
-// Half storage is for worlds that trade accuracy for memory; a method that does the opposite, or the paper's own, has no kernels
-// for it.
-constexpr std::uint32_t never_half =
-    EFFECT_SEMI_LAGRANGIAN | EFFECT_WHOLE_STRAIN | EFFECT_EXPLICIT_DRAG | EFFECT_LAPLACE_DIFFUSION | EFFECT_SECOND_ORDER_WATER;
+constexpr bool has_rule(const Effect& effect) { return effect.why != nullptr; }
+constexpr bool has_rule(const Choice& choice) { return choice.chosen != nullptr && choice.choose != nullptr; }
+
+template <class Ruled, std::size_t RULED, std::size_t ROWS>
+constexpr bool rule_for_each(const Ruled (&ruled)[RULED], const EffectRow (&rows)[ROWS]) {
+    for (std::size_t n = 0; n < ROWS; ++n)
+        if (RULED != ROWS || ruled[n].bit != rows[n].bit || !has_rule(ruled[n])) return false;
+    return true;
+}
+static_assert(rule_for_each(effects, effect_rows), "each row of effect_rows has a rule of its own here, in their order");
+static_assert(rule_for_each(choices, choice_rows), "each row of choice_rows has a rule of its own here, in their order");
 
 } // namespace
 
-std::span<const Effect> effect_table() { return table; }
+std::span<const Effect> effect_table() { return effects; }
 
 std::span<const Choice> choice_table() { return choices; }
 
 std::string effect_names(std::uint32_t bits) {
     std::string names;
-    for (const auto& effect : table) {
+    for (const auto& effect : effects) {
         if ((bits & effect.bit) != 0) names += (names.empty() ? "" : ", ") + std::string(effect.name);
     }
     return names;
-}
-
-std::uint32_t with_needs(std::uint32_t mask) {
-    for (std::uint32_t before = ~mask; before != mask;) {
-        before = mask;
-        for (const auto& effect : table) mask |= (mask & effect.bit) != 0 ? effect.needs : 0;
-        for (const auto& choice : choices) mask |= (mask & choice.bit) != 0 ? choice.needs : 0;
-    }
-    return mask;
-}
-
-bool is_legal(std::uint32_t mask) {
-    return with_needs(mask) == mask && ((mask & EFFECT_HALF_STORAGE) == 0 || (mask & never_half) == 0);
 }
 
 } // namespace wadi

@@ -1,7 +1,9 @@
-// Effects: what a scene calls for, and nothing else. One table says what each bit is, what it needs and why it is on.
+// Effects: what a scene calls for, and nothing else. shaders/effect_rows.hpp says what each bit is and what it needs,
+// effect_table.cpp beside it when it is on.
 #pragma once
 #include "engine/compute/params.hpp"
 #include "engine/settings/settings.hpp"
+#include "shaders/effect_rows.hpp"
 #include <cstdint>
 #include <span>
 #include <string>
@@ -9,11 +11,22 @@
 
 namespace wadi {
 
-struct Effect {
-    std::uint32_t bit;
-    const char* name;    // as level files write it
-    std::uint32_t needs; // bits that must be on as well
-    const char* meaning; // one sentence
+/// What a world holds, or an edit is about to bring.
+struct Content {
+    bool sand = false, water = false;
+    friend bool operator==(Content, Content) = default;
+};
+Content content_of(const InitialFields& fields);
+
+/// Whether an effect is on by itself, all that it needs being on, and why or why not.
+struct Why {
+    bool on;
+    std::string reason;
+};
+
+struct Effect : EffectRow {
+    const char* when; // what `why` asks, for people
+    Why (*why)(const Settings& settings, Content content);
 };
 
 /// All effects, dependencies first.
@@ -22,22 +35,13 @@ std::span<const Effect> effect_table();
 std::string effect_names(std::uint32_t mask);
 
 /// A choice of method that has a bit in the same mask; a level makes it in `method`, not in `effects`.
-struct Choice {
-    std::uint32_t bit;
-    const char* name;    // as level files write it
-    std::uint32_t needs; // bits that must be on as well; without them the choice has nothing to act on
+struct Choice : EffectRow {
+    const char* when; // the setting that makes it
     bool (*chosen)(const Method& method);
     void (*choose)(Method& method); // what makes `chosen` true
 };
 
 std::span<const Choice> choice_table();
-
-/// What a world holds, or an edit is about to bring.
-struct Content {
-    bool sand = false, water = false;
-    friend bool operator==(Content, Content) = default;
-};
-Content content_of(const InitialFields& fields);
 
 struct EffectChoice {
     std::uint32_t mask = 0;
@@ -50,10 +54,5 @@ Result<EffectChoice> effects_required(const Settings& settings, Content content)
 
 /// ok, or bad_argument where the level forces off what this content needs.
 Status check_allowed(const Settings& settings, Content content);
-
-/// The mask with all that its effects and choices need.
-std::uint32_t with_needs(std::uint32_t mask);
-/// True when every effect in the mask and choice in the mask has what it needs, and half storage no choice that is without it.
-bool is_legal(std::uint32_t mask);
 
 } // namespace wadi

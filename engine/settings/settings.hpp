@@ -116,9 +116,10 @@ struct Source {
 /// What the level wants of one effect: derived from content, or forced.
 enum class Force : std::uint8_t { automatic, on, off };
 
-/// Everything but the fields themselves.
+/// Whether a step's stages run fused; automatic: where the device gains from it (engine/README.md).
 enum class FusedStages : std::uint8_t { automatic, always, never };
 
+/// Everything but the fields themselves.
 struct Settings {
     Grid grid;
     double dt = 0;         // water time step [s], 1e-7 ... 100

@@ -1,6 +1,6 @@
 #include "stage_file.hpp"
-#include "engine/settings/effects.hpp"
 #include "repeats.hpp"
+#include "shaders/effect_rows.hpp"
 #include <algorithm>
 #include <cctype>
 #include <cstdlib>

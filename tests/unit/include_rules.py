@@ -6,15 +6,15 @@ import sys
 
 # folder -> prefixes that its files may include; the longest matching folder decides. "<...>" headers are checked by LIBRARIES.
 RULES = {
-    "shaders": [],
+    "shaders": ["effects.h"],
     "shaders/stages": ["../../physics/"],
     "shaders/physics": ["../physics/"],
     "shaders/language": ["../effects.h", "../step_params.h"],
-    "shaders/stagec": ["engine/compute/stage_table.hpp", "engine/settings/effects.hpp"],
+    "shaders/stagec": ["engine/compute/stage_table.hpp", "shaders/effect_rows.hpp"],
     # The rooms of the engine, floor by floor; the facade in the hall includes all of them.
     "engine": ["engine/"],
     "engine/compute": ["engine/compute/", "shaders/step_params.h", "shaders/effects.h"],
-    "engine/settings": ["engine/settings/", "engine/compute/"],
+    "engine/settings": ["engine/settings/", "engine/compute/", "shaders/effect_rows.hpp"],
     "engine/image": ["engine/image/", "engine/compute/"],
     "engine/level": ["engine/level/", "engine/image/", "engine/settings/", "engine/compute/"],
     "engine/step": ["engine/step/", "engine/settings/", "engine/compute/"],

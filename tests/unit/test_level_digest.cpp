@@ -1,0 +1,42 @@
+// The level digest: that of the levels that ship, as snapshots and command logs hold it.
+#include "engine/settings/level_digest.hpp"
+#include "tests/unit/level_text.hpp"
+#include <doctest/doctest.h>
+
+using namespace wadi;
+using namespace level_text;
+
+TEST_CASE("level digest: of the shipped levels, which older snapshots hold") {
+    // Changes only where a level or the settings that every level has change: then snapshots and command logs of before are
+    // refused, and these numbers are to be replaced.
+    const std::pair<const char*, std::uint64_t> levels[] = {
+        {"beach", 3608514410070053449u},      {"canyon", 8193338102452433707u},  {"castle", 13129130010885850573u},
+        {"dam_break", 11077999823082543443u}, {"flush", 4377804250134108402u},   {"letters", 585270882835325669u},
+        {"piles", 16992489359887250513u},     {"seepage", 3067873806498594060u}, {"spring", 16050846345659896112u},
+        {"wadi", 8130764232686844640u},
+    };
+    for (const auto& [name, digest] : levels) {
+        const auto level = load_level((samples() / name / "level.json").string(), {});
+        REQUIRE_MESSAGE(level, message(level));
+        CHECK_MESSAGE(level_digest(level->settings) == digest, name << " " << level_digest(level->settings));
+    }
+}
+
+TEST_CASE("level digest: of a level that sets everything") {
+    const auto level = parse(R"("gravity": 3,
+        "material": {"water_density": 1001, "sand_density": 2001, "friction": 0.51, "young_modulus": 2.5e5, "poisson_ratio": 0.31,
+            "yield_friction": 0.41, "cohesion_dry": 1, "cohesion_wet": 2.1e4, "cohesion_capillary": 2.2e4,
+            "saturation": [0.21, 0.26, 0.34], "exchange_rate": 1.1e5, "diffusion_rate": 0.02, "bed_friction": 0.04,
+            "bed_shear": 0.03, "grain_size": 2e-3},
+        "method": {"name": "published", "substeps": 4, "outflow_limiter": false, "quantum": 0.25, "largest_height": 17,
+            "dry_threshold": 2e-5, "velocity_clamp": 0.36, "gravity_cap": 0.56, "gravity_cap_least": 0.16,
+            "sand_gravity_cap": 0.26, "elastic_cap": 0.21, "shock_viscosity": 0.01, "bulk_viscosity": 0.02, "rest_surface": 2e-5,
+            "rest_velocity": 2e-3, "passive_pressure": 2, "gradient_clamp": 0.41, "cohesion_cap": 0.91, "stress_taper": 0.03,
+            "saturation_smoothing": 1, "velocity_transport": "semi_lagrangian", "strain_transport": "direct",
+            "drag_friction": "sequence", "diffusion": "laplacian", "water_transport_order": 2})");
+    REQUIRE_MESSAGE(level, message(level));
+    CHECK_MESSAGE(level_digest(level->settings) == 16426334506538250344u, level_digest(level->settings));
+    const auto half = parse(R"("method": {"half_storage": true})");
+    REQUIRE_MESSAGE(half, message(half));
+    CHECK_MESSAGE(level_digest(half->settings) == 2337895686292299782u, level_digest(half->settings));
+}
