@@ -2,7 +2,7 @@
 #include "engine/settings/accuracy_presets.hpp"
 #include "engine/settings/messages.hpp"
 #include "engine/settings/method_presets.hpp"
-#include "engine/settings/setting_fields.hpp"
+#include "engine/settings/setting_table.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

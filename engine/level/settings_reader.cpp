@@ -1,6 +1,6 @@
 #include "engine/level/settings_reader.hpp"
 #include "engine/settings/method_presets.hpp"
-#include "engine/settings/setting_fields.hpp"
+#include "engine/settings/setting_table.hpp"
 #include <cstddef>
 
 namespace wadi {
@@ -8,52 +8,58 @@ namespace {
 
 constexpr std::size_t SOURCES_READ = 1000; // more than a world holds; validate() names the limit
 
-template <class Owner, std::size_t COUNT>
-void read_fields(ObjectReader& reader, Owner& owner, const SettingField<Owner, double> (&fields)[COUNT]) {
-    for (const auto& field : fields) reader.number(field.name, owner.*field.member, field.least, field.most);
+// The keys of one object that are settings of their own, as they stand in the table.
+void read_rows(ObjectReader& reader, std::string_view object, Settings& settings) {
+    for (const Setting& row : setting_table()) {
+        if (row.object() != object || row.element()) continue;
+        const std::string key(row.key());
+        const auto& [least, most, names, among] = row.values;
+        double value = row.at.get(settings);
+        if (row.required()) reader.require(key.c_str());
+        if (row.at.kind == SettingKind::number) {
+            reader.number(key.c_str(), value, least, most);
+        } else if (row.at.kind == SettingKind::flag) {
+            bool flag = value != 0;
+            reader.boolean(key.c_str(), flag);
+            value = flag ? 1 : 0;
+        } else {
+            int whole = static_cast<int>(value);
+            if (row.at.kind == SettingKind::choice)
+                reader.choice(key.c_str(), {names.begin(), names.end()}, whole);
+            else
+                reader.whole_number(key.c_str(), whole, static_cast<int>(least), static_cast<int>(most));
+            value = whole;
+        }
+        row.at.set(settings, value);
+    }
 }
 
-template <class Enum>
-void read_choice(ObjectReader& reader, const char* key, const std::vector<std::string>& names, Enum& value) {
-    int index = static_cast<int>(value);
-    reader.choice(key, names, index);
-    value = static_cast<Enum>(index);
-}
-
-void read_grid(const Json& value, Grid& grid, Status& status) {
+void read_grid(const Json& value, Settings& settings, Status& status) {
     ObjectReader reader(value, "grid", status);
-    for (const char* key : {"nx", "ny", "dx"}) reader.require(key);
-    reader.whole_number("nx", grid.nx, 1, GRID_MOST);
-    reader.whole_number("ny", grid.ny, 1, GRID_MOST);
-    reader.number("dx", grid.dx, DX_LEAST, DX_MOST);
+    read_rows(reader, "grid", settings);
     reader.finish();
 }
 
-void read_material(const Json& value, Material& material, Status& status) {
+void read_material(const Json& value, Settings& settings, Status& status) {
     ObjectReader reader(value, "material", status);
-    read_fields(reader, material, MATERIAL_FIELDS);
+    read_rows(reader, "material", settings);
     if (const Json* saturation = reader.find("saturation")) {
         const auto elements = read_array(*saturation, "material.saturation", 3, status);
         if (elements.size() != 3) reader.fail("saturation", "expected three numbers [phi1, phi2, phi3]");
-        for (std::size_t n = 0; n < elements.size(); ++n)
-            material.saturation[n] = read_number(*elements[n], "material.saturation[" + std::to_string(n) + "]", 0, 1, status);
+        for (std::size_t n = 0; n < elements.size(); ++n) {
+            const Setting& row = *find_setting("material.saturation[" + std::to_string(n) + "]");
+            row.at.set(settings, read_number(*elements[n], row.path, row.values.least, row.values.most, status));
+        }
     }
     reader.finish();
 }
 
-void read_method(const Json& value, Method& method, Status& status) {
+void read_method(const Json& value, Settings& settings, Status& status) {
     ObjectReader reader(value, "method", status);
-    std::string name = method.name;
+    std::string name = settings.method.name;
     reader.string("name", name);
-    choose_method(method, name); // the other keys change what the preset chose
-    reader.boolean("outflow_limiter", method.outflow_limiter);
-    reader.boolean("half_storage", method.half_storage);
-    read_fields(reader, method, METHOD_FIELDS);
-    read_choice(reader, "velocity_transport", velocity_transport_names(), method.velocity_transport);
-    read_choice(reader, "strain_transport", strain_transport_names(), method.strain_transport);
-    read_choice(reader, "drag_friction", drag_friction_names(), method.drag_friction);
-    read_choice(reader, "diffusion", diffusion_names(), method.diffusion);
-    for (const auto& field : METHOD_COUNTS) reader.whole_number(field.name, method.*field.member, field.least, field.most);
+    choose_method(settings.method, name); // the other keys change what the preset chose
+    read_rows(reader, "method", settings);
     reader.finish();
 }
 
@@ -125,12 +131,10 @@ void read_effects(const Json& value, Settings& settings, Status& status) {
 
 void read_settings(ObjectReader& root, const FileReader& files, Settings& settings) {
     Status& status = root.status();
-    if (const Json* grid = root.require("grid")) read_grid(*grid, settings.grid, status);
-    root.require("dt");
-    root.number("dt", settings.dt, DT_LEAST, DT_MOST);
-    root.number("gravity", settings.gravity, 0, GRAVITY_MOST);
-    if (const Json* material = root.find("material")) read_material(*material, settings.material, status);
-    if (const Json* method = root.find("method")) read_method(*method, settings.method, status);
+    if (const Json* grid = root.require("grid")) read_grid(*grid, settings, status);
+    read_rows(root, "", settings);
+    if (const Json* material = root.find("material")) read_material(*material, settings, status);
+    if (const Json* method = root.find("method")) read_method(*method, settings, status);
     if (const Json* sides = root.find("sides")) read_sides(*sides, files, settings.sides, status);
     if (const Json* sources = root.find("sources")) {
         const auto elements = read_array(*sources, "sources", SOURCES_READ, status);
@@ -141,9 +145,6 @@ void read_settings(ObjectReader& root, const FileReader& files, Settings& settin
     if (const Json* evaporation = root.find("evaporation"))
         settings.evaporation = read_series(*evaporation, "evaporation", files, status);
     if (const Json* edits = root.find("edits")) settings.edits = read_edits(*edits, status);
-    root.whole_number("active_tiles", settings.active_tiles, 0, 64);
-    read_choice(root, "fused_stages", {"auto", "always", "never"}, settings.fused_stages);
-    root.number("active_tiles_most", settings.active_tiles_most, 0, 1);
     if (const Json* effects = root.find("effects")) read_effects(*effects, settings, status);
 }
 

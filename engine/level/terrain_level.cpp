@@ -4,7 +4,7 @@
 #include "engine/level/level.hpp"
 #include "engine/settings/messages.hpp"
 #include "engine/settings/quanta.hpp"
-#include "engine/settings/setting_fields.hpp"
+#include "engine/settings/setting_table.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

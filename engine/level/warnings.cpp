@@ -2,7 +2,7 @@
 // Rules and constants: NUMERICS.md sections 2.4b, 2.4d, 2.7, 2.8 and 4.
 #include "engine/level/level.hpp"
 #include "engine/settings/messages.hpp"
-#include "engine/settings/setting_fields.hpp"
+#include "engine/settings/setting_table.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -1,5 +1,6 @@
 #include "engine/settings/level_digest.hpp"
 #include "engine/settings/checksum.hpp"
+#include "engine/settings/setting_table.hpp"
 #include <span>
 
 namespace wadi {
@@ -14,57 +15,11 @@ std::uint64_t level_digest(const Settings& s) {
             add(value);
         }
     };
-    const auto& m = s.material;
-    const auto& w = s.method;
-    sum.add(std::as_bytes(std::span(w.name)));
-    for (const double value : {double(s.grid.nx),
-                               double(s.grid.ny),
-                               s.grid.dx,
-                               s.dt,
-                               s.gravity,
-                               m.water_density,
-                               m.sand_density,
-                               m.friction,
-                               m.young_modulus,
-                               m.poisson_ratio,
-                               m.yield_friction,
-                               m.cohesion_dry,
-                               m.cohesion_wet,
-                               m.cohesion_capillary,
-                               m.saturation[0],
-                               m.saturation[1],
-                               m.saturation[2],
-                               m.exchange_rate,
-                               m.diffusion_rate,
-                               m.bed_friction,
-                               m.bed_shear,
-                               m.grain_size,
-                               double(w.substeps),
-                               double(w.outflow_limiter),
-                               w.quantum,
-                               w.largest_height,
-                               w.dry_threshold,
-                               w.velocity_clamp,
-                               w.gravity_cap,
-                               w.gravity_cap_least,
-                               w.sand_gravity_cap,
-                               w.elastic_cap,
-                               w.shock_viscosity,
-                               w.bulk_viscosity,
-                               w.rest_surface,
-                               w.rest_velocity,
-                               w.passive_pressure,
-                               w.gradient_clamp,
-                               w.cohesion_cap,
-                               w.stress_taper,
-                               double(w.saturation_smoothing),
-                               double(w.velocity_transport),
-                               double(w.strain_transport),
-                               double(w.drag_friction),
-                               double(w.diffusion),
-                               double(w.water_transport_order)})
-        add(value);
-    if (w.half_storage) add(1); // levels without it keep their digest
+    sum.add(std::as_bytes(std::span(s.method.name)));
+    for (const Setting& row : setting_table()) {
+        const double value = row.at.get(s);
+        if (row.in_digest == InDigest::yes || (row.in_digest == InDigest::where_set && value != row.normal())) add(value);
+    }
     for (const auto& side : s.sides) {
         add(static_cast<double>(side.kind));
         add(side.from);

@@ -1,38 +1,30 @@
 #include "engine/settings/material_keys.hpp"
-#include "engine/settings/setting_fields.hpp"
+#include "engine/settings/effects.hpp"
+#include "engine/settings/setting_table.hpp"
 #include <algorithm>
-#include <iterator>
-#include <map>
 
 namespace wadi {
 
 namespace {
 
-constexpr std::size_t FIELDS = std::size(MATERIAL_FIELDS);
+// Numbers of a list come last: so their indices are in command logs and snapshots.
+std::vector<const Setting*> find_rows() {
+    std::vector<const Setting*> rows;
+    for (const bool element : {false, true})
+        for (const Setting& row : setting_table())
+            if (row.object() == "material" && row.element() == element) rows.push_back(&row);
+    return rows;
+}
 
-const char* effect_of(const std::string& name) {
-    static const std::map<std::string, const char*> effects = {
-        {"friction", "sand"},
-        {"young_modulus", "elastoplastic"},
-        {"poisson_ratio", "elastoplastic"},
-        {"yield_friction", "elastoplastic"},
-        {"cohesion_dry", "cohesion"},
-        {"cohesion_wet", "cohesion"},
-        {"cohesion_capillary", "cohesion"},
-        {"exchange_rate", "drag"},
-        {"diffusion_rate", "diffusion"},
-        {"bed_friction", "bed_friction"},
-        {"bed_shear", "bed_shear"},
-        {"grain_size", "bed_shear"},
-    };
-    const auto found = effects.find(name);
-    return found == effects.end() ? nullptr : found->second;
+const Setting& row_of(int key) {
+    static const std::vector<const Setting*> rows = find_rows();
+    return *rows[static_cast<std::size_t>(key)];
 }
 
 std::vector<MaterialKey> make_keys() {
     std::vector<MaterialKey> keys;
-    for (const auto& field : MATERIAL_FIELDS) keys.push_back({field.name, field.least, field.most, effect_of(field.name)});
-    for (const char* name : {"saturation[0]", "saturation[1]", "saturation[2]"}) keys.push_back({name, 0, 1, "cohesion"});
+    for (const Setting* row : find_rows())
+        keys.push_back({std::string(row->key()), row->values.least, row->values.most, row->effect});
     return keys;
 }
 
@@ -50,13 +42,16 @@ int find_material_key(std::string_view name) {
 }
 
 double material_value(const Material& material, int key) {
-    const auto n = static_cast<std::size_t>(key);
-    return n < FIELDS ? material.*MATERIAL_FIELDS[n].member : material.saturation[n - FIELDS];
+    Settings settings;
+    settings.material = material;
+    return row_of(key).at.get(settings);
 }
 
 void set_material_value(Material& material, int key, double value) {
-    const auto n = static_cast<std::size_t>(key);
-    (n < FIELDS ? material.*MATERIAL_FIELDS[n].member : material.saturation[n - FIELDS]) = value;
+    Settings settings;
+    settings.material = material;
+    row_of(key).at.set(settings, value);
+    material = settings.material;
 }
 
 Status check_material_change(const char* function, const Settings& settings, int key, double value) {
@@ -66,10 +61,9 @@ Status check_material_change(const char* function, const Settings& settings, int
     if (auto status = validate(changed); !status) return error(status.code, begin + status.message);
     const MaterialKey& known = material_keys()[static_cast<std::size_t>(key)];
     for (const auto& [name, force] : settings.effects) {
-        if (force == Force::off && known.effect != nullptr && name == known.effect) {
+        if (force == Force::off && known.effect != 0 && name == effect_names(known.effect))
             return error(Code::bad_argument,
                          begin + "material." + known.name + " acts through effects." + name + ", which the level forces off");
-        }
     }
     return ok_status();
 }

@@ -9,10 +9,10 @@ namespace wadi {
 struct MaterialKey {
     std::string name; // "friction", "saturation[0]"
     double least = 0, most = 0;
-    const char* effect = nullptr; // through which it acts; null = through several
+    std::uint32_t effect = 0; // through which it acts; 0 = through several
 };
 
-/// All of them; new ones come last, for the index is written to snapshots and command logs.
+/// All of them, by the rows of setting_table(); the index is written to snapshots and command logs.
 std::span<const MaterialKey> material_keys();
 /// Index of a name, or -1.
 int find_material_key(std::string_view name);

@@ -3,10 +3,12 @@
 #include "engine/settings/messages.hpp"
 #include "engine/settings/method_presets.hpp"
 #include "engine/settings/scripted_edits.hpp"
-#include "engine/settings/setting_fields.hpp"
+#include "engine/settings/setting_table.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
+#include <string_view>
 
 namespace wadi {
 namespace {
@@ -21,10 +23,18 @@ Status check_range(const std::string& path, double value, double least, double m
     return refuse(outside_text(path, value, least, most));
 }
 
-template <class Owner, class Number, std::size_t COUNT>
-Status check_fields(const std::string& path, const Owner& owner, const SettingField<Owner, Number> (&fields)[COUNT]) {
-    for (const auto& field : fields)
-        if (Status status = check_range(path + field.name, owner.*field.member, field.least, field.most); !status) return status;
+// Of the rows of one object, or of all.
+Status check_rows(const Settings& settings, std::optional<std::string_view> object = {}) {
+    for (const Setting& row : setting_table()) {
+        if (object && row.object() != *object) continue;
+        const double value = row.at.get(settings);
+        const auto& [least, most, names, among] = row.values;
+        if (Status status = check_range(row.path, value, least, most); !status) return status;
+        if (among.empty() || std::find(among.begin(), among.end(), static_cast<int>(value)) != among.end()) continue;
+        std::string known;
+        for (const int one : among) known += (known.empty() ? "" : ", ") + std::to_string(one);
+        return refuse(row.path + std::string(": ") + number_text(value) + " is not one of " + known);
+    }
     return ok_status();
 }
 
@@ -41,21 +51,23 @@ Status check_series(const std::string& path, const TimeSeries& series, double le
     return ok_status();
 }
 
-Status check_grid(const Settings& settings) {
-    const Grid& grid = settings.grid;
-    if (Status status = check_range("grid.nx", grid.nx, 1, GRID_MOST); !status) return status;
-    if (Status status = check_range("grid.ny", grid.ny, 1, GRID_MOST); !status) return status;
-    if (Status status = check_range("grid.dx", grid.dx, DX_LEAST, DX_MOST); !status) return status;
-    if (Status status = check_range("dt", settings.dt, DT_LEAST, DT_MOST); !status) return status;
-    return check_range("gravity", settings.gravity, 0, GRAVITY_MOST);
+Status check_saturation(const Material& material) {
+    double below = 0;
+    for (std::size_t n = 0; n < material.saturation.size(); ++n) {
+        const double value = material.saturation[n];
+        if (!(value - below >= SATURATION_GAP))
+            return refuse("material.saturation[" + std::to_string(n) + "]: " + number_text(value) + " must be at least " +
+                          number_text(SATURATION_GAP) + " above " +
+                          (n == 0 ? "0" : "saturation[" + std::to_string(n - 1) + "], " + number_text(below)));
+        below = value;
+    }
+    return ok_status();
 }
 
 Status check_method(const Method& method) {
     const auto& names = method_names();
     if (std::find(names.begin(), names.end(), method.name) == names.end())
         return refuse("method.name: \"" + method.name + "\" is not a method" + suggestion(method.name, names));
-    if (Status status = check_fields("method.", method, METHOD_FIELDS); !status) return status;
-    if (Status status = check_fields("method.", method, METHOD_COUNTS); !status) return status;
     if (method.gravity_cap > 0 && method.gravity_cap_least > method.gravity_cap)
         return refuse(outside_text("method.gravity_cap_least", method.gravity_cap_least, 0, method.gravity_cap) +
                       " (at most gravity_cap)");
@@ -167,26 +179,6 @@ const std::vector<std::string>& side_names() {
     return names;
 }
 
-const std::vector<std::string>& velocity_transport_names() {
-    static const std::vector<std::string> names = {"flux_form", "semi_lagrangian"};
-    return names;
-}
-
-const std::vector<std::string>& strain_transport_names() {
-    static const std::vector<std::string> names = {"left_stretch", "polar", "direct"};
-    return names;
-}
-
-const std::vector<std::string>& drag_friction_names() {
-    static const std::vector<std::string> names = {"joint", "sequence"};
-    return names;
-}
-
-const std::vector<std::string>& diffusion_names() {
-    static const std::vector<std::string> names = {"limited", "laplacian"};
-    return names;
-}
-
 double height_quantum(const Method& method) {
     if (method.quantum >= 0) return method.quantum;
     return std::exp2(std::ceil(std::log2(method.largest_height)) - 24);
@@ -204,23 +196,15 @@ double TimeSeries::at(double time) const {
 }
 
 Status validate(const Material& material) {
-    if (Status status = check_fields("material.", material, MATERIAL_FIELDS); !status) return status;
-    double below = 0;
-    for (std::size_t n = 0; n < material.saturation.size(); ++n) {
-        const std::string path = "material.saturation[" + std::to_string(n) + "]";
-        const double value = material.saturation[n];
-        if (Status status = check_range(path, value, 0, 1); !status) return status;
-        if (!(value - below >= SATURATION_GAP))
-            return refuse(path + ": " + number_text(value) + " must be at least " + number_text(SATURATION_GAP) + " above " +
-                          (n == 0 ? "0" : "saturation[" + std::to_string(n - 1) + "], " + number_text(below)));
-        below = value;
-    }
-    return ok_status();
+    Settings settings;
+    settings.material = material;
+    if (Status status = check_rows(settings, "material"); !status) return status;
+    return check_saturation(material);
 }
 
 Status validate(const Settings& settings) {
-    if (Status status = check_grid(settings); !status) return status;
-    if (Status status = validate(settings.material); !status) return status;
+    if (Status status = check_rows(settings); !status) return status;
+    if (Status status = check_saturation(settings.material); !status) return status;
     if (Status status = check_method(settings.method); !status) return status;
     for (std::size_t n = 0; n < settings.sides.size(); ++n)
         if (Status status = check_side(settings, n); !status) return status;
@@ -234,9 +218,6 @@ Status validate(const Settings& settings) {
         return refuse("edits: " + std::to_string(settings.edits.size()) + " are more than " + std::to_string(EDITS_MOST));
     for (std::size_t n = 0; n < settings.edits.size(); ++n)
         if (Status status = check_scripted_edit(settings, n); !status) return status;
-    if (const int side = settings.active_tiles; side != 0 && side != 8 && side != 16 && side != 32 && side != 64)
-        return refuse("active_tiles: " + std::to_string(side) + " is not 0 (off), 8, 16, 32 or 64");
-    if (Status status = check_range("active_tiles_most", settings.active_tiles_most, 0, 1); !status) return status;
     for (const auto& [name, force] : settings.effects) {
         const auto& names = effect_names();
         if (std::find(names.begin(), names.end(), name) == names.end())

@@ -13,28 +13,28 @@ namespace wadi {
 
 /// Cell-centred grid. Row j = 0 is the south side, column i = 0 the west side.
 struct Grid {
-    int nx = 0;    // cells along x, 1 ... 16384
-    int ny = 0;    // cells along y, 1 ... 16384
-    double dx = 0; // side of the square cells [m], 1e-4 ... 1e4
+    int nx = 0;
+    int ny = 0;
+    double dx = 0;
 };
 
 /// Sand and water properties. Sources: paper Table 1 and section 3.3; values NUMERICS.md section 4.
 struct Material {
-    double water_density = 1000;                          // [kg/m3], 1 ... 1e5
-    double sand_density = 2000;                           // [kg/m3], 1 ... 1e5
-    double friction = 0.5;                                // mu, Coulomb friction of sand on the ground, 0 ... 10
-    double young_modulus = 2e5;                           // E [Pa], 0 ... 1e12; 0 = friction-only sand
-    double poisson_ratio = 0.3;                           // nu, 0 ... 0.49
-    double yield_friction = 0.4;                          // c_f of the Drucker-Prager yield surface, 0.01 ... 10
-    double cohesion_dry = 0;                              // c0 [Pa], 0 ... 1e12
-    double cohesion_wet = 2e4;                            // c1 at saturation phi1 [Pa]
-    double cohesion_capillary = 2e4;                      // c2 at saturation phi2 [Pa]
-    std::array<double, 3> saturation = {0.2, 0.25, 0.33}; // phi1 < phi2 < phi3, 0 ... 1
-    double exchange_rate = 1e5;   // c_e [kg/(m3 s)], 0 ... 1e15: momentum exchange between mixed water and sand
-    double diffusion_rate = 0.01; // c_d [m2/s], 0 ... 1e6
-    double bed_shear = 0;         // c of the stress rho_w c |u|^2 of pure water on sand, 0 ... 10; 0 = off
-    double grain_size = 1e-3;     // [m], 1e-6 ... 1: how much stress bed load needs
-    double bed_friction = 0;      // c of u/(1 + dt c |u|/h) for pure water, dimensionless, 0 ... 10; 0 = off
+    double water_density = 1000;
+    double sand_density = 2000;
+    double friction = 0.5; // mu
+    double young_modulus = 2e5;
+    double poisson_ratio = 0.3;
+    double yield_friction = 0.4; // c_f
+    double cohesion_dry = 0;     // c0
+    double cohesion_wet = 2e4;   // c1
+    double cohesion_capillary = 2e4;
+    std::array<double, 3> saturation = {0.2, 0.25, 0.33};
+    double exchange_rate = 1e5; // c_e
+    double diffusion_rate = 0.01;
+    double bed_shear = 0;
+    double grain_size = 1e-3;
+    double bed_friction = 0; // c of u/(1 + dt c |u|/h)
     friend bool operator==(const Material&, const Material&) = default;
 };
 
@@ -54,31 +54,31 @@ enum class Diffusion : std::uint8_t { limited, laplacian };
 /// How water and sand are stepped. Every guard is off at a neutral value, so that any one can be studied alone.
 struct Method {
     std::string name = "robust";
-    int substeps = 3;             // T, sand substeps per water step, 1 ... 64
+    int substeps = 3;             // T
     bool outflow_limiter = true;  // NUMERICS 2.2
-    double quantum = -1;          // [m]; -1 = chosen from largest_height, 0 = plain float
-    double largest_height = 16;   // declared largest column H + hs + W [m], 1e-3 ... 1e6
-    double dry_threshold = 1e-5;  // eps [m], 1e-12 ... 1
-    double velocity_clamp = 0.35; // alpha: |u| <= alpha dx/dt, 0.01 ... 1e6
-    double gravity_cap = 0.55;    // NUMERICS 2.4b; 0 = off
+    double quantum = -1;          // NUMERICS 2.2
+    double largest_height = 16;   // of H + hs + W
+    double dry_threshold = 1e-5;  // eps
+    double velocity_clamp = 0.35; // alpha: |u| <= alpha dx/dt
+    double gravity_cap = 0.55;    // NUMERICS 2.4b
     double gravity_cap_least = 0.15;
-    double sand_gravity_cap = 0.25; // NUMERICS 2.7; 0 = off
-    double elastic_cap = 0.2;       // lambda + 2 mu <= elastic_cap rho_s dx^2/dts^2; 0 = off
-    double shock_viscosity = 0;     // c1 of NUMERICS 2.3, damps the ripples behind a bore; 0 = off
-    double bulk_viscosity = 0;      // beta of NUMERICS 2.7, damps elastic waves; 0 = off
-    double rest_surface = 1e-5;     // eta_rest [m]; 0 with rest_velocity 0 = off
-    double rest_velocity = 1e-3;    // v_rest [m/s]
-    double passive_pressure = 1;    // K of the compression cap, NUMERICS 2.7; 0 = off
-    double gradient_clamp = 0.4;    // largest |dts grad v| entry; 0 = off
-    double cohesion_cap = 0.9;      // c <= 2 c_f cohesion_cap rho_s g hs; 0 = off
-    double stress_taper = 0;        // h_el [m]: stress fades in between h_el and 2 h_el; 0 = off
-    int saturation_smoothing = 2;   // radius in cells of the low-pass before the cohesion lookup: 0, 1, 2
+    double sand_gravity_cap = 0.25; // NUMERICS 2.7
+    double elastic_cap = 0.2;       // lambda + 2 mu <= elastic_cap rho_s dx^2/dts^2
+    double shock_viscosity = 0;     // c1 of NUMERICS 2.3
+    double bulk_viscosity = 0;      // beta of NUMERICS 2.7
+    double rest_surface = 1e-5;     // NUMERICS 2.4e
+    double rest_velocity = 1e-3;
+    double passive_pressure = 1; // K of the compression cap, NUMERICS 2.7
+    double gradient_clamp = 0.4; // largest |dts grad v| entry
+    double cohesion_cap = 0.9;   // c <= 2 c_f cohesion_cap rho_s g hs
+    double stress_taper = 0;
+    int saturation_smoothing = 2;
     VelocityTransport velocity_transport = VelocityTransport::flux_form; // semi_lagrangian: velocity_clamp at most 1
     StrainTransport strain_transport = StrainTransport::left_stretch;
     DragFriction drag_friction = DragFriction::joint;
     Diffusion diffusion = Diffusion::limited;
-    bool half_storage = false;     // velocities and stretch lie in memory as 16-bit floats (NUMERICS 2.17)
-    int water_transport_order = 1; // of heights and flux-form velocities of water (NUMERICS 2.2, 2.3, 2.16): 1, 2
+    bool half_storage = false;     // NUMERICS 2.17
+    int water_transport_order = 1; // NUMERICS 2.2, 2.3, 2.16
 };
 
 /// A value over time: linear between samples, constant outside. One sample = constant.
@@ -119,11 +119,11 @@ enum class Force : std::uint8_t { automatic, on, off };
 /// Whether a step's stages run fused; automatic: where the device gains from it (engine/README.md).
 enum class FusedStages : std::uint8_t { automatic, always, never };
 
-/// Everything but the fields themselves.
+/// Everything but the fields themselves. Units, ranges and meaning of what is one number, flag or choice: setting_table.cpp.
 struct Settings {
     Grid grid;
-    double dt = 0;         // water time step [s], 1e-7 ... 100
-    double gravity = 9.81; // [m/s2], 0 ... 1000
+    double dt = 0;
+    double gravity = 9.81;
     Material material;
     Method method;
     std::array<Side, 4> sides;                          // indexed by SideName
@@ -131,16 +131,13 @@ struct Settings {
     TimeSeries rain;                                    // [m/s]
     TimeSeries evaporation;                             // [m/s]
     std::vector<ScriptedEdit> edits;                    // at most 1000; the world queues them itself
-    std::vector<std::pair<std::string, Force>> effects; // names of engine/settings/effect_table.cpp
-    /// Side of the active tiles [cells]: 8, 16, 32 or 64, 0 = off. Tiles in which nothing changes any more are left out of a
-    /// step. How a world is run, not what it is: every bit stays, also in snapshots and between worlds that have it and that do
-    /// not.
+    std::vector<std::pair<std::string, Force>> effects; // names of shaders/effect_rows.hpp
+    /// Tiles in which nothing changes any more are left out of a step. How a world is run, not what it is: every bit stays, also
+    /// in snapshots and between worlds that have it and that do not.
     int active_tiles = 0;
-    /// Whether a step's stages run fused, several in a pass over tiles, or one by one: every bit stays. Left to the engine: where
-    /// the device gains from it (engine/README.md).
+    /// Every bit stays.
     FusedStages fused_stages = FusedStages::automatic;
-    /// Share of active tiles above which the log is told, once per crossing, 0 ... 1; 1 = never.
-    double active_tiles_most = 1;
+    double active_tiles_most = 1; // 1 = the log is never told
 };
 
 /// Initial fields in row-major nx * ny order, row 0 in the south; empty = zero everywhere.

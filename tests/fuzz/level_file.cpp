@@ -1,6 +1,6 @@
 // A case as a level file, so that whoever gets it can open it in the recorder and the viewer.
 #include "engine/level/level.hpp"
-#include "engine/settings/setting_fields.hpp"
+#include "engine/settings/setting_table.hpp"
 #include "tests/fuzz/fuzz_case.hpp"
 #include <cmath>
 #include <cstring>
@@ -31,31 +31,24 @@ bool write_npy(const std::string& path, const std::vector<float>& values, const 
     return static_cast<bool>(out);
 }
 
-template <class Owner, class Table> void write_changed(Json& to, const Owner& owner, const Table& table) {
-    const Owner normal;
-    for (const auto& field : table)
-        if (owner.*field.member != normal.*field.member) to[field.name] = owner.*field.member;
+Json value_of(const Setting& row, const Settings& s) {
+    const double value = row.at.get(s);
+    if (row.at.kind == SettingKind::number) return value;
+    if (row.at.kind == SettingKind::flag) return value != 0;
+    if (row.at.kind == SettingKind::choice) return row.values.names[static_cast<std::size_t>(value)];
+    return static_cast<int>(value);
 }
 
-Json method_of(const Method& m) {
-    Json json;
-    if (m.name != Method().name) json["name"] = m.name;
-    // Every number: what a preset chose may differ from the default.
-    for (const auto& field : METHOD_FIELDS)
-        if (m.name != Method().name || m.*field.member != Method().*field.member) json[field.name] = m.*field.member;
-    for (const auto& field : METHOD_COUNTS)
-        if (m.name != Method().name || m.*field.member != Method().*field.member) json[field.name] = m.*field.member;
-    if (!m.outflow_limiter) json["outflow_limiter"] = false;
-    if (m.half_storage) json["half_storage"] = true;
-    const auto name = [](const std::vector<std::string>& names, auto value) { return names[static_cast<std::size_t>(value)]; };
-    const Method normal;
-    if (m.velocity_transport != normal.velocity_transport)
-        json["velocity_transport"] = name(velocity_transport_names(), m.velocity_transport);
-    if (m.strain_transport != normal.strain_transport)
-        json["strain_transport"] = name(strain_transport_names(), m.strain_transport);
-    if (m.drag_friction != normal.drag_friction) json["drag_friction"] = name(drag_friction_names(), m.drag_friction);
-    if (m.diffusion != normal.diffusion) json["diffusion"] = name(diffusion_names(), m.diffusion);
-    return json;
+// What is not the default; of a method that a preset chose every number, for the preset's differ from the default.
+void write_rows(Json& json, const Settings& s) {
+    const bool preset = s.method.name != Method().name;
+    if (preset) json["method"]["name"] = s.method.name;
+    for (const Setting& row : setting_table()) {
+        const bool needed = row.required() || row.at.get(s) != row.normal() || (preset && row.object() == "method");
+        if (row.element() || !needed) continue;
+        (row.object().empty() ? json : json[std::string(row.object())])[std::string(row.key())] = value_of(row, s);
+    }
+    if (s.material.saturation != Material().saturation) json["material"]["saturation"] = s.material.saturation;
 }
 
 Json source_of(const Source& source) {
@@ -103,10 +96,8 @@ Json level_of(const Case& c) {
     Json json;
     json["format_version"] = 1;
     json["name"] = "fuzz " + std::to_string(c.seed);
-    json["grid"] = {{"nx", s.grid.nx}, {"ny", s.grid.ny}, {"dx", s.grid.dx}};
-    json["dt"] = s.dt;
+    write_rows(json, s);
     json["duration"] = c.steps * s.dt;
-    if (s.gravity != Settings().gravity) json["gravity"] = s.gravity;
     for (const auto& [name, field] : {std::pair{"terrain", &f.terrain}, {"sand", &f.sand}, {"water", &f.water}})
         if (!field->empty()) json[name] = Json::array({{{"file", std::string(name) + ".npy"}}});
     Json velocities = Json::array();
@@ -118,11 +109,6 @@ Json level_of(const Case& c) {
     velocity("water", f.velocity_x, f.velocity_y);
     velocity("sand", f.sand_velocity_x, f.sand_velocity_y);
     if (!velocities.empty()) json["velocities"] = velocities;
-    Json material;
-    write_changed(material, s.material, MATERIAL_FIELDS);
-    if (s.material.saturation != Material().saturation) material["saturation"] = s.material.saturation;
-    if (!material.is_null()) json["material"] = material;
-    if (const Json method = method_of(s.method); !method.is_null()) json["method"] = method;
     for (std::size_t n = 0; n < 4; ++n) {
         const Side& side = s.sides[n];
         if (side.kind == SideKind::wall) continue;

@@ -1,5 +1,5 @@
 // Greedy: whatever can go without the failure going stays away.
-#include "engine/settings/setting_fields.hpp"
+#include "engine/settings/setting_table.hpp"
 #include "tests/fuzz/checks.hpp"
 #include <chrono>
 #include <functional>
@@ -100,20 +100,13 @@ std::vector<Change> changes() {
     list.push_back([](Case& c) { return flatten(c.scene.fields.sand); });
     list.push_back([](Case& c) { return flatten(c.scene.fields.water); });
     list.push_back([](Case& c) { return flatten(c.scene.fields.terrain); });
-    list.push_back([](Case& c) { return reset(c.scene.settings.gravity, Settings().gravity); });
-    for (const auto& field : MATERIAL_FIELDS)
-        list.push_back([&field](Case& c) { return reset(c.scene.settings.material.*field.member, Material().*field.member); });
-    list.push_back([](Case& c) { return reset(c.scene.settings.material.saturation, Material().saturation); });
-    for (const auto& field : METHOD_FIELDS)
-        list.push_back([&field](Case& c) { return reset(c.scene.settings.method.*field.member, Method().*field.member); });
-    for (const auto& field : METHOD_COUNTS)
-        list.push_back([&field](Case& c) { return reset(c.scene.settings.method.*field.member, Method().*field.member); });
-    list.push_back([](Case& c) { return reset(c.scene.settings.method.outflow_limiter, true); });
-    list.push_back([](Case& c) { return reset(c.scene.settings.method.half_storage, false); });
-    list.push_back([](Case& c) { return reset(c.scene.settings.method.velocity_transport, Method().velocity_transport); });
-    list.push_back([](Case& c) { return reset(c.scene.settings.method.strain_transport, Method().strain_transport); });
-    list.push_back([](Case& c) { return reset(c.scene.settings.method.drag_friction, Method().drag_friction); });
-    list.push_back([](Case& c) { return reset(c.scene.settings.method.diffusion, Method().diffusion); });
+    for (const Setting& row : setting_table())
+        if (!row.required())
+            list.push_back([&row](Case& c) {
+                if (row.at.get(c.scene.settings) == row.normal()) return false;
+                row.at.set(c.scene.settings, row.normal());
+                return true;
+            });
     list.push_back([](Case& c) { return reset(c.scene.settings.method.name, Method().name); });
     // Whole effects: what is forced off needs what depends on it off as well.
     for (const char* name : {"bed_shear", "bed_friction", "cohesion", "elastoplastic", "diffusion", "drag", "mixture"})

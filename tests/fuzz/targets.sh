@@ -19,7 +19,9 @@ for target in "${targets[@]}"; do
     log=build/fuzz/$target.log
     good=yes
     dictionary=()
-    [ -f "tests/fuzz/corpus/$target.dict" ] && dictionary=("-dict=tests/fuzz/corpus/$target.dict")
+    for words in "tests/fuzz/corpus/$target.dict" "$corpus/$target.dict"; do
+        [ -f "$words" ] && dictionary=("-dict=$words")
+    done
     "build/fuzz/bin/fuzz-$target" -max_total_time="$seconds" -max_len=16384 -rss_limit_mb=2048 -timeout=20 -print_final_stats=1 \
         "${dictionary[@]}" -artifact_prefix="build/fuzz/crashes/$target-" "$corpus/$target" > "$log" 2>&1 || good=no
     executed=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")

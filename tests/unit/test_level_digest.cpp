@@ -1,5 +1,6 @@
 // The level digest: that of the levels that ship, as snapshots and command logs hold it.
 #include "engine/settings/level_digest.hpp"
+#include "engine/settings/setting_table.hpp"
 #include "tests/unit/level_text.hpp"
 #include <doctest/doctest.h>
 
@@ -39,4 +40,17 @@ TEST_CASE("level digest: of a level that sets everything") {
     const auto half = parse(R"("method": {"half_storage": true})");
     REQUIRE_MESSAGE(half, message(half));
     CHECK_MESSAGE(level_digest(half->settings) == 2337895686292299782u, level_digest(half->settings));
+}
+
+TEST_CASE("level digest: every row that the digest covers changes it, no other does") {
+    Settings normal;
+    normal.grid = {20, 10, 0.5};
+    normal.dt = 0.01;
+    for (const Setting& row : setting_table()) {
+        CAPTURE(row.path);
+        Settings other = normal;
+        const double value = row.at.get(normal);
+        row.at.set(other, value == row.values.most ? row.values.least : row.values.most);
+        CHECK((level_digest(other) != level_digest(normal)) == (row.in_digest != InDigest::no));
+    }
 }

@@ -1,6 +1,8 @@
 // validate() and TimeSeries of engine/settings/settings.hpp.
-#include "engine/settings/setting_fields.hpp"
+#include "engine/settings/messages.hpp"
+#include "engine/settings/setting_table.hpp"
 #include "tests/unit/level_text.hpp"
+#include <algorithm>
 #include <cmath>
 #include <doctest/doctest.h>
 #include <functional>
@@ -28,15 +30,21 @@ std::string refusal(const std::function<void(Settings&)>& change) {
 
 constexpr double NOT_A_NUMBER = std::numeric_limits<double>::quiet_NaN();
 
-template <class Owner, class Number, std::size_t COUNT>
-void check_limits(const SettingField<Owner, Number> (&fields)[COUNT], const std::string& path, Owner Settings::*owner) {
-    for (const auto& field : fields) {
-        const auto with = [&](Number value) { return refusal([&](Settings& s) { s.*owner.*field.member = value; }); };
-        const std::string name = path + field.name + ": ";
-        CHECK_MESSAGE(says(with(static_cast<Number>(field.most * 2 + 1)), name), name);
-        CHECK_MESSAGE(says(with(static_cast<Number>(field.least - 1)), " is outside "), name);
-        CHECK(!says(with(field.least), name + "is outside"));
-    }
+struct Anything {
+    template <class T> operator T() const;
+};
+
+/// How many members an aggregate has.
+template <class Owner, class... Members> constexpr std::size_t members() {
+    if constexpr (requires { Owner{Members()..., Anything()}; })
+        return members<Owner, Members..., Anything>();
+    else
+        return sizeof...(Members);
+}
+
+std::ptrdiff_t rows_of(std::string_view object) {
+    const auto table = setting_table();
+    return std::count_if(table.begin(), table.end(), [&](const Setting& row) { return row.object() == object; });
 }
 
 } // namespace
@@ -45,13 +53,25 @@ TEST_CASE("settings: defaults are valid") {
     CHECK(refusal([](Settings&) {}).empty());
 }
 
-TEST_CASE("settings: every number of material and method is checked") {
-    check_limits(MATERIAL_FIELDS, "material.", &Settings::material);
-    check_limits(METHOD_FIELDS, "method.", &Settings::method);
-    check_limits(METHOD_COUNTS, "method.", &Settings::method);
-    for (const auto& field : MATERIAL_FIELDS)
-        CHECK(says(refusal([&](Settings& s) { s.material.*field.member = NOT_A_NUMBER; }), field.name));
+TEST_CASE("settings: every row is checked, and every number of grid, material and method has one") {
+    for (const Setting& row : setting_table()) {
+        CAPTURE(row.path);
+        const auto with = [&](double value) { return refusal([&](Settings& s) { row.at.set(s, value); }); };
+        const std::string name = std::string(row.path) + ": ";
+        CHECK(!says(with(row.values.least), " is outside"));
+        CHECK(with(row.values.most) != outside_text(row.path, row.values.most, row.values.least, row.values.most));
+        CHECK(find_setting(row.path) == &row);
+        if (row.at.kind == SettingKind::flag) continue; // holds nothing else
+        CHECK(says(with(row.values.most * 2 + 1), name));
+        CHECK(says(with(row.at.kind == SettingKind::choice ? 200 : row.values.least - 1), " is outside "));
+        if (row.at.kind == SettingKind::number) CHECK(says(with(NOT_A_NUMBER), name));
+    }
     CHECK(refusal([](Settings& s) { s.material.friction = 12; }) == "material.friction: 12 is outside 0 ... 10");
+    CHECK(refusal([](Settings& s) { s.active_tiles = 9; }) == "active_tiles: 9 is not one of 0, 8, 16, 32, 64");
+    CHECK(find_setting("material.frict") == nullptr);
+    CHECK(rows_of("grid") == members<Grid>());
+    CHECK(rows_of("material") == members<Material>() + 2); // three numbers of saturation
+    CHECK(rows_of("method") == members<Method>() - 1);     // name
 }
 
 TEST_CASE("settings: grid, time step, gravity") {

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the small first inputs of the libFuzzer targets into OUT/TARGET/. Usage: make.py OUT."""
+"""Writes the small first inputs of the libFuzzer targets into OUT/TARGET/, and OUT/level.dict, the words of level files. Usage: make.py OUT."""
 import json
 import pathlib
 import struct
@@ -27,6 +27,16 @@ def sealed(name, body=b""):
     return name + struct.pack("<IIQQ", 2, 0, 32 + len(body), 0) + body
 
 
+def words(schema):
+    """Keys, and values that are words."""
+    if isinstance(schema, list):
+        return set().union(*map(words, schema))
+    if not isinstance(schema, dict):
+        return set()
+    own = set(schema.get("properties", {})) | {w for w in schema.get("enum", []) + [schema.get("const")] if isinstance(w, str)}
+    return own.union(*map(words, schema.values()))
+
+
 def main():
     out = pathlib.Path(sys.argv[1])
 
@@ -47,6 +57,8 @@ def main():
     put("calls", "mixed", bytes((n * 37 + n // 7) % 256 for n in range(300)))
     for path in sorted((ROOT / "samples" / "levels").glob("*/level.json")):
         put("level", path.parent.name, path.read_bytes())
+    schema = json.loads((ROOT / "samples" / "levels" / "level.schema.json").read_text())
+    (out / "level.dict").write_text("".join(f'"\\"{word}\\""\n' for word in sorted(words(schema))))
     put("level", "small", json.dumps({"format_version": 1, "name": "a", "grid": {"nx": 4, "ny": 3, "dx": 1}, "dt": 0.01,
                                       "terrain": [{"file": "map.png", "min": 0, "max": 1}]}).encode())
 

@@ -1,0 +1,169 @@
+#include "engine/settings/setting_table.hpp"
+#include "engine/settings/effects.hpp"
+#include <algorithm>
+#include <iterator>
+#include <type_traits>
+
+namespace wadi {
+
+namespace {
+
+// The words of a choice, in the order of its enumerators.
+constexpr const char* velocity_transports[] = {"flux_form", "semi_lagrangian"};
+constexpr const char* strain_transports[] = {"left_stretch", "polar", "direct"};
+constexpr const char* drag_frictions[] = {"joint", "sequence"};
+constexpr const char* diffusions[] = {"limited", "laplacian"};
+constexpr const char* fused_stages[] = {"auto", "always", "never"};
+
+constexpr Values words(std::span<const char* const> names) { return {0, static_cast<double>(names.size()) - 1, names}; }
+
+constexpr Values flag = {0, 1};
+
+constexpr int sides_of_tiles[] = {0, 8, 16, 32, 64};
+constexpr Values tile_sides = {0, 64, {}, sides_of_tiles};
+
+constexpr std::uint32_t several = 0; // effects, of which it needs none
+
+template <class Number> constexpr SettingKind kind_of() {
+    if (std::is_enum_v<Number>) return SettingKind::choice;
+    if (std::is_same_v<Number, bool>) return SettingKind::flag;
+    return std::is_same_v<Number, int> ? SettingKind::whole : SettingKind::number;
+}
+
+// A member of Settings, or of one of its members.
+template <auto... MEMBERS> auto& member(auto& settings) { return (settings.*....*MEMBERS); }
+
+template <auto... MEMBERS>
+constexpr SettingAccess at = {kind_of<std::remove_reference_t<decltype(member<MEMBERS...>(std::declval<Settings&>()))>>(),
+                              [](const Settings& settings) { return static_cast<double>(member<MEMBERS...>(settings)); },
+                              [](Settings& settings, double value) {
+                                  auto& to = member<MEMBERS...>(settings);
+                                  to = static_cast<std::remove_reference_t<decltype(to)>>(value);
+                              }};
+
+template <auto MEMBER> constexpr SettingAccess grid = at<&Settings::grid, MEMBER>;
+template <auto MEMBER> constexpr SettingAccess material = at<&Settings::material, MEMBER>;
+template <auto MEMBER> constexpr SettingAccess method = at<&Settings::method, MEMBER>;
+template <std::size_t N>
+constexpr SettingAccess saturation = {SettingKind::number,
+                                      [](const Settings& settings) { return settings.material.saturation[N]; },
+                                      [](Settings& settings, double value) { settings.material.saturation[N] = value; }};
+
+// clang-format off
+constexpr Setting settings[] = {
+    {"grid.nx", grid<&Grid::nx>, {1, GRID_MOST}, "cells", several, "size of the grid along x, to the east"},
+    {"grid.ny", grid<&Grid::ny>, {1, GRID_MOST}, "cells", several, "size of the grid along y, to the north"},
+    {"grid.dx", grid<&Grid::dx>, {DX_LEAST, DX_MOST}, "m", several, "side of the square cells"},
+    {"dt", at<&Settings::dt>, {DT_LEAST, DT_MOST}, "s", several, "water time step; sand takes method.substeps steps in it"},
+    {"gravity", at<&Settings::gravity>, {0, 1000}, "m/s2", several, "acceleration of gravity"},
+    {"material.water_density", material<&Material::water_density>, {1, 1e5}, "kg/m3", several, "density of water"},
+    {"material.sand_density", material<&Material::sand_density>, {1, 1e5}, "kg/m3", several, "density of sand"},
+    {"material.friction", material<&Material::friction>, {0, 10}, "", EFFECT_SAND,
+     "Coulomb friction of sand on the ground: its slope at rest"},
+    {"material.young_modulus", material<&Material::young_modulus>, {0, 1e12}, "Pa", EFFECT_ELASTOPLASTIC,
+     "stiffness of sand; 0 = friction only"},
+    {"material.poisson_ratio", material<&Material::poisson_ratio>, {0, 0.49}, "", EFFECT_ELASTOPLASTIC,
+     "how much sand yields sideways under load"},
+    {"material.yield_friction", material<&Material::yield_friction>, {0.01, 10}, "", EFFECT_ELASTOPLASTIC,
+     "c_f of the Drucker-Prager yield surface"},
+    {"material.cohesion_dry", material<&Material::cohesion_dry>, {0, 1e12}, "Pa", EFFECT_COHESION, "cohesion of dry sand"},
+    {"material.cohesion_wet", material<&Material::cohesion_wet>, {0, 1e12}, "Pa", EFFECT_COHESION, "cohesion at saturation phi1"},
+    {"material.cohesion_capillary", material<&Material::cohesion_capillary>, {0, 1e12}, "Pa", EFFECT_COHESION,
+     "cohesion at phi2; falls to 0 at phi3"},
+    {"material.saturation[0]", saturation<0>, {0, 1}, "", EFFECT_COHESION, "phi1, at least 0.001 above 0"},
+    {"material.saturation[1]", saturation<1>, {0, 1}, "", EFFECT_COHESION, "phi2, at least 0.001 above phi1"},
+    {"material.saturation[2]", saturation<2>, {0, 1}, "", EFFECT_COHESION, "phi3, at least 0.001 above phi2"},
+    {"material.exchange_rate", material<&Material::exchange_rate>, {0, 1e15}, "kg/(m3 s)", EFFECT_DRAG,
+     "momentum exchange of sand and the water in it"},
+    {"material.diffusion_rate", material<&Material::diffusion_rate>, {0, 1e6}, "m2/s", EFFECT_DIFFUSION,
+     "diffusion of water in sand"},
+    {"material.bed_friction", material<&Material::bed_friction>, {0, 10}, "", EFFECT_BED_FRICTION,
+     "friction of pure water on its bed, Manning-like; 0 = off"},
+    {"material.bed_shear", material<&Material::bed_shear>, {0, 10}, "", EFFECT_BED_SHEAR,
+     "c of the stress water_density c u^2 of pure water on sand; 0 = off"},
+    {"material.grain_size", material<&Material::grain_size>, {1e-6, 1}, "m", EFFECT_BED_SHEAR,
+     "coarser sand needs faster water before bed_shear moves it"},
+    {"method.substeps", method<&Method::substeps>, {1, 64}, "", EFFECT_SAND, "sand steps per water step"},
+    {"method.outflow_limiter", method<&Method::outflow_limiter>, flag, "", several, "no cell gives away more than it has"},
+    {"method.quantum", method<&Method::quantum>, {-1, 1e6}, "m", several,
+     "heights are multiples of it, a power of two; -1 = chosen, 0 = off"},
+    {"method.largest_height", method<&Method::largest_height>, {1e-3, 1e6}, "m", several,
+     "largest column of terrain, sand and water"},
+    {"method.dry_threshold", method<&Method::dry_threshold>, {1e-12, 1}, "m", several, "shallower cells are dry"},
+    {"method.velocity_clamp", method<&Method::velocity_clamp>, {0.01, 1e6}, "", several,
+     "speeds stay below velocity_clamp * dx / dt"},
+    {"method.gravity_cap", method<&Method::gravity_cap>, {0, 1e6}, "", EFFECT_WATER,
+     "slows waves that dt cannot follow; 0 = off"},
+    {"method.gravity_cap_least", method<&Method::gravity_cap_least>, {0, 1e6}, "", EFFECT_WATER,
+     "gravity_cap in fast water; at most gravity_cap"},
+    {"method.sand_gravity_cap", method<&Method::sand_gravity_cap>, {0, 1e6}, "", EFFECT_SAND, "gravity_cap of sand; 0 = off"},
+    {"method.elastic_cap", method<&Method::elastic_cap>, {0, 1e6}, "", EFFECT_ELASTOPLASTIC,
+     "softens sand that the sand step cannot follow; 0 = off"},
+    {"method.shock_viscosity", method<&Method::shock_viscosity>, {0, 1}, "", EFFECT_WATER,
+     "damps ripples of two cells behind a bore; 0 = off"},
+    {"method.bulk_viscosity", method<&Method::bulk_viscosity>, {0, 1}, "", EFFECT_ELASTOPLASTIC,
+     "damps waves of stress in sand; 0 = off"},
+    {"method.rest_surface", method<&Method::rest_surface>, {0, 1}, "m", EFFECT_WATER,
+     "differences of the surface that count as still; 0 with rest_velocity 0 = off"},
+    {"method.rest_velocity", method<&Method::rest_velocity>, {0, 100}, "m/s", EFFECT_WATER, "speeds that count as still"},
+    {"method.passive_pressure", method<&Method::passive_pressure>, {0, 1e6}, "", EFFECT_ELASTOPLASTIC,
+     "compression that sand bears, in units of its weight; 0 = off"},
+    {"method.gradient_clamp", method<&Method::gradient_clamp>, {0, 1e6}, "", EFFECT_ELASTOPLASTIC,
+     "largest strain increment of a sand step; 0 = off"},
+    {"method.cohesion_cap", method<&Method::cohesion_cap>, {0, 1e6}, "", EFFECT_COHESION,
+     "largest cohesion / (2 yield_friction sand_density g depth); 0 = off"},
+    {"method.stress_taper", method<&Method::stress_taper>, {0, 1e3}, "m", EFFECT_ELASTOPLASTIC,
+     "stress fades in between this depth and twice it; 0 = off"},
+    {"method.saturation_smoothing", method<&Method::saturation_smoothing>, {0, 2}, "cells", EFFECT_COHESION,
+     "radius of the low-pass of saturation"},
+    {"method.velocity_transport", method<&Method::velocity_transport>, words(velocity_transports), "", several,
+     "velocities move with the mass fluxes, or are traced back"},
+    {"method.strain_transport", method<&Method::strain_transport>, words(strain_transports), "", EFFECT_ELASTOPLASTIC,
+     "what of the strain moves with the sand"},
+    {"method.drag_friction", method<&Method::drag_friction>, words(drag_frictions), "", EFFECT_DRAG,
+     "one implicit solve, or explicit drag and then friction"},
+    {"method.diffusion", method<&Method::diffusion>, words(diffusions), "", EFFECT_DIFFUSION,
+     "a limited flux, or the Laplacian of the height"},
+    {"method.water_transport_order", method<&Method::water_transport_order>, {1, 2}, "", EFFECT_WATER,
+     "2: heights and flux-form velocities move with limited slopes"},
+    {"method.half_storage", method<&Method::half_storage>, flag, "", several,
+     "velocities and strain lie in memory as 16-bit floats", InDigest::where_set},
+    {"active_tiles", at<&Settings::active_tiles>, tile_sides, "cells", several,
+     "side of active tiles: those at rest are left out of a step; 0 = off", InDigest::no},
+    {"fused_stages", at<&Settings::fused_stages>, words(fused_stages), "", several,
+     "several stages in one pass; auto: where the device gains from it", InDigest::no},
+    {"active_tiles_most", at<&Settings::active_tiles_most>, {0, 1}, "", several,
+     "share of active tiles above which the log is told", InDigest::no},
+};
+// clang-format on
+
+const Settings& defaults() {
+    static const Settings untouched;
+    return untouched;
+}
+
+} // namespace
+
+std::string_view Setting::object() const {
+    const std::string_view text = path;
+    const auto dot = text.find('.');
+    return dot == text.npos ? "" : text.substr(0, dot);
+}
+
+std::string_view Setting::key() const {
+    const std::string_view text = path;
+    return text.substr(text.find('.') + 1); // npos + 1 = 0
+}
+
+double Setting::normal() const { return at.get(defaults()); }
+
+bool Setting::required() const { return normal() < values.least; }
+
+std::span<const Setting> setting_table() { return settings; }
+
+const Setting* find_setting(std::string_view path) {
+    const auto found = std::find_if(std::begin(settings), std::end(settings), [&](const Setting& s) { return path == s.path; });
+    return found == std::end(settings) ? nullptr : found;
+}
+
+} // namespace wadi
