@@ -5,25 +5,9 @@
 using namespace wadi;
 using namespace wadi::plugin;
 
-namespace {
-
-struct FieldName {
-    const char* short_name;
-    const char* plan_name;
-};
-constexpr FieldName field_names[WADI_FIELD_COUNT] = {
-    {"H", "terrain"},           {"hs", "sand_height"},       {"W", "water_height"},
-    {"hw", "water_depth"},      {"surface", "free_surface"}, {"phi", "surface_saturation"},
-    {"uw", "water_velocity_x"}, {"vw", "water_velocity_y"},  {"us", "sand_velocity_x"},
-    {"vs", "sand_velocity_y"},  {"um", "mixed_velocity_x"},  {"vm", "mixed_velocity_y"},
-    {"Vxx", "stretch_xx"},      {"Vxy", "stretch_xy"},       {"Vyy", "stretch_yy"},
-};
-
-} // namespace
-
 const char* wadi::plugin::plan_name(wadi_field field) {
-    const int n = static_cast<int>(field);
-    return n >= 0 && n < WADI_FIELD_COUNT ? field_names[n].plan_name : nullptr;
+    const FieldRow* row = find_host_field(static_cast<int>(field));
+    return row != nullptr ? row->name.data() : nullptr;
 }
 
 extern "C" {
@@ -43,8 +27,8 @@ wadi_result wadi_world_get_time(wadi_world_id id, double* seconds, uint64_t* ste
 }
 
 const char* wadi_field_name(wadi_field field) {
-    const int n = static_cast<int>(field);
-    return n >= 0 && n < WADI_FIELD_COUNT ? field_names[n].short_name : nullptr;
+    const FieldRow* row = find_host_field(static_cast<int>(field));
+    return row != nullptr ? row->symbol : nullptr;
 }
 
 wadi_result wadi_world_read_field(wadi_world_id id, wadi_field field, float* values, size_t count) {

@@ -18,12 +18,7 @@ std::uint64_t mix(std::uint64_t x) {
     return x ^ (x >> 31);
 }
 
-// In the order that the hash numbers them: never reorder, or every golden hash changes.
-constexpr const char* hashed_fields[] = {"sand_height",      "water_height",     "stretch_xx",       "stretch_xy",
-                                         "stretch_yy",       "sand_velocity_x",  "sand_velocity_y",  "water_velocity_x",
-                                         "water_velocity_y", "mixed_velocity_x", "mixed_velocity_y", "rotation"};
-
-bool is_velocity(const std::string& name) { return name.ends_with("velocity_x") || name.ends_with("velocity_y"); }
+bool is_velocity(const FieldRow& field) { return field.place != FieldPlace::cell; }
 
 } // namespace
 
@@ -84,19 +79,19 @@ Status StateReader::publish(const std::string& stage, const std::map<std::string
 Status StateReader::read(const std::string& name, const Region& region, std::span<float> values) {
     if (auto status = check_region("read", region, state_.settings().grid, values.size()); !status) return status;
     if (auto status = stepper_.finish_step(); !status) return status;
-    for (const char* published : {"water_depth", "free_surface", "surface_saturation"}) {
-        if (name != published) continue;
+    const FieldRow* row = find_field(name);
+    if (row != nullptr && row->role == FieldRole::published) {
         const std::string stage = name == "surface_saturation" ? "publish_saturation" : "publish_" + name;
-        auto status = publish(stage, {}, {published});
+        auto status = publish(stage, {}, {name.c_str()});
         return status ? read_cells(rows_of(output_[0]), region, values) : status;
     }
     if (state_.plan().find(name) == nullptr) {
-        if (std::find(std::begin(hashed_fields), std::end(hashed_fields), name) == std::end(hashed_fields))
+        if (row == nullptr || row->role != FieldRole::state)
             return error(Code::bad_argument, "read: no field is called '" + name + "'");
         std::fill(values.begin(), values.end(), 0.0F);
         return ok_status();
     }
-    if (is_velocity(name)) {
+    if (is_velocity(*row)) {
         const std::string layer = name.substr(0, name.size() - 1);
         if (auto status = publish("publish_velocity", {{"velocity_x", layer + "x"}, {"velocity_y", layer + "y"}},
                                   {"centre_velocity_x", "centre_velocity_y"});
@@ -113,22 +108,23 @@ Status StateReader::read(const std::string& name, std::span<float> values) {
 }
 
 Result<std::uint64_t> StateReader::hash_fields(const Look& look) {
-    std::uint64_t hash = 0;
-    for (std::size_t n = 0; n < std::size(hashed_fields); ++n) {
-        const std::string name = hashed_fields[n];
+    std::uint64_t hash = 0, number = 0;
+    for (const FieldRow& field : field_table()) {
+        if (!field.hashed) continue;
+        const std::uint64_t n = number++;
+        const std::string name(field.name);
         if (state_.plan().find(name) == nullptr) continue;
         auto raw = read_raw(name);
         if (!raw) return raw.status();
         // Velocities have one more face than cells along their own axis.
-        const int nx = state_.layout().nx + (name.ends_with("velocity_x") ? 1 : 0),
-                  ny = state_.layout().ny + (name.ends_with("velocity_y") ? 1 : 0);
+        const int nx = state_.layout().nx + (field.place == FieldPlace::west_face ? 1 : 0),
+                  ny = state_.layout().ny + (field.place == FieldPlace::south_face ? 1 : 0);
         for (int j = 0; j < ny; ++j) {
             const auto row = std::span<const float>(*raw).subspan(state_.layout().index(0, j), static_cast<std::size_t>(nx));
             for (std::size_t i = 0; i < row.size(); ++i) {
-                hash += mix(mix((std::uint64_t{n} << 56) ^ (static_cast<std::uint64_t>(j) << 28) ^ i) +
-                            std::bit_cast<std::uint32_t>(row[i]));
+                hash += mix(mix((n << 56) ^ (static_cast<std::uint64_t>(j) << 28) ^ i) + std::bit_cast<std::uint32_t>(row[i]));
             }
-            if (look) look(name, row);
+            if (look) look(field, row);
         }
     }
     return hash;
@@ -149,8 +145,9 @@ Result<WorldStats> StateReader::stats() {
     auto ledger = read_ledger(state_);
     if (!ledger) return ledger.status();
     s.ledger = *ledger;
-    auto hash = hash_fields([&](const std::string& name, std::span<const float> row) {
-        const bool sand = name.starts_with("sand_"), height = name.ends_with("_height"), velocity = is_velocity(name);
+    auto hash = hash_fields([&](const FieldRow& field, std::span<const float> row) {
+        const bool sand = field.name.starts_with("sand_"), height = field.name.ends_with("_height"),
+                   velocity = is_velocity(field);
         for (const float value : row) {
             const double x = static_cast<double>(value);
             if (!std::isfinite(value)) {

@@ -45,7 +45,7 @@ class StateReader {
     Status read_cells(const Rows& rows_from, const Region& region, std::span<float> values);
     Result<std::vector<float>> read_buffer(compute::Buffer from);
     /// Reads every hashed field and hashes it; `look` sees each of its rows as well, ghosts excluded.
-    using Look = std::function<void(const std::string& field, std::span<const float> row)>;
+    using Look = std::function<void(const FieldRow& field, std::span<const float> row)>;
     Result<std::uint64_t> hash_fields(const Look& look);
 
     WorldState& state_;

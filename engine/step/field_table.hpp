@@ -23,12 +23,12 @@ struct FieldRow {
     std::string_view name;
     FieldRole role;
     FieldPlace place;
-    bool hashed;        // in the order of the rows: never reorder those, or every golden hash changes
-    int host;           // its number in wadi_field; -1 = hosts do not read it
-    const char* symbol; // of NUMERICS, and the name by which hosts dump it; "" = none
-    const char* unit;
+    bool hashed;         // in the order of the rows: never reorder those, or every golden hash changes
+    int host;            // its number in wadi_field; -1 = hosts do not read it
+    const char* symbol;  // of NUMERICS, and the name by which hosts dump it; "" = none
+    const char* unit;    // "1" = a number, "" = no quantity
     std::uint32_t needs; // effects and choices without which it does not exist
-    const char* meaning;
+    const char* meaning; // "": that of the row above, along another axis
 };
 
 std::span<const FieldRow> field_table();

@@ -1,7 +1,6 @@
 #include "engine/step/step_plan.hpp"
 #include <algorithm>
 #include <array>
-#include <set>
 
 namespace wadi {
 
@@ -9,19 +8,6 @@ namespace {
 
 // What a list of active tiles consists of: the dispatches of a pass over tiles name them too.
 constexpr std::array tile_fields = {"activity", "active_tiles", "active_counts", "active_list", "active_dispatch"};
-
-const std::set<std::string> state_fields = {
-    "terrain",          "sand_height",      "water_height",    "stretch_xx",       "stretch_xy",
-    "stretch_yy",       "sand_velocity_x",  "sand_velocity_y", "water_velocity_x", "water_velocity_y",
-    "mixed_velocity_x", "mixed_velocity_y", "rotation",
-};
-
-FieldRole role_of(const std::string& name) {
-    if (state_fields.contains(name)) return FieldRole::state;
-    if (name.ends_with("ledger")) return FieldRole::ledger;
-    if (name.starts_with("activ")) return FieldRole::tiles;
-    return name == "source_shapes" ? FieldRole::shapes : FieldRole::scratch;
-}
 
 using Names = std::map<std::string, std::string>; // a stage's binding name -> the plan's field name
 
@@ -286,8 +272,8 @@ StepPlan make_step_plan(std::uint32_t effects, int substeps, PlanChoice choice) 
     if (!plan.substep_passes.empty()) plan.substep_passes.back().flips.push_back("sand_height");
     plan_sand_forces(substep);
 
-    plan.fields.push_back({"terrain", FieldRole::state});
-    plan.fields.push_back({"source_ledger", FieldRole::ledger}); // edits count there in any world
+    plan.fields.push_back({"terrain", field_row("terrain").role});
+    plan.fields.push_back({"source_ledger", field_row("source_ledger").role}); // edits count there in any world
     for (const auto* passes : {&plan.water_passes, &plan.substep_passes}) {
         for (const auto& pass : *passes) {
             const auto& bindings = compute::stage_table()[static_cast<std::size_t>(pass.stage)].bindings;
@@ -297,7 +283,7 @@ StepPlan make_step_plan(std::uint32_t effects, int substeps, PlanChoice choice) 
                 const std::string base = base_name(name);
                 auto found =
                     std::find_if(plan.fields.begin(), plan.fields.end(), [&](const PlanField& f) { return f.name == base; });
-                if (found == plan.fields.end()) found = plan.fields.insert(plan.fields.end(), {base, role_of(base)});
+                if (found == plan.fields.end()) found = plan.fields.insert(plan.fields.end(), {base, field_row(base).role});
                 found->half = (effects & EFFECT_HALF_STORAGE) != 0 && bindings[n].type == compute::Scalar::f32_or_f16;
                 found->ping_pong |= is_next(name);
             }

@@ -2,6 +2,7 @@
 // The only place that knows the order (NUMERICS 3, paper Algorithm 1).
 #pragma once
 #include "engine/compute/stage_table.hpp"
+#include "engine/step/field_table.hpp"
 #include <cstdint>
 #include <map>
 #include <string>
@@ -22,8 +23,6 @@ struct PlanPass {
     std::vector<std::string> flips; // ping-pong fields whose new buffer becomes the current one after this pass
     bool in_substep = false;
 };
-
-enum class FieldRole { state, scratch, ledger, shapes, tiles };
 
 struct PlanField {
     std::string name;
@@ -70,6 +69,7 @@ struct PlanChoice {
     bool fused = false;
 };
 
+/// Throws std::logic_error where a stage binds a field that field_table() lacks.
 StepPlan make_step_plan(std::uint32_t effects, int substeps, PlanChoice choice = {});
 
 } // namespace wadi

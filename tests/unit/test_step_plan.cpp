@@ -239,3 +239,40 @@ TEST_CASE("effects follow from the scene, with a reason, and a level may force t
     scene.settings.effects = {{"foam", Force::on}};
     CHECK(effects_required(scene.settings, content_of(scene.fields)).status().message.find("effects.foam") != std::string::npos);
 }
+
+TEST_CASE(
+    "fields: every field of every plan has a row, and exists only with the effects that it names; state with these always") {
+    for (const auto& [mask, choice] : legal_plans()) {
+        const auto plan = make_step_plan(mask, 2, choice);
+        for (const auto& field : plan.fields) {
+            CAPTURE(field.name);
+            const FieldRow* row = find_field(field.name);
+            REQUIRE(row != nullptr);
+            CHECK(row->role == field.role);
+            CHECK((mask & row->needs) == row->needs);
+        }
+        for (const auto& row : field_table())
+            if (row.role == FieldRole::state && (mask & row.needs) == row.needs)
+                CHECK_MESSAGE(plan.find(std::string(row.name)) != nullptr, row.name);
+    }
+}
+
+TEST_CASE("fields: a name without a row is refused; no name, number or symbol stands in two rows") {
+    CHECK_THROWS_WITH(field_row("sand_hight"), "the field 'sand_hight' has no row in engine/step/field_table.cpp");
+    CHECK(find_field("sand_height_water") == nullptr); // lists of tiles are two, fields are not
+    CHECK(&field_row("active_list_sand") == &field_row("active_list"));
+    std::set<std::string_view> names, symbols;
+    std::set<int> hosts;
+    int hashed = 0;
+    for (const auto& row : field_table()) {
+        CHECK_MESSAGE(names.insert(row.name).second, row.name);
+        hashed += row.hashed ? 1 : 0;
+        if (row.host < 0) continue;
+        CHECK_MESSAGE(symbols.insert(row.symbol).second, row.name);
+        CHECK_MESSAGE(hosts.insert(row.host).second, row.name);
+        CHECK(find_host_field(row.host) == &row);
+    }
+    CHECK(hashed == 12);
+    CHECK(*hosts.rbegin() + 1 == static_cast<int>(hosts.size())); // as wadi_field, without a gap
+    CHECK(find_host_field(-1) == nullptr);
+}
