@@ -1,4 +1,5 @@
-// What a world is and what its stages cost.
+// What a world is and what its stages cost; the tables of the library.
+#include "engine/describe_tables.hpp"
 #include "plugin/abi.hpp"
 #include <cstdio>
 
@@ -56,6 +57,19 @@ size_t wadi_world_describe_plan(wadi_world_id id, char* text, size_t size) {
         const std::string plan = describe_plan(hosted.world->state());
         length = plan.size();
         if (text != nullptr && size > 0) std::snprintf(text, size, "%s", plan.c_str());
+        return report(ok_status());
+    });
+    return length;
+}
+
+size_t wadi_describe_table(const char* table, char* text, size_t size) {
+    size_t length = 0;
+    guarded(__func__, [&] {
+        if (table == nullptr) return bad_argument("wadi_describe_table: table is NULL");
+        const auto found = describe_table(table);
+        if (!found) return report(error(found.status().code, "wadi_describe_table: " + found.status().message));
+        length = found->size();
+        if (text != nullptr && size > 0) std::snprintf(text, size, "%s", found->c_str());
         return report(ok_status());
     });
     return length;

@@ -35,8 +35,7 @@ inline constexpr EffectRow effect_rows[] = {
 /// nothing to act on.
 inline constexpr EffectRow choice_rows[] = {
     {EFFECT_SEMI_LAGRANGIAN, "semi_lagrangian", 0, "velocities are traced back instead of moved by the mass fluxes"},
-    {EFFECT_WHOLE_STRAIN, "whole_strain", EFFECT_ELASTOPLASTIC,
-     "sand keeps F with its rotation, and F follows the velocity ahead of friction"},
+    {EFFECT_WHOLE_STRAIN, "whole_strain", EFFECT_ELASTOPLASTIC, "sand keeps F with its rotation and moves it ahead of friction"},
     {EFFECT_DIRECT_STRAIN, "direct_strain", EFFECT_WHOLE_STRAIN, "F is moved as it is, not as angle and stretch"},
     {EFFECT_EXPLICIT_DRAG, "explicit_drag", EFFECT_DRAG, "drag is an explicit step of its own ahead of friction"},
     {EFFECT_LAPLACE_DIFFUSION, "laplace_diffusion", EFFECT_DIFFUSION, "mixed water spreads by the Laplacian of its height"},

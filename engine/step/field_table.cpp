@@ -20,7 +20,7 @@ constexpr FieldRow rows[] = {
     {"sand_height", state, cell, in_hash, 1, "hs", "m", EFFECT_SAND, "depth of sand on the ground"},
     {"water_height", state, cell, in_hash, 2, "W", "m", EFFECT_WATER, "depth of all water, pure and inside the sand"},
     {"stretch_xx", state, cell, in_hash, 12, "Vxx", "1", EFFECT_ELASTOPLASTIC,
-     "left stretch of the sand less the identity; with whole_strain see NUMERICS 2.13"},
+     "left stretch less the identity (whole_strain: NUMERICS 2.13)"},
     {"stretch_xy", state, cell, in_hash, 13, "Vxy", "1", EFFECT_ELASTOPLASTIC, ""},
     {"stretch_yy", state, cell, in_hash, 14, "Vyy", "1", EFFECT_ELASTOPLASTIC, ""},
     {"sand_velocity_x", state, west_face, in_hash, 8, "us", "m/s", EFFECT_SAND, "velocity of sand"},

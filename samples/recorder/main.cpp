@@ -93,6 +93,17 @@ int print_backends() {
     return EXIT_DONE;
 }
 
+int print_table(const std::string& name) {
+    std::string text(wadi_describe_table(name.c_str(), nullptr, 0) + 1, '\0');
+    if (text.size() == 1) {
+        std::fprintf(stderr, "wadi-recorder: --print-tables: %s\n", wadi_get_last_error());
+        return EXIT_BAD_INPUT;
+    }
+    text.resize(wadi_describe_table(name.c_str(), text.data(), text.size()));
+    std::fputs(text.c_str(), stdout);
+    return EXIT_DONE;
+}
+
 int print_levels() {
     for (const LevelEntry& level : list_levels()) {
         std::printf("%-18s %s\n", level.name.c_str(), level.description.c_str());
@@ -108,7 +119,7 @@ int fail(const std::string& message) {
 
 int main_checked(int argc, char** argv) {
     Options options;
-    std::string level, terrain, size;
+    std::string level, terrain, size, table;
     std::vector<std::string> dumps;
     bool list_backends = false, only_list_levels = false, no_frames = false;
 
@@ -153,6 +164,7 @@ int main_checked(int argc, char** argv) {
     app.add_flag("--profile", options.profile, "time every stage on the device");
     app.add_flag("--no-frames", no_frames, "no pictures, for benchmarks")->excludes("--mp4");
     app.add_flag("--print-plan", options.print_plan, "print effects, passes and buffers, and exit");
+    app.add_option("--print-tables", table, "print settings, effects, fields, stages or schema of the library, and exit");
     app.add_flag("--list-backends", list_backends, "list devices and exit");
     app.add_flag("--list-levels", only_list_levels, "list levels and exit");
     try {
@@ -164,6 +176,7 @@ int main_checked(int argc, char** argv) {
 
     if (list_backends) return print_backends();
     if (only_list_levels) return print_levels();
+    if (!table.empty()) return print_table(table);
     options.frames = !no_frames;
     if (!size.empty()) {
         if (Failure failure = parse_size(size, options)) return fail(failure.message);

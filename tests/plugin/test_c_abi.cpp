@@ -74,6 +74,11 @@ TEST_CASE("a world from arrays steps, reads back and keeps its books") {
         CHECK(wadi_field_name(static_cast<wadi_field>(field)) != nullptr);
         CHECK(wadi_world_read_field(world.id, static_cast<wadi_field>(field), w.data(), w.size()) == WADI_OK);
     }
+    CHECK(std::string(wadi_field_name(WADI_FIELD_SAND_HEIGHT)) == "hs"); // the engine counts them by hand
+    CHECK(std::string(wadi_field_name(WADI_FIELD_SATURATION)) == "phi");
+    CHECK(std::string(wadi_field_name(WADI_FIELD_MIXED_VELOCITY_Y)) == "vm");
+    CHECK(std::string(wadi_field_name(WADI_FIELD_STRETCH_YY)) == "Vyy");
+    CHECK(wadi_field_name(WADI_FIELD_COUNT) == nullptr);
 }
 
 TEST_CASE("same level, same hash; profiling names every stage and changes nothing") {

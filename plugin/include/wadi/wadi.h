@@ -168,6 +168,11 @@ WADI_API const char* wadi_world_get_warning(wadi_world_id world, uint32_t n);
  *  most `size` bytes including it. 0 and an error for a bad world. */
 WADI_API size_t wadi_world_describe_plan(wadi_world_id world, char* text, size_t size);
 
+/** A table of the library as text, of any world and none: "settings" (keys of level files with unit, range, default), "effects",
+ *  "fields", "stages", or "schema" (the settings as JSON). Returns the length without the final zero; writes at most `size` bytes
+ *  including it. 0 and an error for another name. */
+WADI_API size_t wadi_describe_table(const char* table, char* text, size_t size);
+
 /** Advances by `steps` water steps of fixed dt. Returns before the device has finished; reads wait for it. */
 WADI_API wadi_result wadi_world_step(wadi_world_id world, uint32_t steps);
 
