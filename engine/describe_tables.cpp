@@ -106,10 +106,7 @@ std::string describe_effects() {
 // Fields that have a partner in some plan.
 bool takes_turns(std::string_view field) {
     for (const bool traced : {false, true}) {
-        std::uint32_t mask = 0;
-        for (const auto& effect : effect_rows) mask |= effect.bit;
-        if (traced) mask |= never_half;
-        const PlanField* found = make_step_plan(mask, 1).find(std::string(field));
+        const PlanField* found = make_step_plan(traced ? all_effects | never_half : all_effects, 1).find(std::string(field));
         if (found != nullptr && found->ping_pong) return true;
     }
     return false;

@@ -5,7 +5,6 @@ using namespace wadi;
 using namespace wadi::plugin;
 
 static_assert(WADI_OUTPUT_COUNT == static_cast<int>(Output::count) && WADI_OUTPUT_TILES_BIT == tiles_bit);
-static_assert(WADI_OUTPUT_SMOOTH_SURFACE == static_cast<int>(Output::smooth_surface));
 static_assert(WADI_OUTPUT_INTERPOLATED == static_cast<int>(OutputSet::interpolated));
 static_assert(WADI_HANDLE_CUDA_POINTER == static_cast<int>(compute::NativeBuffer::Kind::cuda_pointer));
 

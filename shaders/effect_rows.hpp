@@ -44,6 +44,8 @@ inline constexpr EffectRow choice_rows[] = {
     {EFFECT_HALF_STORAGE, "half_storage", 0, "velocities and stretch lie in memory as 16-bit floats"},
 };
 
+inline constexpr std::uint32_t all_effects = (1u << std::size(effect_rows)) - 1;
+
 /// Half storage is for worlds that trade accuracy for memory; a method that does the opposite, or the paper's own, has no kernels
 /// for it.
 inline constexpr std::uint32_t never_half =

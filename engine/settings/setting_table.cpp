@@ -119,7 +119,7 @@ constexpr Setting settings[] = {
     {"method.velocity_transport", method<&Method::velocity_transport>, words(velocity_transports), "", several,
      "velocities move with the fluxes, or are traced back"},
     {"method.strain_transport", method<&Method::strain_transport>, words(strain_transports), "", EFFECT_ELASTOPLASTIC,
-     "what of the strain moves with it"},
+     "what of strain moves with the sand"},
     {"method.drag_friction", method<&Method::drag_friction>, words(drag_frictions), "", EFFECT_DRAG,
      "one implicit solve, or explicit drag and then friction"},
     {"method.diffusion", method<&Method::diffusion>, words(diffusions), "", EFFECT_DIFFUSION,

@@ -1,4 +1,5 @@
 // Programs: copies and fills, order, replay, tickets and timings.
+#include "shaders/effect_rows.hpp"
 #include "tests/conformance/contracts.hpp"
 #include <algorithm>
 #include <limits>
@@ -143,7 +144,7 @@ void pipelines(Session&, Device& device, Expect& expect) {
     expect.that(a && untested && a->id == untested->id, "an effect that the stage does not test makes another pipeline");
     expect.that(a && other && a->id != other->id, "a tested effect makes no other pipeline");
     for (int stage = 0; stage < stages; ++stage)
-        for (const std::uint32_t mask : {~EFFECT_HALF_STORAGE, EFFECT_HALF_STORAGE | 4095u})
+        for (const std::uint32_t mask : {~EFFECT_HALF_STORAGE, EFFECT_HALF_STORAGE | all_effects})
             expect.ok(device.create_pipeline(stage, mask, {}).status(),
                       "all effects of " + std::string(compute::stage_table()[static_cast<std::size_t>(stage)].name));
 }

@@ -19,7 +19,7 @@ constexpr std::uint32_t TRACED = EFFECT_SEMI_LAGRANGIAN;
 constexpr std::uint32_t POLAR = EFFECT_WHOLE_STRAIN, DIRECT = EFFECT_WHOLE_STRAIN | EFFECT_DIRECT_STRAIN;
 constexpr std::uint32_t PUBLISHED = TRACED | POLAR | EFFECT_EXPLICIT_DRAG | EFFECT_LAPLACE_DIFFUSION;
 constexpr std::uint32_t SECOND = EFFECT_SECOND_ORDER_WATER;
-constexpr std::uint32_t ALL = 4095;
+constexpr std::uint32_t ALL = all_effects;
 
 CaseSpec spec_of(const char* name, const char* grid, std::uint32_t effects, const std::string& scene, const std::string& method,
                  int steps) {

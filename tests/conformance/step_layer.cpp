@@ -20,7 +20,7 @@ constexpr std::uint32_t TRACED = EFFECT_SEMI_LAGRANGIAN;
 constexpr std::uint32_t POLAR = EFFECT_WHOLE_STRAIN, DIRECT = EFFECT_WHOLE_STRAIN | EFFECT_DIRECT_STRAIN;
 constexpr std::uint32_t PUBLISHED = TRACED | POLAR | EFFECT_EXPLICIT_DRAG | EFFECT_LAPLACE_DIFFUSION;
 constexpr std::uint32_t SECOND = EFFECT_SECOND_ORDER_WATER, HALF = EFFECT_HALF_STORAGE;
-constexpr std::uint32_t ALL = 4095;
+constexpr std::uint32_t ALL = all_effects;
 
 struct Row {
     const char* grid;

@@ -3,8 +3,8 @@
 
 Usage: tables.py RECORDER SOURCE_DIR [--update]     --update rewrites them. Exit status 1 names every difference.
 
-In a README a table stands between `<!-- table: NAME -->` and `<!-- end -->`; NAME is one of --print-tables, or "settings OBJECT" for
-the rows of one object of level files ("root": those beside them).
+In a README a table stands between `<!-- table: NAME -->` and `<!-- end -->`; NAME is one of --print-tables, "settings OBJECT" for the
+rows of one object of level files ("root": those beside them), or "effects content" without the choices of method.
 """
 import json
 import pathlib
@@ -15,7 +15,7 @@ import sys
 PLACES = {
     "engine/README.md": ["fields", "effects"],
     "shaders/README.md": ["stages"],
-    "samples/levels/README.md": ["settings root", "settings material", "settings method"],
+    "samples/levels/README.md": ["settings root", "settings material", "settings method", "effects content"],
 }
 SCHEMA = "samples/levels/level.schema.json"
 WIDEST_LINE = 140
@@ -33,7 +33,9 @@ def table(name, printed):
     """The text of a marked table."""
     kind, _, part = name.partition(" ")
     lines = printed[kind].splitlines()
-    if part:
+    if part == "content":
+        lines = lines[: lines.index("")]
+    elif part:
         lines = lines[:2] + [row for row in lines[2:] if of_object(row, part)]
     return "\n".join(["```", *lines, "```"] if kind == "stages" else lines) + "\n"
 
@@ -96,25 +98,21 @@ def layout(value, indent=0, before=0):
     return "[\n" + ",\n".join(pad + layout(v, indent + 2) for v in value) + "\n" + " " * indent + "]"
 
 
-def physics(root):
-    """The formula files that shaders/README.md names, and those there are."""
-    row = re.search(r"^\| `physics/\*\.glsl` \|.*$", (root / "shaders/README.md").read_text(), re.M).group()
-    return set(re.findall(r"`(\w+)`", row)), {p.stem for p in (root / "shaders/physics").glob("*.glsl")}
-
-
-def problems(root, printed, texts, schema):
+def problems(printed, texts, schema):
     for path in PLACES:
         yield from compare(path, texts[path], printed)
     yield from compare_schema(schema, schema_rows(printed["schema"]))
-    named, there = physics(root)
-    yield from (f"shaders/README.md: formula file {name}: named or there, not both" for name in sorted(named ^ there))
 
 
 def main():
     recorder, root = sys.argv[1], pathlib.Path(sys.argv[2])
     printed = {}
     for kind in ("settings", "fields", "effects", "stages", "schema"):
-        printed[kind] = subprocess.run([recorder, "--print-tables", kind], check=True, capture_output=True, text=True).stdout
+        run = subprocess.run([recorder, "--print-tables", kind], capture_output=True, text=True)
+        if run.returncode != 0:
+            print(run.stderr.strip())
+            return 1
+        printed[kind] = run.stdout
     if "--update" in sys.argv:
         for path in PLACES:
             text = (root / path).read_text()
@@ -125,12 +123,12 @@ def main():
     schema = json.loads((root / SCHEMA).read_text())
     # Negative controls: what is planted must be seen.
     planted = {path: text.replace("`material.friction`", "`material.frict`").replace("compute_bed_load", "compute_bed") for path, text in texts.items()}
-    seen = "\n".join(problems(root, printed, planted, {"properties": {n: {"properties": {"no": 1}} for n in ("grid", "material", "method", "effects")}}))
+    seen = "\n".join(problems(printed, planted, {"properties": {n: {"properties": {"no": 1}} for n in ("grid", "material", "method", "effects")}}))
     for sign in ('table "settings material"', 'table "stages"', "grid.nx is null", "method.no is no setting"):
         if sign not in seen:
             print(f"the checker does not see a planted fault: {sign}")
             return 1
-    found = list(problems(root, printed, texts, schema))
+    found = list(problems(printed, texts, schema))
     for problem in found:
         print(problem)
     if found:

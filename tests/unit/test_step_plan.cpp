@@ -13,8 +13,7 @@ namespace {
 
 // Under sanitizers a few of them.
 std::vector<std::uint32_t> legal_masks() {
-    std::uint32_t all = 0;
-    for (const auto& effect : effect_table()) all |= effect.bit;
+    std::uint32_t all = all_effects;
     for (const auto& choice : choice_table()) all |= choice.bit;
     std::vector<std::uint32_t> masks;
     for (std::uint32_t mask = 1; mask <= all; ++mask) {
@@ -44,7 +43,7 @@ bool runs(const StepPlan& plan, const char* stage) {
            std::any_of(plan.substep_passes.begin(), plan.substep_passes.end(), is);
 }
 
-constexpr std::uint32_t everything = 4095;
+constexpr std::uint32_t everything = all_effects;
 
 } // namespace
 
@@ -200,7 +199,7 @@ TEST_CASE("choices of method are passes of their own at their place in the order
     };
     CHECK(reads_terrain(second) == reads_terrain(first) + 2);
     // The same passes and fields, velocities and stretch in half the bytes.
-    constexpr std::uint32_t all = 4095 & ~EFFECT_BED_SHEAR;
+    constexpr std::uint32_t all = all_effects & ~EFFECT_BED_SHEAR;
     const auto half = make_step_plan(all | EFFECT_HALF_STORAGE, 3), whole = make_step_plan(all, 3);
     CHECK(order(half.water_passes) == order(whole.water_passes));
     CHECK(whole.bytes_per_cell() == 124);
