@@ -28,7 +28,9 @@ RULES = {
     "samples/viewer": ["wadi/", "../recorder/levels.hpp", "shaders/", "viewer_shaders/"],
     "samples": ["wadi/"],
 }
-# A folder of backends/ may include itself, what all backends share, the interface, and this.
+# A folder of backends/ may include itself, what all backends share, the interface, how the stages compiled for the host's processor
+# are found and run, and this.
+SHARED = ["backends/common/", "engine/compute/", "backends/cpu/stages.hpp", "backends/cpu/active_tiles.hpp"]
 BACKENDS = {
     "backends/vulkan": ["volk.h", "self_test.inc", "language/"],
     "backends/cuda": ["shaders/", "language/"],
@@ -53,7 +55,7 @@ def breaches(root, path):
     allowed = RULES.get(folder, [])
     if folder == "backends" and relative.count("/") > 1:
         folder = room(relative)
-        allowed = [folder + "/", "backends/common/", "engine/compute/"] + BACKENDS.get(folder, [])
+        allowed = [folder + "/"] + SHARED + BACKENDS.get(folder, [])
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
         found = INCLUDE.match(line)
         if not found:
