@@ -61,7 +61,7 @@ void read_properties(Context& c, const PhysicalDevice& chosen) {
                                   groups.threads >= int{compute::fused_group_x * compute::fused_group_y} &&
                                   limits.maxComputeSharedMemorySize >= compute::fused_shared_bytes &&
                                   c.limits.storage_buffers >= bindings;
-    // H100: below it too few tiles fill the GPU (engine/README.md). A software device gains nothing.
+    // H100: below it too few groups fill the GPU (engine/step/README.md). A software device gains nothing.
     const bool gpu = chosen.info.kind != compute::DeviceKind::software_gpu && chosen.info.kind != compute::DeviceKind::cpu;
     c.capabilities.fused_gain_cells = gpu ? std::int64_t{1} << 18 : 0;
     c.capabilities.backend = "vulkan";

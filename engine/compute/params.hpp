@@ -29,7 +29,7 @@ struct FieldLayout {
         return static_cast<std::size_t>(j + GHOST) * static_cast<std::size_t>(pitch()) + static_cast<std::size_t>(i + GHOST);
     }
     int strips() const { return (ny + 1 + STRIP - 1) / STRIP; }
-    /// Tiles of STRIP x STRIP cells in a row of them; the last may hold no cell.
+    /// Output tiles of STRIP x STRIP cells in a row of them; the last may hold no cell.
     int tile_columns() const { return (nx + STRIP) / STRIP; }
     int rim() const { return 2 * (nx + ny); }
     /// Active tiles of `size` x `size` along one axis of `cells` cells and one face more.

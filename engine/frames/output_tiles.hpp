@@ -1,4 +1,4 @@
-// Tiles of STRIP x STRIP cells for a host's collision shapes: how high they reach, and when they last changed.
+// Output tiles, of STRIP x STRIP cells, for a host's collision shapes: how high they reach, and when they last changed.
 #pragma once
 #include "engine/compute/params.hpp"
 #include "engine/step/region.hpp"
