@@ -1,0 +1,118 @@
+#!/usr/bin/env python3
+"""Pages (*.md): no line over 140 columns, no link to a file or heading that is not there, no file named in backquotes that is not there.
+Usage: page_rules.py SOURCE_DIR. Exit status 1 names every breach."""
+import fnmatch
+import pathlib
+import re
+import sys
+import tempfile
+
+WIDTH = 140
+FOLDERS = ("engine", "backends", "shaders", "plugin", "samples", "tests")
+# Tables that a program writes may be wider: pages written as a whole, and the parts of others between these marks.
+WRITTEN = ("samples/report/h100/README.md", "samples/report/two_cores/README.md", "samples/report/effects/README.md")
+BEGINS, ENDS = re.compile(r"<!-- (table: |\S+ writes from here)"), re.compile(r"<!-- (end|to here)")
+# Tables that the build does not write yet, by how their first line begins.
+SOON = ("| stage | extent |", "| field | symbol |", "| key | unit | range | default |")
+LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
+CODE = re.compile(r"`([^`]+)`")
+PATH = re.compile(r"[\w.*-]+(/[\w.*-]+)*/?$")
+MADE = ("build/", "generated/", "out/")  # by builds and by programs
+SOURCE = re.compile(r"\.(hpp|cpp|h|c|cu|py|sh|stage|fused|glsl|inl|comp|cmake|md|in|\*)$")
+
+
+def pages(root):
+    return sorted([*root.glob("*.md"), *(p for top in FOLDERS for p in (root / top).rglob("*.md"))])
+
+
+def lines_of(text):
+    """(number, line, written by a program, inside a code block) of every line."""
+    written = code = soon = False
+    for number, line in enumerate(text.splitlines(), 1):
+        written = written or BEGINS.match(line) is not None
+        soon = line.startswith(SOON) or (soon and line.startswith("|"))
+        fence = line.lstrip().startswith("```")
+        code = code != fence
+        yield number, line, written or soon, code or fence
+        written = written and not ENDS.match(line)
+
+
+def anchors(path):
+    """The fragments by which the headings of a page are linked."""
+    found = []
+    for _, line, _, code in lines_of(path.read_text(encoding="utf-8")):
+        if not code and line.startswith("#"):
+            found.append(re.sub(r"[^\w\- ]", "", line.lstrip("# ").lower()).replace(" ", "-"))
+    return found
+
+
+def link_breach(root, page, target):
+    if re.match(r"[a-z]+:", target):
+        return None
+    name, _, heading = target.partition("#")
+    to = (page.parent / name).resolve() if name else page
+    if not to.exists() or root not in [to, *to.parents]:
+        return f"links to {target}, which is not there"
+    if heading and (to.suffix != ".md" or heading not in anchors(to)):
+        return f"links to {target}, but {name or 'the page'} has no such heading"
+    return None
+
+
+def path_breach(names, page_folder, quoted):
+    """Paths from the root, from the page, or their last parts; NAME and ROOM stand for any."""
+    quoted = re.sub("NAME|ROOM", "*", quoted.rstrip("/"))
+    if not PATH.match(quoted) or quoted.startswith(MADE):
+        return None
+    known = "/" in quoted and quoted.split("/")[0] in FOLDERS
+    if not known and not SOURCE.search(quoted):
+        return None
+    patterns = [quoted, f"{page_folder}/{quoted}", f"*/{quoted}"]
+    if any(pattern in names or ("*" in pattern and fnmatch.filter(names, pattern)) for pattern in patterns):
+        return None
+    return f"names {quoted}, which is not there"
+
+
+def check(root):
+    found = []
+    names = {p.relative_to(root).as_posix() for top in FOLDERS for p in (root / top).rglob("*")}
+    names |= {p.name for p in root.iterdir()}
+    for page in pages(root):
+        relative = page.relative_to(root).as_posix()
+        for number, line, written, code in lines_of(page.read_text(encoding="utf-8")):
+            breaches = []
+            if len(line) > WIDTH and not written and relative not in WRITTEN:
+                breaches.append(f"{len(line)} columns, {WIDTH} are allowed")
+            if not code:
+                words = [word for quoted in CODE.findall(line) for word in quoted.split()]
+                breaches += [link_breach(root, page, target) for target in LINK.findall(line)]
+                breaches += [path_breach(names, page.parent.relative_to(root).as_posix(), word) for word in words]
+            found += [f"{relative}:{number}: {breach}" for breach in dict.fromkeys(breaches) if breach]
+    return found
+
+
+def main():
+    root = pathlib.Path(sys.argv[1]).resolve()
+    # Negative controls: planted breaches must be seen, and nothing else.
+    with tempfile.TemporaryDirectory() as folder:
+        planted = pathlib.Path(folder).resolve()
+        (planted / "engine").mkdir()
+        (planted / "engine/there.cpp").write_text("")
+        (planted / "engine/README.md").write_text(
+            "# A heading\n" + "x" * WIDTH + "\n" + "y" * (WIDTH + 1) + "\n[no file](gone.md) [no heading](#gone) [right](#a-heading)\n"
+            "`engine/there.cpp`, `there.*`, `engine/gone.cpp` and `gone.hpp`\n"
+            "<!-- table: wide -->\n" + "z" * (WIDTH + 1) + "\n<!-- end -->\n")
+        seen = check(planted)
+        for sign in ("141 columns", "gone.md, which", "#gone, but", "engine/gone.cpp", "gone.hpp"):
+            if sum(sign in breach for breach in seen) != 1:
+                print(f"the checker does not see a planted breach: {sign}")
+                return 1
+        if len(seen) != 5:
+            print("the checker sees what is none:", *seen, sep="\n")
+            return 1
+    found = check(root)
+    print(*found, f"{len(pages(root))} pages, {len(found)} breaches", sep="\n")
+    return 1 if found or len(pages(root)) < 30 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
