@@ -12,8 +12,6 @@ FOLDERS = ("engine", "backends", "shaders", "plugin", "samples", "tests")
 # Tables that a program writes may be wider: pages written as a whole, and the parts of others between these marks.
 WRITTEN = ("samples/report/h100/README.md", "samples/report/two_cores/README.md", "samples/report/effects/README.md")
 BEGINS, ENDS = re.compile(r"<!-- (table: |\S+ writes from here)"), re.compile(r"<!-- (end|to here)")
-# Tables that the build does not write yet, by how their first line begins.
-SOON = ("| stage | extent |", "| field | symbol |", "| key | unit | range | default |")
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
 CODE = re.compile(r"`([^`]+)`")
 PATH = re.compile(r"[\w.*-]+(/[\w.*-]+)*/?$")
@@ -27,13 +25,12 @@ def pages(root):
 
 def lines_of(text):
     """(number, line, written by a program, inside a code block) of every line."""
-    written = code = soon = False
+    written = code = False
     for number, line in enumerate(text.splitlines(), 1):
         written = written or BEGINS.match(line) is not None
-        soon = line.startswith(SOON) or (soon and line.startswith("|"))
         fence = line.lstrip().startswith("```")
         code = code != fence
-        yield number, line, written or soon, code or fence
+        yield number, line, written, code or fence
         written = written and not ENDS.match(line)
 
 

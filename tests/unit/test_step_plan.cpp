@@ -240,18 +240,21 @@ TEST_CASE("effects follow from the scene, with a reason, and a level may force t
     CHECK(effects_required(scene.settings, content_of(scene.fields)).status().message.find("effects.foam") != std::string::npos);
 }
 
-TEST_CASE("engine/README.md names every stage of a step, and none that there is not") {
-    std::ifstream file(WADI_SOURCE_DIR "/engine/README.md");
-    std::string line, section;
+TEST_CASE("the engine's pages name every stage of a step, and none that there is not") {
     std::set<std::string> named; // first column of the tables about the step
-    while (std::getline(file, line)) {
-        if (line.starts_with("## ")) section = line.substr(3);
-        if ((section != "One step" && section != "Active tiles") || !line.starts_with("| `")) continue;
-        const std::string column = line.substr(0, line.find(" | "));
-        for (std::size_t at = 0; (at = column.find('`', at)) != std::string::npos;) {
-            const std::size_t end = column.find('`', at + 1);
-            named.insert(column.substr(at + 1, end - at - 1));
-            at = end + 1;
+    for (const auto& [page, wanted] :
+         {std::pair{"/engine/README.md", "One step"}, std::pair{"/engine/step/README.md", "Active tiles"}}) {
+        std::ifstream file(std::string(WADI_SOURCE_DIR) + page);
+        std::string line, section;
+        while (std::getline(file, line)) {
+            if (line.starts_with("## ")) section = line.substr(3);
+            if (section != wanted || !line.starts_with("| `")) continue;
+            const std::string column = line.substr(0, line.find(" | "));
+            for (std::size_t at = 0; (at = column.find('`', at)) != std::string::npos;) {
+                const std::size_t end = column.find('`', at + 1);
+                named.insert(column.substr(at + 1, end - at - 1));
+                at = end + 1;
+            }
         }
     }
     std::set<std::string> run;
@@ -260,8 +263,8 @@ TEST_CASE("engine/README.md names every stage of a step, and none that there is 
         for (const auto* passes : {&plan.water_passes, &plan.substep_passes})
             for (const auto& pass : *passes) run.emplace(compute::stage_table()[static_cast<std::size_t>(pass.stage)].name);
     }
-    for (const auto& stage : run) CHECK_MESSAGE(named.contains(stage), "not in the README: " << stage);
-    for (const auto& stage : named) CHECK_MESSAGE((run.contains(stage) || test::few_steps), "in the README alone: " << stage);
+    for (const auto& stage : run) CHECK_MESSAGE(named.contains(stage), "not in the pages: " << stage);
+    for (const auto& stage : named) CHECK_MESSAGE((run.contains(stage) || test::few_steps), "in the pages alone: " << stage);
 }
 
 TEST_CASE(

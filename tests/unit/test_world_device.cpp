@@ -1,3 +1,4 @@
+#include "backends/registry.hpp"
 #include "engine/step/named_buffers.hpp"
 #include "engine/step/world_device.hpp"
 #include <array>
@@ -6,7 +7,7 @@
 using namespace wadi;
 
 TEST_CASE("a world's device counts its buffers and tells of its loss once, whichever call shows it first") {
-    auto opened = compute::open_device("cpu", -1, {});
+    auto opened = backends::open_device("cpu", -1, {});
     REQUIRE(opened);
     int told = 0;
     WorldDevice device(std::move(*opened), [&](const Status& lost) { told += lost.code == Code::device_lost ? 1 : 0; });
