@@ -2,6 +2,7 @@
 #include "engine/settings/checksum.hpp"
 #include "engine/settings/setting_table.hpp"
 #include <span>
+#include <string_view>
 
 namespace wadi {
 
@@ -18,7 +19,9 @@ std::uint64_t level_digest(const Settings& s) {
     sum.add(std::as_bytes(std::span(s.method.name)));
     for (const Setting& row : setting_table()) {
         const double value = row.at.get(s);
-        if (row.in_digest == InDigest::yes || (row.in_digest == InDigest::where_set && value != row.normal())) add(value);
+        const bool set = row.in_digest == InDigest::where_set && value != row.normal();
+        if (set) sum.add(std::as_bytes(std::span(std::string_view(row.path)))); // which of them: the others add nothing
+        if (set || row.in_digest == InDigest::yes) add(value);
     }
     for (const auto& side : s.sides) {
         add(static_cast<double>(side.kind));
