@@ -82,7 +82,7 @@ Status StateReader::read(const std::string& name, const Region& region, std::spa
     const FieldRow* row = find_field(name);
     if (row != nullptr && row->role == FieldRole::published) {
         const std::string stage = name == "surface_saturation" ? "publish_saturation" : "publish_" + name;
-        auto status = publish(stage, {}, {name.c_str()});
+        auto status = publish(stage, {}, {row->name.data()}); // the program keeps the pointer
         return status ? read_cells(rows_of(output_[0]), region, values) : status;
     }
     if (state_.plan().find(name) == nullptr) {

@@ -52,8 +52,10 @@ struct Rewriter {
         const std::string& text = part.stage.source.text;
         std::string out;
         while (at < stop) {
-            if (text[at] == '#') { // includes, gathered by physics_includes
-                at = text.find('\n', at);
+            if (text[at] == '#') { // includes are gathered by physics_includes
+                const std::size_t end = text.find('\n', at);
+                if (text.compare(at, 5, "#line") == 0) out += text.substr(at, end - at);
+                at = end;
                 continue;
             }
             if (!is_word(text[at])) {

@@ -44,7 +44,7 @@ Source words_written_out(const Source& stage) {
         const std::string text = stage.text.substr(begin, end - begin);
         const std::string other = renamed(text, {{words[0], words[1]}});
         if (other == text) stage.fail(at, "nothing in this function is named for " + words[0]);
-        out.text += flat(text) + other;
+        out.text += text + stage.goes_on_at(begin) + other;
         at = end;
     }
     return out;
@@ -72,7 +72,7 @@ Source written_out(const Source& given, const std::string& reads) {
             const std::string text = stage.text.substr(next, end - next);
             const std::string other = other_axis(text);
             if (tidy(other) == tidy(text)) stage.fail(at, "nothing in this function is another for each axis");
-            all.push_back({at, end, {}, stage.text.substr(at + word.size(), next - at - word.size()) + flat(text) + " " + other});
+            all.push_back({at, end, {}, text + stage.goes_on_at(next) + other});
         } else {
             stage.fail(at, "EACH_AXIS stands before a block or a HELPER");
         }

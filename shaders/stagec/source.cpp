@@ -48,10 +48,18 @@ std::string stem(const std::string& path) {
     return file.substr(0, file.find('.'));
 }
 
-std::string Source::place(std::size_t at) const {
-    const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(at, text.size()));
-    return path + ":" + std::to_string(1 + std::count(text.begin(), end, '\n'));
+int Source::line(std::size_t at) const {
+    at = std::min(at, text.size());
+    const std::size_t mark = at == 0 ? std::string::npos : text.rfind("\n#line ", at - 1);
+    const std::size_t begin = mark == std::string::npos ? 0 : std::min(text.find('\n', mark + 1) + 1, at);
+    const int first = mark == std::string::npos ? 1 : std::atoi(text.c_str() + mark + 7);
+    return first + static_cast<int>(std::count(text.begin() + static_cast<std::ptrdiff_t>(begin),
+                                               text.begin() + static_cast<std::ptrdiff_t>(at), '\n'));
 }
+
+std::string Source::place(std::size_t at) const { return path + ":" + std::to_string(line(at)); }
+
+std::string Source::goes_on_at(std::size_t at) const { return "\n#line " + std::to_string(line(at)) + " \"" + path + "\"\n"; }
 
 Source read_source(const std::string& path) {
     Source source{path, {}};

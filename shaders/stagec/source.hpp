@@ -15,9 +15,12 @@ inline constexpr const char* here = "#line HERE\n";
 /// File name without folder and extension.
 std::string stem(const std::string& path);
 
-/// A file without its comments, line for line.
+/// A file without its comments, line for line, or what is written from it, with #line where that is another line.
 struct Source {
     std::string path, text;
+    int line(std::size_t at) const;
+    /// #line for text that is written anew from the line of `at` on.
+    std::string goes_on_at(std::size_t at) const;
     /// "path:line", as compilers write it.
     std::string place(std::size_t at) const;
     [[noreturn]] void fail(std::size_t at, const std::string& message) const { stagec::fail(place(at) + ": " + message); }

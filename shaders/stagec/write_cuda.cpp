@@ -93,7 +93,9 @@ std::string write_cuda(const FusedStage& f, const Effects& effects, bool all_mas
     // Before compute capability 8.0 it holds 1024 threads, 4 groups.
     const int groups = 4 * windows.size() * static_cast<std::size_t>(window_floats(f)) > 16384 ? 5 : 6;
     std::ostringstream o;
-    o << "// Written by stagec from " << s.name << ".fused.\nnamespace " << space << " {\n#include \"language/stage_cuda.h\"\n"
+    o << "// Written by stagec from " << s.name << ".fused.\nnamespace " << space
+      << " {\n#pragma nv_diag_suppress 177, 550\n#include \"language/stage_cuda.h\"\n" // places that nobody uses, as in
+                                                                                       // write_cpp.cpp
       << physics_includes(f) << "struct Place { int x, y; };\n#define PLACE(X, Y) Place{X, Y}\n"
       << index_macros(f) << "#define LANE static_cast<int>(threadIdx.y * " << fused_group_x << " + threadIdx.x)\n#define LANES "
       << fused_group_x * fused_group_y

@@ -35,6 +35,14 @@ std::vector<std::pair<std::uint32_t, PlanChoice>> legal_plans() {
     return plans;
 }
 
+// Every seventh of them, and so of each kind: for what hangs on few bits.
+std::vector<std::pair<std::uint32_t, PlanChoice>> some_plans() {
+    const auto all = legal_plans();
+    std::vector<std::pair<std::uint32_t, PlanChoice>> some;
+    for (std::size_t n = 0; n < all.size(); n += 7) some.push_back(all[n]);
+    return some;
+}
+
 bool runs(const StepPlan& plan, const char* stage) {
     const int index = compute::find_stage(stage);
     REQUIRE(index >= 0);
@@ -258,7 +266,7 @@ TEST_CASE("the engine's pages name every stage of a step, and none that there is
         }
     }
     std::set<std::string> run;
-    for (const auto& [mask, choice] : legal_plans()) {
+    for (const auto& [mask, choice] : some_plans()) {
         const auto plan = make_step_plan(mask, 1, {.active_tiles = choice.active_tiles});
         for (const auto* passes : {&plan.water_passes, &plan.substep_passes})
             for (const auto& pass : *passes) run.emplace(compute::stage_table()[static_cast<std::size_t>(pass.stage)].name);
@@ -269,7 +277,7 @@ TEST_CASE("the engine's pages name every stage of a step, and none that there is
 
 TEST_CASE(
     "fields: every field of every plan has a row, and exists only with the effects that it names; state with these always") {
-    for (const auto& [mask, choice] : legal_plans()) {
+    for (const auto& [mask, choice] : some_plans()) {
         const auto plan = make_step_plan(mask, 2, choice);
         for (const auto& field : plan.fields) {
             CAPTURE(field.name);
