@@ -50,7 +50,7 @@ constexpr SettingAccess saturation = {SettingKind::number,
                                       [](Settings& settings, double value) { settings.material.saturation[N] = value; }};
 
 // clang-format off
-constexpr Setting settings[] = {
+constexpr Setting rows[] = {
     {"grid.nx", grid<&Grid::nx>, {1, GRID_MOST}, "cells", several, "size of the grid along x, to the east"},
     {"grid.ny", grid<&Grid::ny>, {1, GRID_MOST}, "cells", several, "size of the grid along y, to the north"},
     {"grid.dx", grid<&Grid::dx>, {DX_LEAST, DX_MOST}, "m", several, "side of the square cells"},
@@ -159,7 +159,7 @@ double Setting::normal() const { return at.get(defaults()); }
 
 bool Setting::required() const { return normal() < values.least; }
 
-std::span<const Setting> setting_table() { return settings; }
+std::span<const Setting> setting_table() { return rows; }
 
 const Setting* find_setting(std::string_view path) {
     const auto found = std::find_if(std::begin(settings), std::end(settings), [&](const Setting& s) { return path == s.path; });
