@@ -162,8 +162,8 @@ bool Setting::required() const { return normal() < values.least; }
 std::span<const Setting> setting_table() { return rows; }
 
 const Setting* find_setting(std::string_view path) {
-    const auto found = std::find_if(std::begin(settings), std::end(settings), [&](const Setting& s) { return path == s.path; });
-    return found == std::end(settings) ? nullptr : found;
+    const auto found = std::find_if(std::begin(rows), std::end(rows), [&](const Setting& s) { return path == s.path; });
+    return found == std::end(rows) ? nullptr : found;
 }
 
 } // namespace wadi
