@@ -1,5 +1,5 @@
 // What a world is and what its stages cost; the tables of the library.
-#include "engine/describe_tables.hpp"
+#include "engine/reads/describe_tables.hpp"
 #include "plugin/abi.hpp"
 #include <cstdio>
 

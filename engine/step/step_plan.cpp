@@ -253,7 +253,7 @@ std::vector<std::string> StepPlan::tile_list(bool of_substeps) const {
     return names;
 }
 
-const PlanField* StepPlan::find(const std::string& name) const {
+const PlanField* StepPlan::find(const std::string& name) const& {
     const auto found = std::find_if(fields.begin(), fields.end(), [&](const PlanField& f) { return f.name == name; });
     return found == fields.end() ? nullptr : &*found;
 }

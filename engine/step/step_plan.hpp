@@ -56,7 +56,8 @@ struct StepPlan {
     double traffic_per_cell() const;
     /// Bytes per cell that any step must move: the fields of the state once in, those that change once out.
     double least_traffic_per_cell() const;
-    const PlanField* find(const std::string& name) const;
+    const PlanField* find(const std::string& name) const&;
+    const PlanField* find(const std::string& name) const&& = delete; // would point into a plan that is gone
     /// The fields of a list of active tiles: activity, flags, counts, list, dispatch.
     std::vector<std::string> tile_list(bool of_substeps) const;
 };

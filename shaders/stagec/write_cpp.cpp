@@ -75,7 +75,8 @@ std::string write_cpp(const FusedStage& f, const std::string& isa, const Effects
     const Stage& s = f.stage;
     std::ostringstream o;
     // What is loaded from a buffer that the fused stage's masks do not have is a constant, and its place used by nobody.
-    o << file_head(s, isa) << "#pragma GCC diagnostic ignored \"-Wunused-but-set-variable\"\n"
+    o << file_head(s, isa)
+      << "#pragma GCC diagnostic ignored \"-Wunused-but-set-variable\"\n#pragma GCC diagnostic ignored \"-Wunused-parameter\"\n"
       << physics_includes(f) << "struct Place { int x, y; };\n#define PLACE(X, Y) Place{X, Y}\n"
       << index_macros(f)
       << "#define LANE 0\n#define LANES 1\n#define BARRIER (void)0\n#define KEEP_STORED(FIELD, AT, TYPE) FIELD[AT] = "

@@ -1,4 +1,4 @@
-#include "engine/describe_tables.hpp"
+#include "engine/reads/describe_tables.hpp"
 #include "engine/compute/stage_table.hpp"
 #include "engine/settings/effects.hpp"
 #include "engine/settings/messages.hpp"
@@ -106,7 +106,8 @@ std::string describe_effects() {
 // Fields that have a partner in some plan.
 bool takes_turns(std::string_view field) {
     for (const bool traced : {false, true}) {
-        const PlanField* found = make_step_plan(traced ? all_effects | never_half : all_effects, 1).find(std::string(field));
+        const StepPlan plan = make_step_plan(traced ? all_effects | never_half : all_effects, 1);
+        const PlanField* found = plan.find(std::string(field));
         if (found != nullptr && found->ping_pong) return true;
     }
     return false;
