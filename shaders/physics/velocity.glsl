@@ -3,6 +3,11 @@
 #define PHYSICS_VELOCITY
 #include "../physics/scalar.glsl"
 
+// Velocities at the faces around one: low and high along its direction, left and right across it.
+struct Around {
+    float low, high, left, right;
+};
+
 // Flux-form staggered upwind advection of one face velocity in increment form (NUMERICS 2.3, after Stelling and
 // Duinmeijer 2003): flux_* are the mean depths moved through the four sides of the face's own control volume,
 // low and high along its direction, left and right across it; height its mean new depth, inv_height 1 over it. A convex combination of the five velocities for any time step.
