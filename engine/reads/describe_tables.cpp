@@ -20,7 +20,8 @@ std::string joined(const Strings& words, const std::string& between) {
     return text;
 }
 
-std::string code(std::string_view text) { return "`" + std::string(text) + "`"; }
+std::string quoted(std::string_view text, char mark) { return std::string(1, mark).append(text).append(1, mark); }
+std::string code(std::string_view text) { return quoted(text, '`'); }
 
 std::string row(const Strings& cells) {
     std::string text = "|";
@@ -180,7 +181,7 @@ std::string json(double value) {
     return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
-std::string json(std::string_view text) { return "\"" + std::string(text) + "\""; }
+std::string json(std::string_view text) { return quoted(text, '"'); }
 
 std::string schema_of(const Setting& setting) {
     const auto& [least, most, names, among] = setting.values;
