@@ -4,6 +4,11 @@
 namespace stagec {
 namespace {
 
+std::string flat(std::string text) {
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    return text;
+}
+
 bool has_axis_part(const std::string& word) { return other_axis(word) != word; }
 
 bool names(const std::string& text, const Words& locals) {
@@ -48,11 +53,6 @@ std::string renamed(const std::string& text, const std::map<std::string, std::st
         }
     }
     return out;
-}
-
-std::string flat(std::string text) {
-    std::replace(text.begin(), text.end(), '\n', ' ');
-    return text;
 }
 
 std::string tidy(const std::string& text) {

@@ -11,8 +11,7 @@ using ChangingFunctions = std::map<std::string, std::set<std::size_t>>;
 
 /// Names with the parts between their underscores replaced.
 std::string renamed(const std::string& text, const std::map<std::string, std::string>& parts);
-/// On one line; on one line with single blanks.
-std::string flat(std::string text);
+/// On one line with single blanks.
 std::string tidy(const std::string& text);
 /// Text with x and y, xx and yy, i and j, nx and ny, columns and rows exchanged in every name, and the arguments of IDX in the
 /// other order.
