@@ -100,6 +100,14 @@ struct WorldParams {
     float drag_kd;              // dts c_e [kg/m3]
     float drag_coupling;        // rho_w kd/((rho_w + kd) rho_s): kappa per depth of mixed water over depth of sand
     float drag_share;           // kd/(rho_w + kd): how far drag takes mixed water to the sand's velocity
+    float slope_normal;         // chi of NUMERICS 2.18
+    float wedge_slope;          // s*: slope of the face behind which Coulomb's wedge pushes most
+    float wedge_slope2;         // its square
+    float cliff_share;          // 4/(c_f rho_s g): share of the cohesion that a cliff needs, per cohesion over depth [m/Pa]
+    float internal_friction;    // b: friction within spreading sand, a share of mu
+    float viscosity_number;     // nu dts/dx^2 of sand in its plane, at most what the explicit step bears beside bulk_viscosity
+    float retained;             // r: depth of water per depth of sand that pores hold back
+    float inv_drainable;        // 1/(1 - r)
 
     // elastoplastic sand
     float lambda;               // Lame's first parameter after the elastic cap [Pa]

@@ -75,6 +75,15 @@ constexpr Effect effects[] = {
      [](const Settings& s, Content) { return above_zero("bed_friction", s.material.bed_friction); }},
     {row(EFFECT_BED_SHEAR), "bed_shear > 0",
      [](const Settings& s, Content) { return above_zero("bed_shear", s.material.bed_shear); }},
+    {row(EFFECT_SLOPE_NORMAL), "slope_normal > 0",
+     [](const Settings& s, Content) { return above_zero("slope_normal", s.material.slope_normal); }},
+    {row(EFFECT_INTERNAL_FRICTION), "internal_friction or sand_viscosity > 0",
+     [](const Settings& s, Content) {
+         return s.material.internal_friction > 0 ? above_zero("internal_friction", s.material.internal_friction)
+                                                 : above_zero("sand_viscosity", s.material.sand_viscosity);
+     }},
+    {row(EFFECT_RETENTION), "retention > 0",
+     [](const Settings& s, Content) { return above_zero("retention", s.material.retention); }},
 };
 
 constexpr Choice choices[] = {

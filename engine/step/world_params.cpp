@@ -10,6 +10,7 @@ namespace {
 // Neutral values that switch a guard off without a branch. Large, but far from overflow in what the stages do with them.
 constexpr float off = 1e30F;
 constexpr float gravity_cap_off = 1e9F;
+constexpr double steep = 1e9; // slope of a wedge that limits nothing
 
 int cell_of(double metres, double dx, int cells) { return std::clamp(static_cast<int>(std::floor(metres / dx)), 0, cells - 1); }
 
@@ -108,6 +109,13 @@ WorldParams derive_params(const Settings& s) {
     p.drag_kd = f(kd);
     p.drag_coupling = f(kd * m.water_density / (m.water_density + kd) / m.sand_density);
     p.drag_share = f(kd / (m.water_density + kd));
+    const double wedge = m.slope_normal > 0 ? m.friction + std::sqrt(m.friction * m.friction + 1 / m.slope_normal) : steep;
+    p.slope_normal = f(m.slope_normal);
+    p.wedge_slope = f(std::min(wedge, steep));
+    p.wedge_slope2 = f(std::min(wedge * wedge, steep * steep));
+    p.internal_friction = f(m.internal_friction);
+    p.retained = f(m.retention);
+    p.inv_drainable = f(1 / (1 - m.retention));
 
     double lambda = m.young_modulus * m.poisson_ratio / ((1 + m.poisson_ratio) * (1 - 2 * m.poisson_ratio));
     double shear = m.young_modulus / (2 * (1 + m.poisson_ratio));
@@ -124,10 +132,15 @@ WorldParams derive_params(const Settings& s) {
     p.yield_slope = f(slope);
     p.inv_yield_slope = slope > 0 ? f(1 / slope) : 0.0F;
     p.inv_bulk = lambda + shear > 0 ? f(1 / (lambda + shear)) : 0.0F;
+    p.cliff_share = weight > 0 ? f(4 / (m.yield_friction * weight)) : 0.0F;
     p.passive_pressure = w.passive_pressure > 0 ? f(w.passive_pressure * weight) : off;
     // The explicit viscous stress is stable with the elastic one while nu dts/dx^2 <= 1/4 - c^2 dts^2/(2 dx^2).
     const double wave = std::sqrt((lambda + 2 * shear) / m.sand_density) * ks;
-    const double viscous = std::min(w.bulk_viscosity * wave, std::max(0.0, 0.2 - 0.4 * wave * wave));
+    // Viscosity of shear takes half of that room at most, the bulk's the rest.
+    const double room = std::max(0.0, 0.2 - 0.4 * wave * wave),
+                 sheared = std::min(m.sand_viscosity * dts / (dx * dx), 0.5 * room);
+    const double viscous = std::min(w.bulk_viscosity * wave, room - sheared);
+    p.viscosity_number = f(sheared);
     p.bulk_viscosity = f(viscous * m.sand_density / ks);
     p.tip_pressure = f(0.5 / m.yield_friction);
     p.inv_friction_yield = f(1 / m.yield_friction);

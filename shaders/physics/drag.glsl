@@ -29,6 +29,15 @@ FN float stick_or_slip(float along, float across, float slip, float kappa) {
     return along * divide_or_zero(wmax(size - slip, 0.0f), size * (1.0f + kappa));
 }
 
+// How freely water moves through sand, 0 up to the share W/hs that pores hold back and 1 where they are full (NUMERICS 2.19).
+FN float relative_permeability(float water, float sand, float retained, float inv_drainable) {
+    float drainable = wclamp((divide_or_zero(water, sand) - retained) * inv_drainable, 0.0f, 1.0f);
+    return drainable * drainable * drainable;
+}
+
+// At a face: of the cell that the water leaves relative to the sand, of the freer one where it does not move against it.
+FN float upstream_permeability(float relative, float low, float high) { return wmax(relative < 0.0f ? 0.0f : low, relative > 0.0f ? 0.0f : high); }
+
 // wet: h_m/h_s.
 FN float friction_slip(float mu, float gravity, float dts, float wet, float density_ratio) {
     return mu * gravity * dts * wmax(0.0f, 1.0f - density_ratio * wet);

@@ -146,7 +146,7 @@ TEST_CASE("an effect that is off has no pass and no buffer") {
     CHECK_FALSE(runs(single, "compute_momentum_exchange"));
 
     const auto full = make_step_plan(everything, 3);
-    CHECK(full.bytes_per_cell() <= 144);
+    CHECK(full.bytes_per_cell() <= 152);
     for (const auto& effect : effect_table()) {
         std::uint32_t without = everything & ~effect.bit;
         for (const auto& other : effect_table()) {
@@ -155,8 +155,10 @@ TEST_CASE("an effect that is off has no pass and no buffer") {
         const auto less = make_step_plan(without, 3);
         const bool fewer_passes =
             less.water_passes.size() + less.substep_passes.size() < full.water_passes.size() + full.substep_passes.size();
-        // Drag and bed friction are branches of a stage that runs anyway; the others are passes of their own.
-        if (effect.bit == EFFECT_DRAG || effect.bit == EFFECT_BED_FRICTION) {
+        // Some are branches of a stage that runs anyway; the others are passes of their own.
+        constexpr std::uint32_t branches =
+            EFFECT_DRAG | EFFECT_BED_FRICTION | EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION | EFFECT_RETENTION;
+        if ((effect.bit & branches) != 0) {
             CHECK(less.bytes_per_cell() <= full.bytes_per_cell());
         } else {
             CHECK_MESSAGE(fewer_passes, effect.name << " off removes no pass");
@@ -208,7 +210,8 @@ TEST_CASE("choices of method are passes of their own at their place in the order
     };
     CHECK(reads_terrain(second) == reads_terrain(first) + 2);
     // The same passes and fields, velocities and stretch in half the bytes.
-    constexpr std::uint32_t all = all_effects & ~EFFECT_BED_SHEAR;
+    constexpr std::uint32_t sand_laws = EFFECT_BED_SHEAR | EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION | EFFECT_RETENTION;
+    constexpr std::uint32_t all = all_effects & ~sand_laws;
     const auto half = make_step_plan(all | EFFECT_HALF_STORAGE, 3), whole = make_step_plan(all, 3);
     CHECK(order(half.water_passes) == order(whole.water_passes));
     CHECK(whole.bytes_per_cell() == 124);

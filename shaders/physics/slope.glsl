@@ -1,0 +1,56 @@
+// Slope-normal gravity of sand, with Coulomb's wedge as the limit of its push, and friction within sand that spreads (NUMERICS 2.18).
+#ifndef PHYSICS_SLOPE
+#define PHYSICS_SLOPE
+#include "../physics/velocity.glsl"
+
+// Rise of the sand's surface between two cells; 0 where the wet/dry rule blocks the face between them, so that sand along a steep
+// dry wall is not lightened by the wall's slope, and 0 where one lies outside the grid.
+FN float free_rise(float sand_low, float sand_high, float top_low, float top_high, float dry, bool inside) {
+    float none = blocked(sand_low, sand_high, top_low, top_high, dry) ? 0.0f : top_high - top_low;
+    return inside ? none : 0.0f;
+}
+
+// Share of the cohesion that a cliff of this height needs to push as hydrostatic sand does against its own tension.
+FN float cohesive_share_of(float cohesion, float height, float per_cohesion) { return wmin(1.0f, divide_or_zero(per_cohesion * cohesion, height)); }
+
+// Of the deeper cell; of two that are as deep the larger one.
+FN float of_deeper(float height_low, float height_high, float low, float high) {
+    float even = wmax(low, high);
+    float deeper = height_low > height_high ? low : high;
+    return height_low == height_high ? even : deeper;
+}
+
+// What a slope leaves of weight and friction, and what Coulomb's wedge leaves of the push.
+struct SlopeShares {
+    float weight; // C = 1/(1 + chi s^2), s no steeper than the wedge's plane
+    float push;   // r: slope of that plane over the slope where it is steeper, else 1
+};
+
+// rise along the face's axis, cross_rise across it [m]; held: cohesive share.
+FN SlopeShares slope_shares(float rise, float cross_rise, float inv_dx, float chi, float wedge_slope, float wedge_slope2, float held) {
+    float slope2 = square(rise * inv_dx) + square(cross_rise * inv_dx);
+    bool steep = slope2 > wedge_slope2;
+    float limited = steep ? wedge_slope2 : slope2;
+    float weight = wdiv(1.0f, 1.0f + chi * limited);
+    float safe = steep ? slope2 : 1.0f;
+    float push = steep ? wdiv(wedge_slope, wsqrt(safe)) : 1.0f;
+    SlopeShares s;
+    s.weight = weight + held * (1.0f - weight);
+    s.push = push + held * (1.0f - push);
+    return s;
+}
+
+// The push's fall along the face's axis [m]: the sand's own buoyant weight is limited by the wedge, the push of a sloping water surface
+// is not. pure_rise: rise of the depth of pure water.
+FN float limited_fall(SlopeShares s, float rise, float pure_rise, float density_ratio) {
+    float borne = minmod(-pure_rise, rise);
+    return s.weight * (s.push * (rise - density_ratio * borne) + density_ratio * (pure_rise + borne));
+}
+
+// Share of the friction that thinning adds within a layer that slides at `speed` (old velocities): 0 for a block and where sand piles up.
+FN float spreading_share(float growth, float least_height, float speed, float wave_speed) {
+    float thinning = least_height * wmax(growth, 0.0f);
+    return divide_or_zero(thinning, (speed + thinning) + 0.1f * wave_speed);
+}
+
+#endif
