@@ -1,4 +1,4 @@
-// The engine's tables as text: what READMEs and the schema of levels are compared with.
+// The engine's tables as text: what pages and the schema of levels are compared with.
 #pragma once
 #include "engine/compute/status.hpp"
 #include <string>

@@ -1,5 +1,5 @@
 // The settings that are one number, flag or choice each: a row says where it stands in a level file, its range, unit and meaning.
-// The level reader, validate(), material keys, the level digest, the schema and the tables of READMEs walk these rows; defaults
+// The level reader, validate(), material keys, the level digest, the schema and the tables of pages walk these rows; defaults
 // are those of the structs in settings.hpp.
 #pragma once
 #include "engine/settings/settings.hpp"

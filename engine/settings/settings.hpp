@@ -120,7 +120,7 @@ struct Source {
 /// What the level wants of one effect: derived from content, or forced.
 enum class Force : std::uint8_t { automatic, on, off };
 
-/// Whether a step's stages run fused; automatic: where the device gains from it (engine/README.md).
+/// Whether a step's stages run fused; automatic: where the device gains from it (engine/step/README.md).
 enum class FusedStages : std::uint8_t { automatic, always, never };
 
 /// Everything but the fields themselves. Units, ranges and meaning of what is one number, flag or choice: setting_table.cpp.

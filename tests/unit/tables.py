@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Compares the tables in READMEs and the schema of levels with what the build prints.
+"""Compares the tables in pages and the schema of levels with what the build prints.
 
 Usage: tables.py RECORDER SOURCE_DIR [--update]     --update rewrites them. Exit status 1 names every difference.
 
-In a README a table stands between `<!-- table: NAME -->` and `<!-- end -->`; NAME is one of --print-tables, "settings OBJECT" for the
+In a page a table stands between `<!-- table: NAME -->` and `<!-- end -->`; NAME is one of --print-tables, "settings OBJECT" for the
 rows of one object of level files ("root": those beside them), or "effects content" without the choices of method.
 """
 import json
@@ -13,8 +13,9 @@ import subprocess
 import sys
 
 PLACES = {
-    "engine/README.md": ["fields", "effects"],
-    "shaders/README.md": ["stages"],
+    "engine/step/STEP.md": ["fields"],
+    "engine/settings/README.md": ["effects"],
+    "shaders/stages/README.md": ["stages"],
     "samples/levels/README.md": ["settings root", "settings material", "settings method", "effects content"],
 }
 SCHEMA = "samples/levels/level.schema.json"
@@ -41,7 +42,7 @@ def table(name, printed):
 
 
 def compare(path, text, printed):
-    """What is wrong with the marked tables of one README."""
+    """What is wrong with the marked tables of one page."""
     found = {name: body for _, name, body, _ in MARKED.findall(text)}
     for name in PLACES[path]:
         if name not in found:

@@ -255,7 +255,7 @@ TEST_CASE("effects follow from the scene, with a reason, and a level may force t
 TEST_CASE("the engine's pages name every stage of a step, and none that there is not") {
     std::set<std::string> named; // first column of the tables about the step
     for (const auto& [page, wanted] :
-         {std::pair{"/engine/README.md", "One step"}, std::pair{"/engine/step/README.md", "Active tiles"}}) {
+         {std::pair{"/engine/step/STEP.md", "One step"}, std::pair{"/engine/step/README.md", "Active tiles"}}) {
         std::ifstream file(std::string(WADI_SOURCE_DIR) + page);
         std::string line, section;
         while (std::getline(file, line)) {
