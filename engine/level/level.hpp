@@ -28,7 +28,7 @@ struct LevelOverrides {
     std::optional<double> dt;           // [s]
     std::optional<std::string> method;  // name of a method preset
     std::optional<std::string> variant; // one of the level's own, merged in before anything else
-    /// Name of an accuracy preset: scales the level's cells, unless `size` is given, and sets the sand steps per water step.
+    /// Name of an accuracy preset: scales the level's cells, unless `size` is given, and sets the sand substeps per water step.
     std::optional<std::string> accuracy;
     std::optional<int> active_tiles;         // Settings::active_tiles
     std::optional<FusedStages> fused_stages; // Settings::fused_stages

@@ -174,7 +174,7 @@ void warn_sand(const Settings& s, const Survey& survey, std::vector<std::string>
                                                                            : "so stiff that it does not fill hollows"));
         else if (scale * m.young_modulus < STIFFNESS_LEAST * weight)
             warnings.push_back("material.young_modulus: " + number_text(m.young_modulus) + " Pa acts like " +
-                               at_most(scale * m.young_modulus) + " Pa at this sand step, below " + range +
+                               at_most(scale * m.young_modulus) + " Pa at this sand substep, below " + range +
                                "; use dt <= " + at_most(s.dt * std::sqrt(scale * m.young_modulus / (STIFFNESS_LEAST * weight))) +
                                " s or more substeps");
     }

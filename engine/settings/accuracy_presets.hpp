@@ -10,7 +10,7 @@ namespace wadi {
 struct AccuracyPreset {
     const char* name;
     double cells;    // factor on the level's cells along x and y; dt follows the cells' size
-    int substeps;    // sand steps per water step
+    int substeps;    // sand substeps per water step
     int water_order; // method.water_transport_order; 0 = the level's
     double error;    // mean absolute error of sand and water surface
     double gpu_cost; // time per simulated second, one H100

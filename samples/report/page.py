@@ -149,7 +149,7 @@ def second_order(page, all_scenes, rows):
 
 
 def ratios(page, all_scenes, rows):
-    page.heading("Sand steps per water step")
+    page.heading("Sand substeps per water step")
     page.text("Error [%] and ms per simulated second, robust, finest grid with every ratio. Along a row of dt the water step is fixed and T divides it.")
     for scene in all_scenes:
         mine = [r for r in rows if r["scene"] == scene.key and scene.sweep and r["choice"] == "robust" and not r["off"]]
@@ -186,7 +186,7 @@ def presets(page, all_scenes, rows):
     if not body:
         return
     page.heading("Presets")
-    page.text("Error and ms per simulated second with half, all and twice the cells along x and y, the step in proportion, two sand steps per water step (three where there is "
+    page.text("Error and ms per simulated second with half, all and twice the cells along x and y, the step in proportion, two sand substeps per water step (three where there is "
               "only water); accurate also has order 2 for water. Two columns are no presets. On the frontier: of all points of the scene, as in its chart; sand alone has no order of water. "
               "On grids this small a GPU's time is that of its launches; on large ones it goes with the third power of the factor.")
     geometric = lambda values: math.prod(values) ** (1 / len(values))
@@ -254,7 +254,7 @@ def write(out, all_scenes, rows, prices, planned, quick):
               "or as the case says; time: of stepping alone, per simulated second. "
               f"Truth of island, heap and wall: double precision on {scenes.SOLVED_N} x {scenes.SOLVED_N // 2} cells "
               f"with second order for water. A point such as wall@n64,dt1,T3,robust is 64 cells along x, the base time step, "
-              "three sand steps per water step, method robust; samples/report/wadi-report BIN --point POINT measures it again.")
+              "three sand substeps per water step, method robust; samples/report/wadi-report BIN --point POINT measures it again.")
     if len(rows) < planned:
         page.text(f"Broken off: {planned - len(rows)} of {planned} points are not measured.")
     page.heading("Error against time")

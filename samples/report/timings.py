@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """The paper's tables from our own runs: time per stage and step of its six scenes (Table 2), time and memory by grid size (its supplement's
-Figure 4), and what several sand steps per water step save and cost (its supplement's section 2); what second order for water and the
+Figure 4), and what several sand substeps per water step save and cost (its supplement's section 2); what second order for water and the
 accuracy presets cost. Writes CSVs, charts and the generated part of samples/report/timings/README.md, section by section.
 
 usage: samples/report/timings.py BIN_FOLDER [--backends cuda,vulkan,cpu] [--largest 4096] [--steps 200 | --quick] [--out DIR]
@@ -36,7 +36,7 @@ ROWS = {  # the paper's rows and the stages that do their work
     "update boundary conditions": ("update_water_boundary_types", "update_sand_boundary_types", "extrapolate_velocity", "open_sides",
                                    "open_sand_sides")}
 REST = "saturation, sources, ledger"  # no row of the paper's
-ASYNC = {"level": "spring", "size": (128, 128), "seconds": 4, "sand_step": 0.004, "ratios": (1, 2, 3, 4, 6), "baseline": 5e-4}
+ASYNC = {"level": "spring", "size": (128, 128), "seconds": 4, "sand_substep": 0.004, "ratios": (1, 2, 3, 4, 6), "baseline": 5e-4}
 ORDER_SIZES = {"cpu": (512, 1024), "": (512, 1024, 4096)}  # by backend, "": any other
 PRESET_SIZE = 1024  # cells along a side of `balanced`
 BUDGET = {"level": "beach", "seconds": 10, "sizes": (256, 512, 1024), "truth": 2048, "substeps": 2, "frames": 60}  # frames per second
@@ -150,7 +150,7 @@ def mean_error(run, baseline, name, time):
 
 
 def asynchronous(recorder, method, ratios):
-    """[(what is fixed, T, water step, sand step, MAE of sand, MAE of water, ms per simulated second)], the baseline's own error last."""
+    """[(what is fixed, T, water step, sand substep, MAE of sand, MAE of water, ms per simulated second)], the baseline's own error last."""
     level = recordings.read_level(ASYNC["level"])
     end = ASYNC["seconds"]
 
@@ -161,9 +161,9 @@ def asynchronous(recorder, method, ratios):
 
     baseline, _ = run(ASYNC["baseline"], 1)
     rows = []
-    for fixed in ("sand step", "water step"):
+    for fixed in ("sand substep", "water step"):
         for ratio in ratios:
-            dt = ASYNC["sand_step"] * (ratio if fixed == "sand step" else 1)
+            dt = ASYNC["sand_substep"] * (ratio if fixed == "sand substep" else 1)
             recorded, summary = run(dt, ratio)
             rows.append((fixed, ratio, dt, dt / ratio, mean_error(recorded, baseline, "hs", end), mean_error(recorded, baseline, "surface", end),
                          1000 * summary["stepping_seconds"] / summary["simulated_seconds"]))
@@ -238,7 +238,7 @@ def budget(recorder, shrink):
 
 def budget_text(rows, out, backend, shrink):
     write_csv(out / "budget.csv", ["n", "order", "ms_per_step", "steps_per_frame", "mae_sand_percent", "mae_water_percent"], rows)
-    return ["## A level on a frame's budget", "", f"`{BUDGET['level']}` on n x n cells, {BUDGET['substeps']} sand steps per water step, {BUDGET['frames']} frames a second, on {backend}. Error: mean absolute "
+    return ["## A level on a frame's budget", "", f"`{BUDGET['level']}` on n x n cells, {BUDGET['substeps']} sand substeps per water step, {BUDGET['frames']} frames a second, on {backend}. Error: mean absolute "
             f"difference after {BUDGET['seconds'] / shrink:g} s from the same level on {BUDGET['truth'] // shrink}² cells with order 2, in percent of the range over which the surface moved.", "",
             *table(["grid", "order of water", "ms per step", "steps per frame", "ms per frame", "sand [%]", "water surface [%]"],
                    [[f"{n}²", str(order), number(ms), f"{steps:.2f}", number(ms * steps), f"{sand:.2f}", f"{water:.2f}"] for n, order, ms, steps, sand, water in rows]), ""]
@@ -262,12 +262,12 @@ def presets_text(rows, out):
 def async_text(by_method, out, backend):
     head = ["method", "fixed", "T", "water_step_s", "sand_step_s", "mae_sand_percent", "mae_water_percent", "ms_per_second"]
     write_csv(out / "asynchronous.csv", head, [[method, *row] for method, rows in by_method.items() for row in rows])
-    lines = ["## Several sand steps per water step", "",
+    lines = ["## Several sand substeps per water step", "",
              f"`{ASYNC['level']}` on {ASYNC['size'][0]} x {ASYNC['size'][1]} cells, {ASYNC['seconds']} s, on {backend}. Mean absolute error against the same method at T = 1 with a step of "
              f"{ASYNC['baseline']:g} s, in percent of the range over which the surface moved; time per simulated second, and what it saves against T = 1.", ""]
     for method, rows in by_method.items():
         first = {row[0]: row[6] for row in reversed(rows)}
-        lines += [f"### {method}", "", *table(["fixed", "T", "water step [s]", "sand step [s]", "sand [%]", "water surface [%]", "ms per second", "saved [%]"],
+        lines += [f"### {method}", "", *table(["fixed", "T", "water step [s]", "sand substep [s]", "sand [%]", "water surface [%]", "ms per second", "saved [%]"],
                                               [[row[0], str(row[1]), f"{row[2]:.3g}", f"{row[3]:.3g}", f"{row[4]:.2f}", f"{row[5]:.2f}", number(row[6]),
                                                 f"{100 * (1 - row[6] / first[row[0]]):.0f}"] for row in rows]), ""]
     return lines
@@ -282,7 +282,7 @@ def main():
     parser.add_argument("--quick", action="store_true", help="grids an eighth as wide, few steps: shows that the script runs, measures nothing")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent / "timings")
     options = parser.parse_args()
-    shrink, largest, steps, sand_steps = (8, 128, 20, (1, 3)) if options.quick else (1, options.largest, options.steps, ASYNC["ratios"])
+    shrink, largest, steps, sand_substeps = (8, 128, 20, (1, 3)) if options.quick else (1, options.largest, options.steps, ASYNC["ratios"])
     options.out.mkdir(parents=True, exist_ok=True)
     page, kept = options.out / "README.md", pathlib.Path(__file__).resolve().parent / "timings" / "README.md"
     text = (page if page.exists() else kept).read_text()
@@ -295,7 +295,7 @@ def main():
                 lambda: orders_text(orders(ratio_of, largest, steps), options.out),
                 lambda: presets_text(preset_costs(ratio_of, largest, steps), options.out),
                 lambda: budget_text(budget(first, shrink), options.out, first.backend, shrink),
-                lambda: async_text({method: asynchronous(first, method, sand_steps) for method in METHODS}, options.out, first.backend))
+                lambda: async_text({method: asynchronous(first, method, sand_substeps) for method in METHODS}, options.out, first.backend))
     try:
         lines = ["Measured on " + "; ".join(f"{backend}: {device_name(recorder)}" for backend, recorder in recorders.items()) + ".", ""]
         for section in sections:

@@ -123,7 +123,7 @@ TEST_CASE("level warnings: stiffness of the sand") {
     CHECK(with("2e5").empty());
     CHECK(with("0").empty()); // friction only
     // lambda + 2 mu = 1.346 E; the cap is 0.2 * 2000 * (0.1/0.009)^2 = 49383 Pa with one substep: E acts like 36684 Pa
-    CHECK_MESSAGE(says(with("2e5", R"(, "method": {"substeps": 1})"), "200000 Pa acts like 36600 Pa at this sand step"),
+    CHECK_MESSAGE(says(with("2e5", R"(, "method": {"substeps": 1})"), "200000 Pa acts like 36600 Pa at this sand substep"),
                   with("2e5", R"(, "method": {"substeps": 1})"));
     CHECK(with("1e5", R"(, "effects": {"elastoplastic": "off"})").empty());
 }

@@ -48,7 +48,7 @@ class Session:
 
 
 def test_accuracy(session):
-    """An accuracy preset makes the world anew (here, where --grid fixes the cells, with other sand steps); without one it is as before."""
+    """An accuracy preset makes the world anew (here, where --grid fixes the cells, with other sand substeps); without one it is as before."""
     _, _, (level, draft, again), _ = session.run("0 pause\n1 step\n2 print\n3 accuracy draft\n4 step\n5 print\n6 accuracy level\n7 step\n8 print\n", 10)
     assert level["step"] == draft["step"] == again["step"] == "1", (level, draft, again)
     assert level["hash"] == again["hash"] != draft["hash"], (level, draft, again)
