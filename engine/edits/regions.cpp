@@ -145,8 +145,8 @@ Status write_region(WorldState& state, Stepper& stepper, EditLayer layer, const 
         return written.write();
     }
     if (auto status = sand ? write_sand(bands) : written.write(); !status) return status;
-    if (auto status = book(state, sand ? LEDGER_SAND_IN : LEDGER_WATER_IN, in); !status) return status;
-    return book(state, sand ? LEDGER_SAND_OUT : LEDGER_WATER_OUT, out);
+    if (auto status = count_in_ledger(state, sand ? LEDGER_SAND_IN : LEDGER_WATER_IN, in); !status) return status;
+    return count_in_ledger(state, sand ? LEDGER_SAND_OUT : LEDGER_WATER_OUT, out);
 }
 
 Status trim(WorldState& state, Stepper& stepper) {
@@ -168,8 +168,8 @@ Status trim(WorldState& state, Stepper& stepper) {
     if (auto status = stepper.hold({*sand, *water}); !status) return status;
     const auto keep = [&](const char* field, const auto& sides, int in, int out) {
         if (state.plan().find(field) != nullptr) return ok_status();
-        auto status = book(state, in, sides.first);
-        return status ? book(state, out, sides.second) : status;
+        auto status = count_in_ledger(state, in, sides.first);
+        return status ? count_in_ledger(state, out, sides.second) : status;
     };
     if (auto status = keep("sand_side_ledger", *sand_sides, LEDGER_SAND_IN, LEDGER_SAND_OUT); !status) return status;
     return keep("water_side_ledger", *water_sides, LEDGER_WATER_IN, LEDGER_WATER_OUT);

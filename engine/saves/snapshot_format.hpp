@@ -11,7 +11,7 @@
 //     44  u32      number of running totals
 //     48  u64      digest of the level's settings
 //     56  u64      steps
-//     64  i64[2]   quanta of sand and water that the books began with
+//     64  i64[2]   quanta of sand and water that the ledger began with
 //     80  f64      per number of material_keys(): its value
 //      .  f64[2]   per running total: metres, whole quanta
 //      .  per field: char[32] name, u64 bytes

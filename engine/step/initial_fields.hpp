@@ -4,7 +4,7 @@
 
 namespace wadi {
 
-/// Writes the level's fields and the shapes of its sources into a new world, whose books begin with them. Waits for the device.
+/// Writes the level's fields and the shapes of its sources into a new world, whose ledger begins with them. Waits for the device.
 Status upload(WorldState& state, const InitialFields& fields);
 
 } // namespace wadi

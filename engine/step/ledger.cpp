@@ -55,7 +55,7 @@ Result<Ledger> read_ledger(WorldState& state) {
 }
 
 // The first counter of the entry's row takes it all: only the sum is ever looked at.
-Status book(WorldState& state, int entry, std::int64_t quanta) {
+Status count_in_ledger(WorldState& state, int entry, std::int64_t quanta) {
     if (quanta == 0) return ok_status();
     const auto ledger = state.fields().buffer("source_ledger");
     const std::uint64_t low = 2 * static_cast<std::uint64_t>(entry) * row_of(state) * 4, high = low + row_of(state) * 4;

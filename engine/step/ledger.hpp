@@ -1,4 +1,4 @@
-// The books: what was really added and taken, in quanta, as stages count it on the device. Every call waits for the device.
+// The ledger: what was really added and taken, in quanta, as stages count it on the device. Every call waits for the device.
 #pragma once
 #include "engine/step/world_state.hpp"
 
@@ -14,6 +14,6 @@ Result<Ledger> read_ledger(WorldState& state);
 /// What went in and out through the open sides alone; zero where the plan has no such ledger.
 Result<std::pair<std::int64_t, std::int64_t>> read_side_ledger(WorldState& state, const char* field);
 /// Adds to an entry (LEDGER_WATER_IN, ...) of the ledger of sources and edits.
-Status book(WorldState& state, int entry, std::int64_t quanta);
+Status count_in_ledger(WorldState& state, int entry, std::int64_t quanta);
 
 } // namespace wadi

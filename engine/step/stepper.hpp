@@ -17,7 +17,7 @@ struct StageTime {
 /// What a step boundary is besides the fields on the device.
 struct HostTotals {
     std::uint64_t steps = 0;
-    std::int64_t sand_initial = 0, water_initial = 0; // quanta the books began with
+    std::int64_t sand_initial = 0, water_initial = 0; // quanta the ledger began with
     StepInputs::Totals inputs;
 };
 

@@ -31,7 +31,7 @@ struct Outcome {
     bool failed() const { return !failure.empty(); }
 };
 
-/// Runs a case and its checks: `only` that one (and the books), or those that its seed picks.
+/// Runs a case and its checks: `only` that one (and books), or those that its seed picks.
 Outcome run_case(const Case& c, Devices& devices, Weaken weaken, const std::string& only = "");
 
 /// The smallest case found that fails the same check: halves of the grid, fewer steps, commands and effects, default parameters.

@@ -43,7 +43,7 @@ std::uint64_t hash(Run& run) {
     return value ? *value : 0;
 }
 
-// Where the books are exact: a quantum, a limiter, and no column that could pass the declared largest height.
+// Where the ledger is exact: a quantum, a limiter, and no column that could pass the declared largest height.
 std::string check_books(const Run& run, const Case& c, const WorldStats& s, double raised) {
     const auto& m = c.scene.settings.method;
     if (m.name == "published") return {}; // promises none of this: no quanta, no caps
@@ -57,7 +57,7 @@ std::string check_books(const Run& run, const Case& c, const WorldStats& s, doub
     const std::int64_t water = s.water_quanta - (s.water_initial + s.ledger.water_in - s.ledger.water_out),
                        sand = s.sand_quanta - (s.sand_initial + s.ledger.sand_in - s.ledger.sand_out);
     if (height_quantum(m) > 0 && small && (water != 0 || sand != 0))
-        return "off the books by " + std::to_string(water) + " quanta of water and " + std::to_string(sand) + " of sand";
+        return "off the ledger by " + std::to_string(water) + " quanta of water and " + std::to_string(sand) + " of sand";
     const auto& set = run.world->settings();
     const double clamp = m.velocity_clamp * set.grid.dx / set.dt * (1 + 1e-6);
     if (s.largest_water_speed > clamp) return "water at " + text(s.largest_water_speed) + " m/s, the clamp is " + text(clamp);

@@ -42,7 +42,7 @@ std::string text(double value);
 
 /// Each edit called ahead of its step with the log on, and the log played elsewhere.
 std::string check_log(const Case& c, Session& session, const Base& base);
-/// Stamps, written regions, dropped effects, other materials and refused calls between steps: the books hold, and the log of it
+/// Stamps, written regions, dropped effects, other materials and refused calls between steps: the ledger holds, and the log of it
 /// gives the same bits in a world of `twin`.
 std::string check_calls(const Case& c, const Case& twin, Session& session);
 /// The case on a dry plateau and `twin` a few cells away from there: the same bits, but for the place. Not compared where

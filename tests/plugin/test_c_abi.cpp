@@ -44,7 +44,7 @@ struct Pond {
 
 } // namespace
 
-TEST_CASE("a world from arrays steps, reads back and keeps its books") {
+TEST_CASE("a world from arrays steps, reads back and keeps its ledger") {
     const Pond world;
     CHECK(wadi_get_abi_version() == WADI_ABI_VERSION);
     REQUIRE(wadi_world_step(world.id, 100) == WADI_OK);

@@ -31,7 +31,7 @@ std::vector<float> heap(int nx, int ny) {
 
 } // namespace
 
-TEST_CASE("rolled back and stepped again: the same hash at every step, the books included") {
+TEST_CASE("rolled back and stepped again: the same hash at every step, the ledger included") {
     std::map<uint64_t, uint64_t> hashes;
     auto straight = mixed_world("cpu", 32);
     for (uint64_t n = 0; n <= 40; ++n) {

@@ -125,8 +125,8 @@ inline double sand_speed(World& world) {
     return std::max(largest(cells_of(world, "sand_velocity_x")), largest(cells_of(world, "sand_velocity_y")));
 }
 
-/// What must hold in any scene: every quantum in the books, heights >= 0, everything finite, speeds within the clamp.
-inline bool books_hold(const World& world, const WorldStats& s) {
+/// What must hold in any scene: every quantum in the ledger, heights >= 0, everything finite, speeds within the clamp.
+inline bool ledger_holds(const World& world, const WorldStats& s) {
     const auto& set = world.settings();
     const double clamp = set.method.velocity_clamp * set.grid.dx / set.dt * (1 + 1e-6);
     const bool exact = s.water_quanta == s.water_initial + s.ledger.water_in - s.ledger.water_out &&
@@ -143,10 +143,10 @@ inline void check_books(World& world) {
     CAPTURE(s.smallest_height);
     CAPTURE(s.largest_water_speed);
     CAPTURE(s.largest_sand_speed);
-    CHECK(books_hold(world, s));
+    CHECK(ledger_holds(world, s));
 }
 
-/// Makes a scene's world on every backend; `run(world)` steps, measures and checks it. The books are checked after it, and
+/// Makes a scene's world on every backend; `run(world)` steps, measures and checks it. The ledger is checked after it, and
 /// backends whose arithmetic is exact must end in the CPU's bits.
 template <class Run> void on_every_backend(const Scene& scene, Run run) {
     std::uint64_t expected = 0;

@@ -129,7 +129,7 @@ template <class Note> void session(Device& device, FaultyDevice::Plan& plan, Not
     note(world.reader().read("free_surface", cells));
     const auto stats = world.reader().stats();
     note(stats.status());
-    if (stats) CHECK(books_hold(world, *stats)); // after a lack of memory too
+    if (stats) CHECK(ledger_holds(world, *stats)); // after a lack of memory too
     note(world.commands().write_region(EditLayer::sand, {1, 1, 2, 2}, std::vector<float>(4, 0.1F)));
     note(world.step(1));
 }

@@ -1,4 +1,4 @@
-// Edits: what they change, what they leave alone, that every quantum is in the books, and the same bits however they arrive.
+// Edits: what they change, what they leave alone, that every quantum is in the ledger, and the same bits however they arrive.
 #include "tests/stability/quality.hpp"
 #include <cmath>
 #include <doctest/doctest.h>
@@ -25,7 +25,7 @@ std::vector<Edit> random_edits(std::mt19937& random, int count, double lx, doubl
     for (int n = 0; n < count; ++n) {
         const auto layer = static_cast<EditLayer>(random() % 3);
         Edit edit = brush(layer, real(-0.2, 1.2) * lx, real(-0.2, 1.2) * ly, real(0.01, 0.3) * lx, real(-0.2, 0.2), real(0, 1));
-        // Far more than there is, or than there is room for. Depths above the declared largest height would end the exact books.
+        // Far more than there is, or than there is room for. Depths above the declared largest height would end the exact ledger.
         if (random() % 20 == 0) edit.amount = layer == EditLayer::terrain ? 20 : -20;
         edit.capsule = random() % 3 == 0;
         edit.x1 = real(0, 1) * lx;
@@ -65,7 +65,7 @@ std::vector<float> read(World& world, const char* field) {
 
 } // namespace
 
-TEST_CASE("thousands of random edits keep the books to the last quantum, and every backend gives the same bits") {
+TEST_CASE("thousands of random edits keep the ledger to the last quantum, and every backend gives the same bits") {
     std::uint64_t first = 0;
     for (const auto& backend : available_backends()) {
         auto scene = mixed_scene(40, 37);

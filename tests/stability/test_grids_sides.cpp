@@ -49,7 +49,7 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("grids of one row, one column, one cell: the books hold, on every backend") {
+TEST_CASE("grids of one row, one column, one cell: the ledger holds, on every backend") {
     for (const auto& [nx, ny] : {std::pair{1, 1}, {1, 30}, {30, 1}, {2, 3}}) {
         CAPTURE(nx);
         CAPTURE(ny);
@@ -107,5 +107,5 @@ TEST_CASE("a side lets water and sand out at the clamp's speed at most, whatever
     scene.settings.sources = {{SourceShape::disc, SourceMaterial::water, {0.2, 0.8}, 0.6, {}, {{{0, 0.1}}}, true, {-80, 0}}};
     scene.fill(scene.fields.sand, [](double, double) { return 0.3; });
     scene.fill(scene.fields.sand_velocity_x, [](double, double) { return 50; });
-    on_every_backend(scene, [](World& world) { step(world, 1); }); // the books include the clamp
+    on_every_backend(scene, [](World& world) { step(world, 1); }); // the ledger includes the clamp
 }

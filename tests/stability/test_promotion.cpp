@@ -141,7 +141,7 @@ TEST_CASE("trim brings passes and memory back, and a trimmed world goes on as on
         CHECK(world->state().device().memory().size() == buffers);
         auto s = world->reader().stats();
         REQUIRE(s);
-        CHECK(s->ledger.water_in == s->ledger.water_out); // what left through the side is still in the books
+        CHECK(s->ledger.water_in == s->ledger.water_out); // what left through the side is still in the ledger
         CHECK(s->ledger.water_out > 0);
         check_books(*world);
     }
@@ -207,7 +207,7 @@ TEST_CASE("a snapshot of a promoted world promotes the world it is loaded into")
     CHECK(closed->snapshots().load(bytes).code == Code::bad_argument);
 }
 
-TEST_CASE("regions are written to the quantum, booked and checked") {
+TEST_CASE("regions are written to the quantum, counted and checked") {
     for (const auto& backend : available_backends()) {
         auto world = make_world(dry_valley(false), {backend});
         const Region corner{0, 20, 5, 4}, middle{10, 3, 8, 12};

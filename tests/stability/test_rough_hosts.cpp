@@ -1,5 +1,5 @@
 // What a host may do to a running world: pour sand into water and water onto sand in every frame, raise ground through a lake.
-// While it lasts the books hold; once it ends, what was stirred comes to rest.
+// While it lasts the ledger holds; once it ends, what was stirred comes to rest.
 #include "tests/stability/quality.hpp"
 
 using namespace wadi;

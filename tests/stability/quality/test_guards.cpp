@@ -54,7 +54,7 @@ Scene soaked_column(int smoothing) {
 
 } // namespace
 
-TEST_CASE("outflow limiter: the books hold; without it they do not") {
+TEST_CASE("outflow limiter: the ledger holds; without it it does not") {
     for (const bool on : {true, false}) {
         auto scene = mixed_scene(40, 36);
         scene.settings.dt = 0.2;
@@ -62,7 +62,7 @@ TEST_CASE("outflow limiter: the books hold; without it they do not") {
         scene.settings.method.outflow_limiter = on;
         auto world = make_world(scene);
         step(*world, 60);
-        CHECK(books_hold(*world, stats_of(*world)) == on);
+        CHECK(ledger_holds(*world, stats_of(*world)) == on);
     }
 }
 
