@@ -19,7 +19,7 @@ Result<std::unique_ptr<World>> World::create(const Settings& settings, const Ini
     if (!effects) return effects.status();
     std::unique_ptr<World> world(new World(settings, std::move(device), group));
     world->state_.content = content_of(fields);
-    if (auto status = world->state_.adopt(*effects); !status) return status;
+    if (auto status = world->state_.set_effects(*effects); !status) return status;
     if (auto status = upload(world->state_, fields); !status) return status;
     if (auto status = world->stepper_.record(); !status) return status;
     return world;

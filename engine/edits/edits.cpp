@@ -85,7 +85,7 @@ Status Edits::promote() {
         content.sand |= brought.sand;
         content.water |= brought.water;
     }
-    return content == state_.content ? ok_status() : stepper_.hold(content);
+    return content == state_.content ? ok_status() : stepper_.set_content(content);
 }
 
 Status Edits::submit() {

@@ -113,7 +113,7 @@ Status write_region(WorldState& state, Stepper& stepper, EditLayer layer, const 
         return error(Code::bad_argument, "write_region: " + status.message);
     const Content content{state.content.sand || brought.sand, state.content.water || brought.water};
     if (content != state.content) {
-        if (auto status = stepper.hold(content); !status) return status;
+        if (auto status = stepper.set_content(content); !status) return status;
     }
     Bands bands(state, first, end);
     if (auto status = bands.read(); !status) return status;
@@ -165,7 +165,7 @@ Status trim(WorldState& state, Stepper& stepper) {
     auto sand_sides = read_side_ledger(state, "sand_side_ledger"), water_sides = read_side_ledger(state, "water_side_ledger");
     if (!sand_sides) return sand_sides.status();
     if (!water_sides) return water_sides.status();
-    if (auto status = stepper.hold({*sand, *water}); !status) return status;
+    if (auto status = stepper.set_content({*sand, *water}); !status) return status;
     const auto keep = [&](const char* field, const auto& sides, int in, int out) {
         if (state.plan().find(field) != nullptr) return ok_status();
         auto status = count_in_ledger(state, in, sides.first);

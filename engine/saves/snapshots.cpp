@@ -98,7 +98,7 @@ Status Snapshots::load(std::span<const std::byte> from) {
     const Material before = state_.settings().material;
     if (auto status = stepper_.set_material(header->material); !status) return status;
     if ((header->effects & ~state_.plan().effects) != 0) {
-        auto status = stepper_.hold(content_under(header->effects) | state_.content);
+        auto status = stepper_.set_content(content_under(header->effects) | state_.content);
         if (!status) {
             if (auto back = stepper_.set_material(before); !back) return back;
             return status;

@@ -48,7 +48,7 @@ std::vector<compute::BufferDesc> FieldStore::wanted_by(const StepPlan& plan) con
     return wanted;
 }
 
-Status FieldStore::adopt(const StepPlan& plan) {
+Status FieldStore::set_plan(const StepPlan& plan) {
     const auto wanted = wanted_by(plan);
     if (auto status = buffers_.keep_also(wanted); !status) return status;
     // Before turn 0 the first buffer of each pair is the current one.

@@ -25,8 +25,8 @@ class FieldStore {
     /// Changes to the fields of a plan at a boundary between two steps. Those there already keep their values to the bit, new
     /// ones are zero, others are freed; the next step is turn 0 and every program must be recorded anew. Waits for the device
     /// where it frees. Errors: out_of_memory, nothing changed.
-    Status adopt(const StepPlan& plan);
-    /// Counts up with every adopt().
+    Status set_plan(const StepPlan& plan);
+    /// Counts up with every set_plan().
     std::uint64_t recording() const { return recording_; }
 
     /// The buffer of a field under a parity; with the suffix "_next" its partner. Null where there is no such field.

@@ -60,16 +60,16 @@ Status Stepper::record() {
     return set_profiling(true);
 }
 
-Status Stepper::hold(Content content) {
+Status Stepper::set_content(Content content) {
     auto choice = effects_required(state_.settings(), content);
     if (!choice) return choice.status();
     if (choice->mask != state_.effects().mask) {
         const EffectChoice before = state_.effects();
-        auto status = state_.adopt(*choice);
+        auto status = state_.set_effects(*choice);
         if (!status) return status;
         status = record();
         if (!status) {
-            if (auto back = state_.adopt(before); !back) return back;
+            if (auto back = state_.set_effects(before); !back) return back;
             if (auto back = record(); !back) return back;
             return status;
         }
@@ -89,13 +89,13 @@ Status Stepper::set_material(const Material& material) {
         return choice.status();
     }
     const bool same = choice->mask == state_.effects().mask;
-    const auto status = same ? record() : hold(state_.content);
+    const auto status = same ? record() : set_content(state_.content);
     if (status) {
         state_.set_reasons(*choice);
         return status;
     }
     state_.set_material(before);
-    if (!same) { // hold() went back to the effects, but recorded them with the new numbers
+    if (!same) { // set_content() went back to the effects, but recorded them with the new numbers
         if (auto back = record(); !back) return back;
     }
     return status;

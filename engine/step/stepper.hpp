@@ -43,10 +43,11 @@ class Stepper {
 
     /// Chooses the effects for what the world holds from now on; between two steps only. Where that changes the mask, buffers are
     /// allocated and freed and everything is recorded anew, the state kept to the bit. Errors: out_of_memory, nothing changed.
-    Status hold(Content content);
+    Status set_content(Content content);
 
-    /// Other numbers for sand and water from the next step on; between two steps only. Effects follow as in hold(); waits for the
-    /// device, but builds no pipeline where they stay. Errors: out_of_memory, not_ready (inside a recording), nothing changed.
+    /// Other numbers for sand and water from the next step on; between two steps only. Effects follow as in set_content(); waits
+    /// for the device, but builds no pipeline where they stay. Errors: out_of_memory, not_ready (inside a recording), nothing
+    /// changed.
     Status set_material(const Material& material);
 
     /// For tests: with fewer rings of active tiles than the plan's reach calls for, bits must turn out wrong.
@@ -55,7 +56,7 @@ class Stepper {
         return record();
     }
 
-    /// Compiles what any hold() that the level allows would need.
+    /// Compiles what any set_content() that the level allows would need.
     Status prepare();
 
     /// Who must hear of a step; all are set before the first one.

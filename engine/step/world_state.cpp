@@ -42,10 +42,10 @@ Status WorldState::check_device(std::uint32_t effects) const {
     return ok_status();
 }
 
-Status WorldState::adopt(const EffectChoice& effects) {
+Status WorldState::set_effects(const EffectChoice& effects) {
     if (auto status = check_device(effects.mask); !status) return status;
     StepPlan plan = plan_for(effects.mask);
-    if (auto status = fields_.adopt(plan); !status) return status;
+    if (auto status = fields_.set_plan(plan); !status) return status;
     plan_ = std::move(plan);
     effects_ = effects;
     derive();

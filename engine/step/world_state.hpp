@@ -16,10 +16,10 @@ class WorldState {
     WorldState(const WorldState&) = delete;
     WorldState& operator=(const WorldState&) = delete;
 
-    /// Plans for a mask and changes to its fields (FieldStore::adopt), at a boundary between two steps. Errors: out_of_memory,
+    /// Plans for a mask and changes to its fields (FieldStore::set_plan), at a boundary between two steps. Errors: out_of_memory,
     /// not_supported (fused stages, half storage or fields larger than the device can have); the old plan is then in force.
-    Status adopt(const EffectChoice& effects);
-    /// Creates the pipelines that a plan of another mask would need, so that adopting it later records but compiles nothing.
+    Status set_effects(const EffectChoice& effects);
+    /// Creates the pipelines that a plan of another mask would need, so that taking it later records but compiles nothing.
     Status prepare(std::uint32_t effects);
 
     const Settings& settings() const { return settings_; }
