@@ -50,7 +50,7 @@ CompiledProgram::~CompiledProgram() {
 }
 
 Status CompiledProgram::create_events() {
-    events_.resize(timestamps_.size() * Submissions::ring, nullptr);
+    events_.resize(timestamps_.size() * Submissions::most_in_flight, nullptr);
     for (cudaEvent_t& e : events_) {
         if (Status s = c_.check(cudaEventCreate(&e), "cudaEventCreate", label_); !s) return s;
     }
@@ -58,7 +58,7 @@ Status CompiledProgram::create_events() {
 }
 
 Status CompiledProgram::record_replays(const std::vector<std::vector<int>>& waits) {
-    replays_.resize(timestamps_.empty() ? 1 : Submissions::ring, nullptr);
+    replays_.resize(timestamps_.empty() ? 1 : Submissions::most_in_flight, nullptr);
     for (std::size_t slot = 0; slot < replays_.size(); ++slot) {
         GraphOwner owner{nullptr, c_};
         if (Status s = c_.check(cudaGraphCreate(&owner.graph, 0), "cudaGraphCreate", label_); !s) return s;

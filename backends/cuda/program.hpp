@@ -22,7 +22,7 @@ class CompiledProgram {
     CompiledProgram(const CompiledProgram&) = delete;
     CompiledProgram& operator=(const CompiledProgram&) = delete;
 
-    /// Puts the program on the stream, for the submission in a ring slot.
+    /// Puts the program on the stream, for the submission in a submission slot.
     Status launch(std::size_t slot);
     /// Of a finished submission that ran in `slot`.
     Result<std::vector<compute::Timing>> timings(std::size_t slot);
@@ -43,9 +43,10 @@ class CompiledProgram {
     WorldParams params_;
     const void* input_; // device address
     std::vector<Call> calls_;
-    std::vector<cudaGraphExec_t> replays_; // one, or one per ring slot where each has events of its own; none without replay
-    std::vector<cudaEvent_t> events_;      // timestamps_.size() per ring slot
-    std::vector<std::string> timestamps_;  // labels
+    std::vector<cudaGraphExec_t>
+        replays_;                         // one, or one per submission slot where each has events of its own; none without replay
+    std::vector<cudaEvent_t> events_;     // timestamps_.size() per submission slot
+    std::vector<std::string> timestamps_; // labels
 };
 
 } // namespace wadi::cuda

@@ -3,12 +3,12 @@
 namespace wadi::cuda {
 
 Status Submissions::open() {
-    c_.capabilities.queue_depth = ring;
+    c_.capabilities.queue_depth = most_in_flight;
     auto input = allocate(c_, sizeof(StepInput), "step input");
     if (!input) return input.status();
     input_ = std::move(*input);
     void* staging = nullptr;
-    const cudaError_t r = cudaHostAlloc(&staging, ring * sizeof(StepInput), cudaHostAllocDefault);
+    const cudaError_t r = cudaHostAlloc(&staging, most_in_flight * sizeof(StepInput), cudaHostAllocDefault);
     if (Status s = c_.check(r, "cudaHostAlloc", "step inputs"); !s) return s;
     staging_ = static_cast<StepInput*>(staging);
     for (Slot& slot : slots_) {

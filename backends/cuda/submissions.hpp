@@ -1,4 +1,4 @@
-// The ring of submissions in flight: tickets, their completion, and the input of each step.
+// The queue of submissions in flight: tickets, their completion, and the input of each step.
 #pragma once
 #include "backends/cuda/memory.hpp"
 #include <array>
@@ -8,7 +8,7 @@ namespace wadi::cuda {
 class Submissions {
   public:
     /// Submissions in flight at most; also the number of copies of anything that one submission must own.
-    static constexpr std::size_t ring = 32;
+    static constexpr std::size_t most_in_flight = 32;
 
     explicit Submissions(Context& context) : c_(context) {}
     ~Submissions();
@@ -18,7 +18,7 @@ class Submissions {
 
     /// Device address of the input of the step that runs.
     const void* input() const { return input_.data; }
-    /// The ring slot of the next submission, once its previous occupant has finished.
+    /// The slot of the next submission, once its previous occupant has finished.
     Result<std::size_t> acquire();
     /// Brings the input to the device, after everything submitted before. The slot's work follows on the stream, then finish().
     Status begin(std::size_t slot, const StepInput& input);
@@ -29,7 +29,7 @@ class Submissions {
     Status wait(compute::Ticket ticket);
     /// The program that a ticket ran; null once its slot is in use again.
     compute::Program program_of(compute::Ticket ticket) const;
-    static std::size_t slot_of(std::uint64_t ticket) { return static_cast<std::size_t>(ticket % ring); }
+    static std::size_t slot_of(std::uint64_t ticket) { return static_cast<std::size_t>(ticket % most_in_flight); }
 
   private:
     struct Slot {
@@ -41,7 +41,7 @@ class Submissions {
     Context& c_;
     Memory input_;
     StepInput* staging_ = nullptr; // page-locked, one per slot
-    std::array<Slot, ring> slots_;
+    std::array<Slot, most_in_flight> slots_;
     std::uint64_t last_ = 0;     // newest ticket given out
     std::uint64_t finished_ = 0; // newest ticket known to have finished
 };

@@ -43,7 +43,7 @@ Status CompiledProgram::create_queries(const compute::ProgramBuilder& builder) {
     if (timestamps_.empty() || !c_.capabilities.timestamps) return ok_status();
     auto info = vk_struct<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
     info.queryType = VK_QUERY_TYPE_TIMESTAMP;
-    info.queryCount = static_cast<std::uint32_t>(timestamps_.size()) * Submissions::ring;
+    info.queryCount = static_cast<std::uint32_t>(timestamps_.size()) * Submissions::most_in_flight;
     return c_.check(c_.vk.vkCreateQueryPool(c_.device, &info, nullptr, &queries_), "vkCreateQueryPool", label_);
 }
 
@@ -54,7 +54,7 @@ Status CompiledProgram::record_replays(std::vector<VkCommandBuffer>& replays, Vk
         if (Status s = c_.check(c_.vk.vkCreateCommandPool(c_.device, &pool, nullptr, &pool_), "vkCreateCommandPool", label_); !s)
             return s;
     }
-    std::vector<VkCommandBuffer> made(queries_ != VK_NULL_HANDLE ? Submissions::ring : 1);
+    std::vector<VkCommandBuffer> made(queries_ != VK_NULL_HANDLE ? Submissions::most_in_flight : 1);
     auto info = vk_struct<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
     info.commandPool = pool_;
     info.level = level;

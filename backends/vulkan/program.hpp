@@ -51,7 +51,7 @@ class CompiledProgram {
     CompiledProgram(const CompiledProgram&) = delete;
     CompiledProgram& operator=(const CompiledProgram&) = delete;
 
-    /// The commands to submit in a ring slot: the recorded ones, or `own` recorded anew.
+    /// The commands to submit in a submission slot: the recorded ones, or `own` recorded anew.
     Result<VkCommandBuffer> commands_for(std::uint32_t slot, VkCommandBuffer own);
     /// The same as a secondary command buffer, for the host's to execute; recorded when first asked for.
     Result<VkCommandBuffer> secondary_for(std::uint32_t slot);
@@ -72,9 +72,9 @@ class CompiledProgram {
     VkDescriptorPool descriptors_ = VK_NULL_HANDLE;
     std::vector<Command> commands_;
     VkCommandPool pool_ = VK_NULL_HANDLE;
-    std::vector<VkCommandBuffer> replays_;       // one, or one per ring slot where each has queries of its own
+    std::vector<VkCommandBuffer> replays_;       // one, or one per submission slot where each has queries of its own
     std::vector<VkCommandBuffer> secondaries_;   // likewise
-    VkQueryPool queries_ = VK_NULL_HANDLE;       // timestamps_.size() per ring slot
+    VkQueryPool queries_ = VK_NULL_HANDLE;       // timestamps_.size() per submission slot
     std::vector<std::string> timestamps_;        // labels
     VkPipeline bound_pipeline_ = VK_NULL_HANDLE; // while recording
     VkDescriptorSet bound_set_ = VK_NULL_HANDLE;

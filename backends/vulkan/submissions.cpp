@@ -10,7 +10,7 @@ VkSemaphore semaphore_of(const compute::SyncPoint& point) { return reinterpret_c
 } // namespace
 
 Status Submissions::open() {
-    c_.capabilities.queue_depth = ring;
+    c_.capabilities.queue_depth = most_in_flight;
     auto input = allocate(c_, sizeof(StepInput), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, Place::device, "step input");
     if (!input) return input.status();
     input_ = std::move(*input);
@@ -18,14 +18,14 @@ Status Submissions::open() {
     pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
     pool.queueFamilyIndex = c_.queue_family;
     if (Status s = c_.check(c_.vk.vkCreateCommandPool(c_.device, &pool, nullptr, &pool_), "vkCreateCommandPool"); !s) return s;
-    std::array<VkCommandBuffer, 2 * ring> commands{};
+    std::array<VkCommandBuffer, 2 * most_in_flight> commands{};
     auto info = vk_struct<VkCommandBufferAllocateInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO);
     info.commandPool = pool_;
     info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-    info.commandBufferCount = 2 * ring;
+    info.commandBufferCount = 2 * most_in_flight;
     const VkResult r = c_.vk.vkAllocateCommandBuffers(c_.device, &info, commands.data());
     if (Status s = c_.check(r, "vkAllocateCommandBuffers"); !s) return s;
-    for (std::uint32_t n = 0; n < ring; ++n) {
+    for (std::uint32_t n = 0; n < most_in_flight; ++n) {
         slots_[n].input = commands[2 * n];
         slots_[n].own = commands[2 * n + 1];
     }
@@ -56,7 +56,7 @@ Result<std::uint32_t> Submissions::acquire() {
     const std::uint32_t slot = slot_of(last_ + 1);
     if (Status s = wait({slots_[slot].ticket}); !s) {
         if (s.code != Code::not_ready) return s;
-        return error(Code::not_ready, "the host has not yet reached what it promised for " + std::to_string(ring) +
+        return error(Code::not_ready, "the host has not yet reached what it promised for " + std::to_string(most_in_flight) +
                                           " recorded submissions; submit those command buffers first");
     }
     return slot;

@@ -1,5 +1,5 @@
-// The ring of submissions in flight: tickets, their completion, the commands that bring each step's input, the host's semaphores,
-// and recording into the host's command buffer.
+// The queue of submissions in flight: tickets, their completion, the commands that bring each step's input, the host's
+// semaphores, and recording into the host's command buffer.
 #pragma once
 #include "backends/vulkan/memory.hpp"
 #include <array>
@@ -10,7 +10,7 @@ namespace wadi::vulkan {
 class Submissions {
   public:
     /// Submissions in flight at most; also the number of copies of anything that one submission must own.
-    static constexpr std::uint32_t ring = 32;
+    static constexpr std::uint32_t most_in_flight = 32;
 
     explicit Submissions(Context& context) : c_(context) {}
     ~Submissions();
@@ -20,7 +20,7 @@ class Submissions {
 
     /// The uniform buffer that holds the input of the step that runs.
     VkBuffer input_buffer() const { return input_.buffer; }
-    /// The ring slot of the next submission, once its previous occupant has finished.
+    /// The slot of the next submission, once its previous occupant has finished.
     Result<std::uint32_t> acquire();
     /// The slot's own command buffer, for programs that are recorded anew.
     VkCommandBuffer own_commands(std::uint32_t slot) const { return slots_[slot].own; }
@@ -43,7 +43,7 @@ class Submissions {
     Status wait(compute::Ticket ticket);
     /// The program that a ticket ran; null once its slot is in use again.
     compute::Program program_of(compute::Ticket ticket) const;
-    static std::uint32_t slot_of(std::uint64_t ticket) { return static_cast<std::uint32_t>(ticket % ring); }
+    static std::uint32_t slot_of(std::uint64_t ticket) { return static_cast<std::uint32_t>(ticket % most_in_flight); }
 
   private:
     struct Slot {
@@ -64,7 +64,7 @@ class Submissions {
     VkCommandPool pool_ = VK_NULL_HANDLE;
     VkSemaphore timeline_ = VK_NULL_HANDLE; // its value is the newest finished ticket
     Memory input_;
-    std::array<Slot, ring> slots_;
+    std::array<Slot, most_in_flight> slots_;
     std::vector<VkSemaphore> wait_semaphores_; // of the next submission
     std::vector<std::uint64_t> wait_values_;
     VkCommandBuffer host_commands_ = VK_NULL_HANDLE; // while recording

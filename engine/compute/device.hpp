@@ -156,7 +156,7 @@ class Device {
     /// Frees a program. Null is ignored. Waits for work in flight.
     virtual void destroy_program(Program program) = 0;
 
-    /// Replays a program with this step's input. Returns at once unless the ring of submissions in flight is full. Tickets count
+    /// Replays a program with this step's input. Returns at once unless the queue of submissions is full. Tickets count
     /// up from 1. Errors: bad_argument (no such program).
     virtual Result<Ticket> submit(Program program, const StepInput& input) = 0;
     /// False for a ticket that was never given out.
@@ -164,7 +164,7 @@ class Device {
     /// Errors: bad_argument (a ticket that was never given out).
     virtual Status wait(Ticket ticket) = 0;
     /// Time between consecutive timestamps of a submission that contained any; empty if there were none or the ticket is older
-    /// than the ring. Errors: bad_argument (a ticket that was never given out, or has not finished).
+    /// than the queue. Errors: bad_argument (a ticket that was never given out, or has not finished).
     virtual Result<std::vector<Timing>> timings(Ticket ticket) = 0;
 
     /// What a host passes to its own API. Errors: bad_argument (no such buffer).

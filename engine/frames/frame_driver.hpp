@@ -54,7 +54,7 @@ class FrameDriver {
     StepClock clock_;
     bool ahead_ = false; // the next step of the clock is done already
     std::uint64_t dropped_total_ = 0;
-    // Tickets of whole steps that may be unfinished: a ring from oldest_ to newest_, both counting up.
+    // Tickets of whole steps that may be unfinished: places used in turn from oldest_ to newest_, both counting up.
     std::array<compute::Ticket, most_steps_in_flight> tickets_{};
     std::uint64_t oldest_ = 0, newest_ = 0;
 };

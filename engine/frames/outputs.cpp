@@ -191,7 +191,7 @@ Status Outputs::publish(bool between_steps, double interpolation) {
         input.step = static_cast<int>(state_.steps);
         auto ticket = program->submit(input);
         if (!ticket) return ticket.status();
-        rings_[set] = {state_.steps, *ticket};
+        sets_[set] = {state_.steps, *ticket};
         next_ = (set + 1) % sets;
         ++published_;
         copied_ = false;
@@ -207,7 +207,7 @@ Status Outputs::publish(bool between_steps, double interpolation) {
 // Two publishes may be several steps apart: the factor between them is that of the moment the host shows.
 Status Outputs::interpolate(double interpolation) {
     if (interpolated() == 0 || published_ == 0 || !state_.device().finished(interpolations_[0])) return ok_status();
-    const std::uint64_t from = rings_[previous()].step, to = rings_[current()].step;
+    const std::uint64_t from = sets_[previous()].step, to = sets_[current()].step;
     StepInput input{};
     input.interpolation = 1.0F;
     if (to > from) {
@@ -244,8 +244,8 @@ Result<OutputView> Outputs::view(Output output, OutputSet set) const {
     view.row_pitch = static_cast<std::uint64_t>(state_.layout().pitch()) * 4 * static_cast<std::uint64_t>(view.components);
     view.nx = state_.layout().nx;
     view.ny = state_.layout().ny;
-    view.step = rings_[at].step;
-    view.finished = state_.device().finished(between ? interpolations_[1] : rings_[at].ticket);
+    view.step = sets_[at].step;
+    view.finished = state_.device().finished(between ? interpolations_[1] : sets_[at].ticket);
     return view;
 }
 

@@ -1,4 +1,4 @@
-// Outputs: what a host draws and collides with, published from the state into a ring of three sets with fixed buffers.
+// Outputs: what a host draws and collides with, published from the state into three sets in turn with fixed buffers.
 #pragma once
 #include "engine/frames/host_copies.hpp"
 #include "engine/frames/output_tiles.hpp"
@@ -58,7 +58,7 @@ class Outputs {
 
     bool published() const { return published_ > 0; }
     /// Of the current set.
-    std::uint64_t published_step() const { return rings_[current()].step; }
+    std::uint64_t published_step() const { return sets_[current()].step; }
 
     /// Errors: bad_argument (not asked for), not_ready (not published yet).
     Result<OutputView> view(Output output, OutputSet set) const;
@@ -78,7 +78,7 @@ class Outputs {
         bool interpolate = false;
         bool operator==(const Asked&) const = default;
     };
-    struct Ring {
+    struct Set {
         std::uint64_t step = 0;
         compute::Ticket ticket;
     };
@@ -102,7 +102,7 @@ class Outputs {
     NamedBuffers buffers_;
     HostCopies copies_;
     std::array<std::optional<StateProgram>, sets> publish_, interpolate_;
-    std::array<Ring, sets> rings_{};
+    std::array<Set, sets> sets_{};
     std::size_t next_ = 0;                            // the set to be written next
     std::uint64_t published_ = 0;                     // since the mask changed
     bool copied_ = false;                             // the current set, to host memory

@@ -56,10 +56,10 @@ Result<std::uint64_t> Queries::ask(std::span<const float> xy) {
     if (bad != xy.end())
         return error(Code::bad_argument, "query: xy of point " + std::to_string((bad - xy.begin()) / 2) + " is not finite");
     if (!state_.lost()) return state_.lost();
-    const std::size_t place = (last_ticket_ + 1) % ring;
+    const std::size_t place = (last_ticket_ + 1) % most_batches;
     Batch& batch = batches_[place];
     if (batch.ticket != 0 && (!batch.submitted || !state_.device().finished(batch.sampled)))
-        return error(Code::not_ready, "query: " + std::to_string(ring) + " batches are under way");
+        return error(Code::not_ready, "query: " + std::to_string(most_batches) + " batches are under way");
     batch.ticket = 0;
     if (auto status = reserve(batch, place, static_cast<std::uint32_t>(count)); !status) return status;
     std::memcpy(state_.device().mapped(batch.buffers[upload]).data(), xy.data(), xy.size_bytes());
@@ -92,10 +92,11 @@ Status Queries::at_boundary() {
 }
 
 Result<Queries::Answer> Queries::answer(std::uint64_t ticket) {
-    const Batch& batch = batches_[ticket % ring];
+    const Batch& batch = batches_[ticket % most_batches];
     if (ticket == 0 || batch.ticket != ticket) {
         return error(Code::bad_argument, "get_query: ticket " + std::to_string(ticket) +
-                                             " is unknown or its answer gave way to " + std::to_string(ring) + " later batches");
+                                             " is unknown or its answer gave way to " + std::to_string(most_batches) +
+                                             " later batches");
     }
     if (!state_.lost()) return state_.lost();
     if (!batch.submitted || !state_.device().finished(batch.sampled))

@@ -8,7 +8,7 @@ namespace wadi {
 
 class Queries {
   public:
-    static constexpr std::uint64_t ring = 8; // batches whose answers are kept or under way
+    static constexpr std::uint64_t most_batches = 8; // batches whose answers are kept or under way
     static constexpr std::uint32_t most_points = 65536;
 
     /// SAMPLE_FLOATS per point, in the order of sample_points.stage.
@@ -21,11 +21,12 @@ class Queries {
     Queries(WorldState& state, Stepper& stepper) : state_(state), stepper_(stepper) {}
 
     /// Asks for the state after the steps submitted so far; in the middle of a step, after that step. x, y of each point in
-    /// metres. Returns a ticket; the answer of the ring's oldest batch is given up. Allocates where a batch is larger than the
-    /// earlier ones in its place of the ring, and then waits for the device.
+    /// metres. Returns a ticket; the answer of the oldest batch is given up. Allocates where a batch is larger than the
+    /// earlier ones in its place, and then waits for the device.
     /// Errors: bad_argument (no points, too many, a coordinate that is not finite), not_ready (all batches are under way).
     Result<std::uint64_t> ask(std::span<const float> xy);
-    /// Valid until `ring` - 1 further batches were asked for. Errors: not_ready, bad_argument (unknown ticket, or given up).
+    /// Valid until `most_batches` - 1 further batches were asked for. Errors: not_ready, bad_argument (unknown ticket, or given
+    /// up).
     Result<Answer> answer(std::uint64_t ticket);
     /// To be called when the state is that between two steps again.
     Status at_boundary();
@@ -46,7 +47,7 @@ class Queries {
 
     WorldState& state_;
     Stepper& stepper_;
-    std::array<Batch, ring> batches_;
+    std::array<Batch, most_batches> batches_;
     std::uint64_t last_ticket_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// A ring of earlier states on the device, to go back to.
+// Earlier states on the device, to go back to.
 #pragma once
 #include "engine/step/state_program.hpp"
 #include "engine/step/stepper.hpp"

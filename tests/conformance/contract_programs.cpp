@@ -55,7 +55,7 @@ void order(Session&, Device& device, Expect& expect) {
     for (const Buffer buffer : {a, b, c}) device.destroy_buffer(buffer);
 }
 
-// More submissions than any ring, each with its own input, none waited for.
+// More submissions than any queue holds, each with its own input, none waited for.
 void replay(Session& session, Device& device, Expect& expect) {
     Rain rain(device);
     auto dispatch = rain_dispatch(device, rain.terrain, rain.water, rain.ledger);
@@ -164,7 +164,7 @@ void timings(Session&, Device& device, Expect& expect) {
     expect.ok(with.status(), "compile with timestamps");
     expect.ok(without.status(), "compile without timestamps");
     if (!with || !without) return;
-    for (int n = 0; n < 20; ++n) { // every slot of a ring, and again
+    for (int n = 0; n < 20; ++n) { // every slot of a queue, and again
         auto ticket = device.submit(*with, StepInput{});
         if (!ticket) return expect.ok(ticket.status(), "submit");
         expect.ok(device.wait(*ticket), "wait");

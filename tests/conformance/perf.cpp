@@ -17,9 +17,9 @@ namespace {
 using compute::Device;
 using compute::ProgramBuilder;
 
-constexpr std::uint32_t ALL = 2047;                   // without bed load, which the paper lacks
-constexpr double wake_up_ms = 700, warm_up_ms = 150;  // busy ahead of the first row, and of each
-constexpr int burst = 4;                              // submissions in flight while the host is timed: below every backend's ring
+constexpr std::uint32_t ALL = 2047;                  // without bed load, which the paper lacks
+constexpr double wake_up_ms = 700, warm_up_ms = 150; // busy ahead of the first row, and of each
+constexpr int burst = 4;                             // submissions in flight while the host is timed: below every backend's queue
 constexpr std::uint64_t least_copy_bytes = 64u << 20; // past the caches of most devices
 
 struct Row {
@@ -76,7 +76,7 @@ Result<std::vector<double>> time_programs(Device& device, const std::vector<comp
     return milliseconds;
 }
 
-// What submit() costs the calling thread, in bursts that never wait for the ring of submissions [us].
+// What submit() costs the calling thread, in bursts that never wait for the queue of submissions [us].
 Result<std::vector<double>> time_host(Device& device, const std::vector<compute::Program>& programs, const StepInput& input,
                                       int repeats) {
     std::vector<double> microseconds;

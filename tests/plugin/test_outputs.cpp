@@ -1,4 +1,4 @@
-// Published outputs: what they hold, the ring of sets, copies in host memory, interpolation, and that nothing asked for costs
+// Published outputs: what they hold, sets in turn, copies in host memory, interpolation, and that nothing asked for costs
 // nothing and changes nothing.
 #include "tests/plugin/plugin_world.hpp"
 #include <algorithm>
@@ -153,7 +153,7 @@ TEST_CASE("a world of water alone publishes sand as zero") {
     CHECK(wadi_destroy_world(id) == WADI_OK);
 }
 
-TEST_CASE("the ring: handles stay, current becomes previous, one publish per update") {
+TEST_CASE("sets in turn: handles stay, current becomes previous, one publish per update") {
     const World world("cpu");
     REQUIRE(wadi_world_set_outputs(world.id, WADI_OUTPUT_BIT(WADI_OUTPUT_FREE_SURFACE)) == WADI_OK);
     auto v = wadi_default_output_view();

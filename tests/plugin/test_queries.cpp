@@ -149,7 +149,7 @@ TEST_CASE("answers are the same bits on every backend, whatever the batch, and s
     }
 }
 
-TEST_CASE("eight batches are kept; a ninth gives up the first; a full ring says so") {
+TEST_CASE("eight batches are kept; a ninth gives up the first; a full list of batches says so") {
     for (const auto& backend : abi_backends()) {
         CAPTURE(backend);
         auto world = mixed_world(backend, 128);

@@ -1,4 +1,4 @@
-// The ring of earlier states: going back and on again gives the same bits, memory is counted and given back.
+// Earlier states: going back and on again gives the same bits, memory is counted and given back.
 #include "tests/plugin/abi_worlds.hpp"
 #include <algorithm>
 #include <cmath>
