@@ -10,7 +10,7 @@ if [[ ! -f samples/levels/$level/level.json ]]; then
     exit 2
 fi
 
-phase() { # TITLE COMMAND...: runs a phase and says how long it took
+task() { # TITLE COMMAND...: runs a task and says how long it took
     local title=$1 start=$SECONDS
     shift
     echo "== $title"
@@ -22,13 +22,13 @@ phase() { # TITLE COMMAND...: runs a phase and says how long it took
 build=build/demo
 options=(-DWADI_TESTS=OFF)
 [[ -e /dev/nvidiactl ]] || options+=(-DWADI_CUDA=OFF)
-phase "1/4 packages" samples/install_packages.sh
-phase "2/4 configure" cmake --preset release -B "$build" "${options[@]}"
-phase "3/4 build" cmake --build "$build" --target wadi-recorder
+task "1/4 packages" samples/install_packages.sh
+task "2/4 configure" cmake --preset release -B "$build" "${options[@]}"
+task "3/4 build" cmake --build "$build" --target wadi-recorder
 # The canyon lasts 70 s: a picture every 6.5 s makes twelve, all of them on the contact sheet.
 every=()
 [[ $level == canyon ]] && every=(--every 6.5)
-phase "4/4 record $level" "$build/bin/wadi-recorder" "$level" "${every[@]}" --out "out/$level"
+task "4/4 record $level" "$build/bin/wadi-recorder" "$level" "${every[@]}" --out "out/$level"
 
 # Three moments in three dimensions, where the viewer can be built and a Vulkan device (a software one will do) draws them.
 viewer=$build/bin/wadi-viewer

@@ -78,14 +78,14 @@ Status FrameDriver::take_steps(std::uint64_t nanoseconds, Frame& frame) {
     frame.dropped_total = dropped_total_;
     frame.total_steps = state_.steps;
     frame.time = static_cast<double>(state_.steps) * state_.settings().dt;
-    frame.interpolation = clock_.phase();
+    frame.interpolation = clock_.share_of_step();
     return ok_status();
 }
 
 Status FrameDriver::begin_parts() {
     if (!settings_.spread || ahead_) return ok_status();
     // The last part falls due with the step itself.
-    const int due = std::min(stepper_.parts() - 1, static_cast<int>(clock_.phase() * stepper_.parts()));
+    const int due = std::min(stepper_.parts() - 1, static_cast<int>(clock_.share_of_step() * stepper_.parts()));
     while (stepper_.parts_done() < due && device_keeps_up()) {
         if (auto status = stepper_.step_part(); !status) return status;
     }

@@ -41,7 +41,7 @@ std::uint64_t StepClock::drop() {
     return dropped;
 }
 
-double StepClock::phase() const {
+double StepClock::share_of_step() const {
     const double period = static_cast<double>(period_) + std::ldexp(static_cast<double>(period_fraction_), -64);
     const double since = static_cast<double>(since_) - std::ldexp(static_cast<double>(fraction_), -64);
     return std::clamp(since / period, 0.0, std::nextafter(1.0, 0.0));

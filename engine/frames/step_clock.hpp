@@ -20,7 +20,7 @@ class StepClock {
     /// Forgets time so that no step is due, one nanosecond before the next at the latest. Returns what was forgotten [ns].
     std::uint64_t drop();
     /// Time since the last step's boundary in units of dt, in [0, 1) while no step is due.
-    double phase() const;
+    double share_of_step() const;
 
   private:
     // From the whole nanoseconds of the last boundary to the first nanosecond at or after the next one.

@@ -16,7 +16,7 @@ inline constexpr double HEIGHT_MOST = 1e6;      // [m]
 inline constexpr double POSITION_MOST = 1e9;    // [m]
 
 /// The grid that fields are drawn on. A point of the grid at y is the level's own point at y / stretch_y.
-struct LevelFrame {
+struct LevelGrid {
     int nx = 0;
     int ny = 0;
     double dx = 0; // [m]
@@ -69,12 +69,12 @@ std::vector<VelocityRegion> read_velocities(const Json& value, const std::string
 
 /// Draws the layers. `terrain` and `sand` are the fields below, empty = zero. Maps come from `files`. A layer that
 /// changes no cell is worth a warning. The result is empty when there are no layers.
-Result<std::vector<float>> draw_layers(const std::vector<Layer>& layers, LayerTarget target, const LevelFrame& frame,
+Result<std::vector<float>> draw_layers(const std::vector<Layer>& layers, LayerTarget target, const LevelGrid& grid,
                                        const FileReader& files, const std::vector<float>& terrain, const std::vector<float>& sand,
                                        std::vector<std::string>& warnings);
 
 /// Draws the velocities of water or of sand into x and y; both stay empty when no region sets any.
-void draw_velocities(const std::vector<VelocityRegion>& regions, bool of_sand, const LevelFrame& frame, std::vector<float>& x,
+void draw_velocities(const std::vector<VelocityRegion>& regions, bool of_sand, const LevelGrid& grid, std::vector<float>& x,
                      std::vector<float>& y);
 
 } // namespace wadi

@@ -1,6 +1,6 @@
 #include "engine/level/level.hpp"
 #include "engine/image/map.hpp"
-#include "engine/level/frame.hpp"
+#include "engine/level/overrides.hpp"
 #include "engine/level/settings_reader.hpp"
 #include "engine/level/variants.hpp"
 #include "engine/settings/accuracy_presets.hpp"
@@ -53,18 +53,18 @@ Status read_root(const Json& json, const FileReader& files, Level& level, Layers
     return status;
 }
 
-Status draw(const Layers& layers, const LevelFrame& frame, const FileReader& files, Level& level) {
+Status draw(const Layers& layers, const LevelGrid& grid, const FileReader& files, Level& level) {
     InitialFields& fields = level.fields;
     const auto into = [&](std::vector<float>& field, const std::vector<Layer>& list, LayerTarget target) {
-        auto drawn = draw_layers(list, target, frame, files, fields.terrain, fields.sand, level.warnings);
+        auto drawn = draw_layers(list, target, grid, files, fields.terrain, fields.sand, level.warnings);
         if (drawn) field = std::move(*drawn);
         return drawn.status();
     };
     if (Status status = into(fields.terrain, layers.terrain, LayerTarget::terrain); !status) return status;
     if (Status status = into(fields.sand, layers.sand, LayerTarget::sand); !status) return status;
     if (Status status = into(fields.water, layers.water, LayerTarget::water); !status) return status;
-    draw_velocities(layers.velocities, false, frame, fields.velocity_x, fields.velocity_y);
-    draw_velocities(layers.velocities, true, frame, fields.sand_velocity_x, fields.sand_velocity_y);
+    draw_velocities(layers.velocities, false, grid, fields.velocity_x, fields.velocity_y);
+    draw_velocities(layers.velocities, true, grid, fields.sand_velocity_x, fields.sand_velocity_y);
     return ok_status();
 }
 
@@ -79,10 +79,10 @@ Result<Level> parse(const std::string& text, const FileReader& files, LevelOverr
     if (Status status = read_root(*json, files, level, layers, overrides); !status) return status;
     if (overrides.variant) level.name += ", " + *overrides.variant;
     if (Status status = validate(level.settings); !status) return error(Code::bad_file, status.message);
-    auto frame = apply_overrides(overrides, level.settings);
-    if (!frame) return frame.status();
+    auto grid = apply_overrides(overrides, level.settings);
+    if (!grid) return grid.status();
     if (Status status = validate(level.settings); !status) return error(Code::bad_argument, status.message);
-    if (Status status = draw(layers, *frame, files, level); !status) return status;
+    if (Status status = draw(layers, *grid, files, level); !status) return status;
     if (Status status = validate(level.fields, level.settings); !status) return error(Code::bad_file, status.message);
     for (std::string& warning : level_warnings(level.settings, level.fields)) level.warnings.push_back(std::move(warning));
     return level;

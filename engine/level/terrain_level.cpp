@@ -1,7 +1,7 @@
 #include "engine/image/map.hpp"
-#include "engine/level/frame.hpp"
 #include "engine/level/layers.hpp"
 #include "engine/level/level.hpp"
+#include "engine/level/overrides.hpp"
 #include "engine/settings/messages.hpp"
 #include "engine/settings/quanta.hpp"
 #include "engine/settings/setting_table.hpp"
@@ -80,9 +80,9 @@ Result<Level> build(const std::string& map_path, const LevelOverrides& overrides
     settings.method.dry_threshold = std::max(settings.method.dry_threshold, quantum);
     for (Side& side : settings.sides) side.kind = SideKind::outflow;
 
-    auto frame = apply_overrides(overrides, settings);
-    if (!frame) return frame.status();
-    level.fields.terrain = resample(*map, frame->nx, frame->ny);
+    auto grid = apply_overrides(overrides, settings);
+    if (!grid) return grid.status();
+    level.fields.terrain = resample(*map, grid->nx, grid->ny);
     for (float& height : level.fields.terrain)
         height = static_cast<float>(nearest_quantum(static_cast<double>(height), quantum, Halves::away));
     settings.sources.push_back(spring(level.fields.terrain, settings.grid));

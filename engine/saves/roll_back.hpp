@@ -7,12 +7,12 @@ namespace wadi {
 
 class RollBack {
   public:
-    static constexpr std::uint32_t most_frames = 256;
+    static constexpr std::uint32_t most_kept = 256;
 
     RollBack(WorldState& state, Stepper& stepper) : state_(state), stepper_(stepper) {}
 
     /// Keeps the newest `frames` of: the state between two steps now, and every step that is a multiple of `interval`. 0 frames
-    /// frees everything. Earlier frames are forgotten. Errors: bad_argument, out_of_memory (roll-back is then off).
+    /// frees everything. What was kept is forgotten. Errors: bad_argument, out_of_memory (roll-back is then off).
     Status set(std::uint32_t frames, std::uint32_t interval);
     /// Steps that can be gone back to, oldest first.
     std::vector<std::uint64_t> steps() const;
@@ -22,12 +22,12 @@ class RollBack {
     Result<std::uint64_t> go_back(std::uint64_t step);
     /// Keeps the state if its step is due.
     Status after_step();
-    /// The state has another past now: forgets all frames and keeps the state as it is.
+    /// The state has another past now: forgets all that was kept and keeps the state as it is.
     Status restart();
 
   private:
-    struct Frame {
-        explicit Frame(WorldDevice& device) : copies(device) {}
+    struct Earlier {
+        explicit Earlier(WorldDevice& device) : copies(device) {}
         bool kept = false;
         std::uint32_t effects = 0;
         Material material;
@@ -37,15 +37,15 @@ class RollBack {
     };
 
     Status fit();
-    Status fit(Frame& frame, std::size_t number);
+    Status fit(Earlier& earlier, std::size_t number);
     Status keep();
     void clear();
 
     WorldState& state_;
     Stepper& stepper_;
-    std::vector<Frame> frames_;
+    std::vector<Earlier> earlier_;
     std::uint32_t interval_ = 1;
-    std::uint64_t recording_ = 0; // that the frames' buffers fit
+    std::uint64_t recording_ = 0; // that the copies' buffers fit
 };
 
 } // namespace wadi

@@ -134,37 +134,37 @@ Status Snapshots::submit_copies() {
     auto ticket = copies_->submit();
     if (!ticket) return ticket.status();
     copied_ = *ticket;
-    phase_ = Phase::device;
+    waits_for_ = Waits::device;
     return ok_status();
 }
 
 Result<std::uint64_t> Snapshots::begin_save() {
     if (!state_.lost()) return state_.lost();
-    const bool at_work = phase_ == Phase::step || (phase_ == Phase::device && !state_.device().finished(copied_)) ||
-                         (phase_ == Phase::worker && worker_.busy());
+    const bool at_work = waits_for_ == Waits::step || (waits_for_ == Waits::device && !state_.device().finished(copied_)) ||
+                         (waits_for_ == Waits::worker && worker_.busy());
     if (at_work) return error(Code::not_ready, "begin_save: an earlier save is still in flight");
-    phase_ = Phase::none;
+    waits_for_ = Waits::none;
     if (auto status = make_buffers(); !status) return status;
     ++ticket_;
-    phase_ = Phase::step;
+    waits_for_ = Waits::step;
     if (stepper_.parts_done() > 0) return ticket_;
     if (auto status = at_boundary(); !status) return status;
     return ticket_;
 }
 
 Status Snapshots::at_boundary() {
-    if (phase_ != Phase::step) return ok_status();
+    if (waits_for_ != Waits::step) return ok_status();
     auto status = make_buffers();
     if (status) status = submit_copies();
-    if (!status) phase_ = Phase::none;
+    if (!status) waits_for_ = Waits::none;
     return status;
 }
 
 Result<std::uint64_t> Snapshots::saved_bytes(std::uint64_t ticket) const {
-    if (phase_ == Phase::none || ticket != ticket_)
+    if (waits_for_ == Waits::none || ticket != ticket_)
         return error(Code::bad_argument, "end_save: ticket " + std::to_string(ticket) +
                                              " is not of the last begin_save, or its snapshot was fetched");
-    return phase_ == Phase::step ? bytes() : saved_.bytes();
+    return waits_for_ == Waits::step ? bytes() : saved_.bytes();
 }
 
 Status Snapshots::end_save(std::uint64_t ticket, std::span<std::byte> to) {
@@ -175,15 +175,15 @@ Status Snapshots::end_save(std::uint64_t ticket, std::span<std::byte> to) {
                                              std::to_string(*bytes) + " bytes");
     }
     if (!state_.lost()) return state_.lost();
-    if (phase_ == Phase::device && state_.device().finished(copied_)) {
+    if (waits_for_ == Waits::device && state_.device().finished(copied_)) {
         if (auto status = state_.device().wait(copied_); !status) return status;
         to_ = to.first(*bytes);
-        phase_ = Phase::worker;
+        waits_for_ = Waits::worker;
         worker_.start([this] { assemble(); });
-    } else if (phase_ == Phase::worker) {
+    } else if (waits_for_ == Waits::worker) {
         if (to.data() != to_.data()) return error(Code::bad_argument, "end_save: data differs from that of the earlier calls");
         if (!worker_.busy()) {
-            phase_ = Phase::none;
+            waits_for_ = Waits::none;
             return ok_status();
         }
     }

@@ -18,7 +18,7 @@ class Snapshots {
     /// Writes bytes() bytes: everything that the next step depends on, to the bit (snapshot_format.hpp). Waits for the device.
     Status save(std::span<std::byte> to);
     /// Goes back (or on) to a snapshot of a world of the same level. The world is promoted to the snapshot's effects; what those
-    /// lacked is zero, as it was there. Edits and commands that wait and frames kept for roll-back are forgotten. Waits. Errors:
+    /// lacked is zero, as it was there. Edits and commands that wait and states kept for roll-back are forgotten. Waits. Errors:
     /// bad_file (not a whole, unchanged snapshot of a known version), bad_argument (of another level, or with effects that this
     /// world's level forces off), out_of_memory; the world is then unchanged.
     Status load(std::span<const std::byte> from);
@@ -35,7 +35,7 @@ class Snapshots {
     Status at_boundary();
 
   private:
-    enum class Phase { none, step, device, worker }; // what the save in flight waits for
+    enum class Waits { none, step, device, worker }; // what the save in flight waits for
 
     SnapshotHeader header() const;
     Status check(const SnapshotHeader& header) const;
@@ -48,7 +48,7 @@ class Snapshots {
     Stepper& stepper_;
     RollBack& roll_back_;
 
-    Phase phase_ = Phase::none;
+    Waits waits_for_ = Waits::none;
     std::uint64_t ticket_ = 0;
     SnapshotHeader saved_;
     compute::Ticket copied_;

@@ -12,7 +12,7 @@ namespace wadi {
 /// Ping-pong fields whose second buffer is the current one.
 using Parity = std::set<std::string>;
 
-/// A field that the next step depends on, or a ledger: what snapshots and roll-back frames hold.
+/// A field that the next step depends on, or a ledger: what snapshots and roll-back keep.
 struct KeptField {
     std::string name;
     std::uint64_t bytes = 0;

@@ -20,8 +20,8 @@ TEST_CASE("steps are floor(total / dt) for any dt and any frames") {
             for (; clock.due(); ++steps) clock.take();
             const auto wanted = static_cast<std::uint64_t>(static_cast<long double>(total) / period);
             REQUIRE(steps == wanted);
-            const auto phase = static_cast<double>(static_cast<long double>(total) / period - static_cast<long double>(wanted));
-            REQUIRE(std::abs(clock.phase() - phase) < 1e-6);
+            const auto share = static_cast<double>(static_cast<long double>(total) / period - static_cast<long double>(wanted));
+            REQUIRE(std::abs(clock.share_of_step() - share) < 1e-6);
         }
     }
 }
@@ -31,12 +31,12 @@ TEST_CASE("dropped time leaves the clock a nanosecond before the next step") {
     CHECK(clock.add(100000000) == 0);
     CHECK(clock.drop() == 100000000 - 16666666);
     CHECK_FALSE(clock.due());
-    CHECK(clock.phase() < 1);
+    CHECK(clock.share_of_step() < 1);
     CHECK(clock.drop() == 0);
     CHECK(clock.add(1) == 0);
     CHECK(clock.due());
     clock.take();
-    CHECK(clock.phase() < 1e-6);
+    CHECK(clock.share_of_step() < 1e-6);
     CHECK(clock.add(~std::uint64_t{0}) > 0);
     CHECK(clock.due());
     CHECK(clock.drop() > (std::uint64_t{1} << 61));

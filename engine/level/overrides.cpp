@@ -1,4 +1,4 @@
-#include "engine/level/frame.hpp"
+#include "engine/level/overrides.hpp"
 #include "engine/settings/accuracy_presets.hpp"
 #include "engine/settings/messages.hpp"
 #include "engine/settings/method_presets.hpp"
@@ -57,16 +57,16 @@ void stretch(Settings& settings, double factor) {
 
 } // namespace
 
-Result<LevelFrame> apply_overrides(const LevelOverrides& overrides, Settings& settings) {
+Result<LevelGrid> apply_overrides(const LevelOverrides& overrides, Settings& settings) {
     if (Status status = check(overrides); !status) return status;
-    LevelFrame frame;
+    LevelGrid level_grid;
     if (const auto size = chosen_size(overrides, settings.grid)) {
         Grid& grid = settings.grid;
         const double dx = grid.nx * grid.dx / size->first;
-        frame.stretch_y = size->second * dx / (grid.ny * grid.dx);
+        level_grid.stretch_y = size->second * dx / (grid.ny * grid.dx);
         settings.dt *= dx / grid.dx;
         grid = {size->first, size->second, dx};
-        stretch(settings, frame.stretch_y);
+        stretch(settings, level_grid.stretch_y);
     }
     if (overrides.dt) settings.dt = *overrides.dt;
     if (overrides.fused_stages) settings.fused_stages = *overrides.fused_stages;
@@ -77,11 +77,11 @@ Result<LevelFrame> apply_overrides(const LevelOverrides& overrides, Settings& se
         settings.method.substeps = preset.substeps;
         if (preset.water_order != 0) settings.method.water_transport_order = preset.water_order;
     }
-    frame.nx = settings.grid.nx;
-    frame.ny = settings.grid.ny;
-    frame.dx = settings.grid.dx;
-    frame.quantum = height_quantum(settings.method);
-    return frame;
+    level_grid.nx = settings.grid.nx;
+    level_grid.ny = settings.grid.ny;
+    level_grid.dx = settings.grid.dx;
+    level_grid.quantum = height_quantum(settings.method);
+    return level_grid;
 }
 
 } // namespace wadi

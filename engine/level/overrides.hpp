@@ -6,7 +6,7 @@
 namespace wadi {
 
 /// Changes grid, time step and method; moves sources, edits and openings of sides with the stretch in y (discs and capsules keep
-/// their radius). The frame is the grid to draw on. Errors: bad_argument.
-Result<LevelFrame> apply_overrides(const LevelOverrides& overrides, Settings& settings);
+/// their radius). Returns the grid to draw on. Errors: bad_argument.
+Result<LevelGrid> apply_overrides(const LevelOverrides& overrides, Settings& settings);
 
 } // namespace wadi
