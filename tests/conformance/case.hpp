@@ -1,4 +1,4 @@
-// A case of the conformance suite: a name with parameters that prints as the argument which repeats it, and its outcome.
+// A conformance case: a name with parameters that prints as the argument which repeats it, and its outcome.
 #pragma once
 #include "engine/compute/status.hpp"
 #include <string>
@@ -37,8 +37,8 @@ struct CaseSpec {
 /// The inverse of CaseSpec::text(). Errors: bad_argument.
 Result<CaseSpec> parse_case(const std::string& text);
 
-/// One layer of tests (ARCHITECTURE 7): the cases it has, and how one is run.
-struct Layer {
+/// A suite of tests: the cases it has, and how one is run.
+struct Suite {
     const char* name;
     const char* meaning;
     std::vector<CaseSpec> (*list)();
@@ -46,10 +46,10 @@ struct Layer {
 };
 
 /// Defined in files of their names.
-const Layer& contract_layer();
-const Layer& stage_layer();
-const Layer& step_layer();
-const Layer& invariant_layer();
-const Layer& fused_layer();
+const Suite& contract_suite();
+const Suite& stage_suite();
+const Suite& step_suite();
+const Suite& invariant_suite();
+const Suite& fused_suite();
 
 } // namespace wadi::conformance

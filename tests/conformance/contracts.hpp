@@ -1,4 +1,4 @@
-// Layer 1: every call of engine/compute/device.hpp, with good and with bad arguments.
+// Suite 1: every call of engine/compute/device.hpp, with good and with bad arguments.
 #pragma once
 #include "tests/conformance/expect.hpp"
 #include "tests/conformance/target.hpp"

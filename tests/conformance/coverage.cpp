@@ -26,8 +26,8 @@ std::size_t met(const std::vector<CaseSpec>& cases, const char* key, std::span<c
 
 int print_coverage() {
     int missing = 0;
-    auto all = stage_layer().list();
-    for (const CaseSpec& spec : fused_layer().list()) all.push_back(spec);
+    auto all = stage_suite().list();
+    for (const CaseSpec& spec : fused_suite().list()) all.push_back(spec);
     std::printf("%-30s %9s %6s %7s %8s %9s  %s\n", "stage", "masks", "cases", "grids", "scenes", "methods", "compared with");
     const auto stages = compute::stage_table();
     for (std::size_t n = 0; n < stages.size(); ++n) {
@@ -61,8 +61,8 @@ int print_coverage() {
                     cases.size(), met(cases, "grid", grid_names()), grid_names().size(), met(cases, "scene", scene_names()),
                     scene_names().size(), met(cases, "method", method_names_of_cases()), method_names_of_cases().size(), with);
     }
-    for (const Layer* layer : {&contract_layer(), &stage_layer(), &step_layer(), &invariant_layer(), &fused_layer()})
-        std::printf("%-9s %4zu cases: %s\n", layer->name, layer->list().size(), layer->meaning);
+    for (const Suite* suite : {&contract_suite(), &stage_suite(), &step_suite(), &invariant_suite(), &fused_suite()})
+        std::printf("%-9s %4zu cases: %s\n", suite->name, suite->list().size(), suite->meaning);
     std::printf("%d missing\n", missing);
     return missing > 0 ? 1 : 0;
 }

@@ -1,4 +1,4 @@
-// The conformance suite. Quick start for a new backend: register it, run `conformance --backend NAME`, read README.md here.
+// The conformance tests. Quick start for a new backend: register it, run `conformance --backend NAME`, read README.md here.
 #include "tests/conformance/coverage.hpp"
 #include "tests/conformance/perf.hpp"
 #include "tests/conformance/perf_tiles.hpp"
@@ -18,7 +18,7 @@ namespace {
 constexpr int exit_failed = 1, exit_usage = 2, exit_skipped = 77;
 
 struct Options {
-    std::vector<std::string> backends, required, layers;
+    std::vector<std::string> backends, required, suites;
     std::string stage, chosen_case, output = "console";
     bool validate = false;
     int max_cells = 0; // of a case's grid; 0 = no limit
@@ -28,10 +28,10 @@ struct Options {
     PerfTilesOptions perf_tiles;
 };
 
-const Layer* const layers[] = {&contract_layer(), &stage_layer(), &step_layer(), &invariant_layer(), &fused_layer()};
+const Suite* const suites[] = {&contract_suite(), &stage_suite(), &step_suite(), &invariant_suite(), &fused_suite()};
 
 struct Job {
-    const Layer* layer;
+    const Suite* suite;
     CaseSpec spec;
 };
 
@@ -49,21 +49,21 @@ void limit_steps(CaseSpec& spec, int most) {
 // Leaves of each name's cases those of at most `most` masks of effects: evenly spread over the order in which they are listed,
 // the last one among them.
 void limit_masks(std::vector<Job>& jobs, int most) {
-    std::map<std::pair<const Layer*, std::string>, std::vector<std::string>> masks;
+    std::map<std::pair<const Suite*, std::string>, std::vector<std::string>> masks;
     const auto mask_of = [](const Job& job) { return job.spec.get("effects", ""); };
     for (const Job& job : jobs) {
-        auto& known = masks[{job.layer, job.spec.name}];
+        auto& known = masks[{job.suite, job.spec.name}];
         if (std::find(known.begin(), known.end(), mask_of(job)) == known.end()) known.push_back(mask_of(job));
     }
     std::erase_if(jobs, [&](const Job& job) {
-        const auto& known = masks[{job.layer, job.spec.name}];
+        const auto& known = masks[{job.suite, job.spec.name}];
         const auto count = static_cast<std::ptrdiff_t>(known.size());
         const auto n = std::find(known.begin(), known.end(), mask_of(job)) - known.begin() + 1;
         return n * most / count == (n - 1) * most / count; // n is the last of its share or is left out
     });
 }
 
-// The cases that the options choose. A case with parameters need not be a listed one: any that its layer can make is run.
+// The cases that the options choose. A case with parameters need not be a listed one: any that its suite can make is run.
 Result<std::vector<Job>> choose(const Options& options) {
     CaseSpec wanted;
     if (!options.chosen_case.empty()) {
@@ -75,23 +75,23 @@ Result<std::vector<Job>> choose(const Options& options) {
         return error(Code::bad_argument, "--stage " + options.stage + ": no such stage; `conformance coverage` lists them");
     std::vector<Job> jobs;
     bool known = wanted.name.empty();
-    for (const Layer* layer : layers) {
-        if (!options.layers.empty() &&
-            std::find(options.layers.begin(), options.layers.end(), layer->name) == options.layers.end())
+    for (const Suite* suite : suites) {
+        if (!options.suites.empty() &&
+            std::find(options.suites.begin(), options.suites.end(), suite->name) == options.suites.end())
             continue;
-        for (CaseSpec& spec : layer->list()) {
+        for (CaseSpec& spec : suite->list()) {
             if (!options.stage.empty() && spec.name != options.stage) continue;
             if (!wanted.name.empty() && spec.name != wanted.name) continue;
             if (options.max_cells > 0 && cells_of(spec) > options.max_cells) continue;
             if (known && !wanted.parameters.empty()) continue;
             known = true;
-            jobs.push_back({layer, wanted.parameters.empty() ? std::move(spec) : wanted});
+            jobs.push_back({suite, wanted.parameters.empty() ? std::move(spec) : wanted});
             limit_steps(jobs.back().spec, options.max_steps);
         }
     }
     if (!known) return error(Code::bad_argument, "--case " + wanted.name + ": no such case; `conformance list` prints all");
     if (options.max_masks > 0) limit_masks(jobs, options.max_masks);
-    if (jobs.empty()) return error(Code::bad_argument, "no case is left by --layer, --stage, --case and --max-cells");
+    if (jobs.empty()) return error(Code::bad_argument, "no case is left by --suite, --stage, --case and --max-cells");
     return jobs;
 }
 
@@ -129,12 +129,12 @@ int usage(const Status& status) {
 
 void run_job(Session& session, const Job& job, bool validate, Report& report) {
     const auto start = std::chrono::steady_clock::now();
-    Verdict verdict = job.layer->run(job.spec, session);
+    Verdict verdict = job.suite->run(job.spec, session);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     const auto messages = session.take_messages();
     if (validate && !messages.empty() && verdict.outcome != Outcome::fail)
         verdict = failed(std::to_string(messages.size()) + " validation messages, the first: " + messages.front());
-    report.add(session.target().label(), job.layer->name, job.spec.text(), verdict, seconds);
+    report.add(session.target().label(), job.suite->name, job.spec.text(), verdict, seconds);
 }
 
 // A missing required backend is a failure of its own.
@@ -168,7 +168,7 @@ int run_tests(const Options& options) {
             continue;
         }
         for (const Job& job : *jobs) run_job(session, job, session.options().validate, report);
-        session.close(); // what is left over shows in the layers' messages
+        session.close(); // what is left over shows in the validation layers' messages
         const auto messages = session.take_messages();
         if (session.options().validate && !messages.empty())
             report.add(target.label(), "contract", "close", failed(messages.front()), 0);
@@ -183,7 +183,7 @@ int run_tests(const Options& options) {
 int run_list(const Options& options) {
     auto jobs = choose(options);
     if (!jobs) return usage(jobs.status());
-    for (const Job& job : *jobs) std::printf("%-9s %s\n", job.layer->name, job.spec.text().c_str());
+    for (const Job& job : *jobs) std::printf("%-9s %s\n", job.suite->name, job.spec.text().c_str());
     for (const Target& target : all_targets()) std::printf("# %s: %s\n", target.label().c_str(), target.info.name.c_str());
     return 0;
 }
@@ -219,7 +219,7 @@ int run(int argc, char** argv) {
     app.add_option("--backend", options.backends, "devices to test: cpu, vulkan, vulkan1, ...; without it all there are")
         ->delimiter(',');
     app.add_option("--require", options.required, "backends whose absence is a failure")->delimiter(',');
-    app.add_option("--layer", options.layers, "contract, stage, step, invariant or fused")
+    app.add_option("--suite,--layer", options.suites, "contract, stage, step, invariant or fused")
         ->delimiter(',')
         ->check(CLI::IsMember({"contract", "stage", "step", "invariant", "fused"}));
     app.add_option("--stage", options.stage, "only the cases of this stage");
@@ -250,7 +250,7 @@ int run(int argc, char** argv) {
     tiles->add_option("--repeats", options.perf_tiles.repeats, "times per row")->check(CLI::Range(1, 1000));
     const CLI::App* list = app.add_subcommand("list", "print the cases and devices");
     const CLI::App* coverage = app.add_subcommand("coverage", "print which masks, grids, scenes and methods each stage meets");
-    const CLI::App* self_check = app.add_subcommand("self-check", "tamper with results; the suite must notice");
+    const CLI::App* self_check = app.add_subcommand("self-check", "tamper with results; the tests must notice");
     CLI11_PARSE(app, argc, argv);
     if (perf->parsed() || tiles->parsed()) return run_perf_mode(options, tiles->parsed());
     if (list->parsed()) return run_list(options);

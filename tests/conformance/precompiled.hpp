@@ -1,4 +1,4 @@
-// What most of the suite includes, for CMake to precompile. A file includes what it uses all the same: preset dev compiles
+// What most of these tests include, for CMake to precompile. A file includes what it uses all the same: preset dev compiles
 // without.
 #pragma once
 #include "engine/step/world_params.hpp"

@@ -24,18 +24,18 @@ void Report::start() {
     if (csv_) std::printf("outcome,device,layer,case,error,allowed,seconds,detail\n");
 }
 
-void Report::add(const std::string& target, const std::string& layer, const std::string& name, const Verdict& v, double seconds) {
+void Report::add(const std::string& target, const std::string& suite, const std::string& name, const Verdict& v, double seconds) {
     ++counts_[static_cast<int>(v.outcome)];
     if (v.outcome == Outcome::fail) failed_.push_back("--backend " + target + " --case \"" + name + "\"");
     if (csv_) {
-        std::printf("%s,%s,%s,%s,%s,%s,%.4f,%s\n", outcome_name(v.outcome), target.c_str(), layer.c_str(),
+        std::printf("%s,%s,%s,%s,%s,%s,%.4f,%s\n", outcome_name(v.outcome), target.c_str(), suite.c_str(),
                     csv_field(name).c_str(), number(v.error).c_str(), number(v.allowed).c_str(), seconds,
                     csv_field(v.detail).c_str());
     } else {
         std::string tail;
         if (v.error >= 0) tail = "  error " + number(v.error) + " of " + number(v.allowed);
         if (!v.detail.empty()) tail += "  " + v.detail;
-        std::printf("%-13s %-9s %-9s %s%s\n", outcome_name(v.outcome), target.c_str(), layer.c_str(), name.c_str(), tail.c_str());
+        std::printf("%-13s %-9s %-9s %s%s\n", outcome_name(v.outcome), target.c_str(), suite.c_str(), name.c_str(), tail.c_str());
     }
     std::fflush(stdout);
 }

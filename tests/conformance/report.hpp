@@ -10,7 +10,7 @@ class Report {
   public:
     explicit Report(bool csv) : csv_(csv) {}
     void start();
-    void add(const std::string& target, const std::string& layer, const std::string& name, const Verdict& verdict,
+    void add(const std::string& target, const std::string& suite, const std::string& name, const Verdict& verdict,
              double seconds);
     /// "N passed, M failed, K skipped" alone on the last line; not supported counts as skipped there.
     void finish();

@@ -1,19 +1,19 @@
 #!/usr/bin/env bash
-# The stage, step and fused layers on the CUDA backend under compute-sanitizer, on grids small enough for its pace (--max-cells, default 700).
-# Usage: tests/conformance/sanitize.sh [--binary FILE] [--limit SECONDS] [--max-cells N] [--layer L[,L]] [TOOL ...]; tools: memcheck racecheck initcheck synccheck.
+# The stage, step and fused suites on the CUDA backend under compute-sanitizer, on grids small enough for its pace (--max-cells, default 700).
+# Usage: tests/conformance/sanitize.sh [--binary FILE] [--limit SECONDS] [--max-cells N] [--suite S[,S]] [TOOL ...]; tools: memcheck racecheck initcheck synccheck.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
 binary=build/release/bin/conformance
 limit=600
 cells=700
-layers=fused,stage,step
+suites=fused,stage,step
 tools=()
 while [ $# -gt 0 ]; do
     case $1 in
     --binary) binary=${2:?--binary needs a file}; shift 2 ;;
     --max-cells) cells=${2:?--max-cells needs a number}; shift 2 ;;
-    --layer) layers=${2:?--layer needs names}; shift 2 ;;
+    --suite | --layer) suites=${2:?--suite needs names}; shift 2 ;;
     --limit) limit=${2:?--limit needs seconds}; shift 2 ;;
     memcheck | racecheck | initcheck | synccheck) tools+=("$1"); shift ;;
     *) echo "sanitize.sh: '$1' is neither an option nor a tool; see the head of this file" >&2; exit 2 ;;
@@ -35,7 +35,7 @@ failed=0
 for tool in "${tools[@]}"; do
     status=0
     timeout "$limit" compute-sanitizer --tool "$tool" --error-exitcode 9 \
-        "$binary" test --backend cuda --layer "$layers" --max-cells "$cells" >"$log" 2>&1 || status=$?
+        "$binary" test --backend cuda --suite "$suites" --max-cells "$cells" >"$log" 2>&1 || status=$?
     cases=$(grep -c '^OK' "$log" || true)
     errors=$(grep -o 'ERROR SUMMARY: .*\|RACECHECK SUMMARY: .*' "$log" | tail -1 || true)
     case $status in

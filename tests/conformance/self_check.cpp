@@ -1,6 +1,6 @@
 #include "tests/conformance/self_check.hpp"
 #include "tests/conformance/compare.hpp"
-#include "tests/conformance/stage_layer.hpp"
+#include "tests/conformance/stage_suite.hpp"
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -84,7 +84,7 @@ void run_self_check(Report& report) {
     auto device = open_plain_cpu();
     if (!device) return report.add("cpu0", "self-check", "open", verdict_of(device.status()), 0);
     std::string last;
-    for (const CaseSpec& spec : stage_layer().list()) {
+    for (const CaseSpec& spec : stage_suite().list()) {
         if (spec.name == last) continue; // the first case of each stage
         last = spec.name;
         for (const Control& control : controls()) {

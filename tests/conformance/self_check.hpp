@@ -1,4 +1,4 @@
-// Negative controls: the suite must fail where it should.
+// Negative controls: the tests must fail where it should.
 #pragma once
 #include "tests/conformance/report.hpp"
 

@@ -1,4 +1,4 @@
-// Layer 3: whole steps of a World, against the reference solver within a computed tolerance, and against the plainest CPU run
+// Suite 3: whole steps of a World, against the reference solver within a computed tolerance, and against the plainest CPU run
 // in bits.
 #include "engine/world.hpp"
 #include "tests/conformance/compare.hpp"
@@ -178,9 +178,9 @@ Verdict run(const CaseSpec& spec, Session& session) {
 
 } // namespace
 
-const Layer& step_layer() {
-    static const Layer layer = {"step", "whole steps against the reference solver, and against the CPU in bits", list, run};
-    return layer;
+const Suite& step_suite() {
+    static const Suite suite = {"step", "whole steps against the reference solver, and against the CPU in bits", list, run};
+    return suite;
 }
 
 } // namespace wadi::conformance

@@ -1,4 +1,4 @@
-#include "tests/conformance/stage_layer.hpp"
+#include "tests/conformance/stage_suite.hpp"
 #include "engine/step/world_params.hpp"
 #include "tests/conformance/active_tiles_check.hpp"
 #include "tests/conformance/compare.hpp"
@@ -106,7 +106,7 @@ std::vector<CaseSpec> list() {
     const auto grids = grid_names(), scenes = scene_names(), methods = method_names_of_cases();
     const auto stages = compute::stage_table();
     for (std::size_t stage = 0; stage < stages.size(); ++stage) {
-        if (stages[stage].fused()) continue; // fused_layer
+        if (stages[stage].fused()) continue; // fused_suite
         auto masks = stage_masks(static_cast<int>(stage));
         if (stages[stage].tested_effects == 0 && masks.front() == 0)
             masks.front() = EFFECT_WATER; // a stage that publishes any layer
@@ -189,9 +189,9 @@ Verdict run_stage_case(const CaseSpec& spec, compute::Device& device, const Tamp
     return has_counterpart(spec.name) ? worse(definition, compare_with_reference(run)) : definition;
 }
 
-const Layer& stage_layer() {
-    static const Layer layer = {"stage", "each stage under each mask it can tell apart, against the reference solver", list, run};
-    return layer;
+const Suite& stage_suite() {
+    static const Suite suite = {"stage", "each stage under each mask it can tell apart, against the reference solver", list, run};
+    return suite;
 }
 
 } // namespace wadi::conformance

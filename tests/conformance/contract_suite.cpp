@@ -74,9 +74,9 @@ Result<compute::Dispatch> rain_dispatch(compute::Device& device, compute::Buffer
                              "rain"};
 }
 
-const Layer& contract_layer() {
-    static const Layer layer = {"contract", "every call of the compute interface, with good and bad arguments", list, run};
-    return layer;
+const Suite& contract_suite() {
+    static const Suite suite = {"contract", "every call of the compute interface, with good and bad arguments", list, run};
+    return suite;
 }
 
 } // namespace wadi::conformance

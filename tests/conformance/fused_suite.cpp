@@ -1,4 +1,4 @@
-// Layer 5: each fused stage against the stages that it stands for, in bits: two plans of one step, with and without fused stages,
+// Suite 5: each fused stage against the stages that it stands for, in bits: two plans of one step, with and without fused stages,
 // from the same state on the same device. A tile that is cut wrongly differs at its rim, so that grids end inside and at tiles.
 #include "engine/step/step_inputs.hpp"
 #include "tests/conformance/case.hpp"
@@ -94,9 +94,9 @@ Verdict run(const CaseSpec& spec, Session& session) {
 
 } // namespace
 
-const Layer& fused_layer() {
-    static const Layer layer = {"fused", "each fused stage against its parts one by one, in bits", list, run};
-    return layer;
+const Suite& fused_suite() {
+    static const Suite suite = {"fused", "each fused stage against its stages one by one, in bits", list, run};
+    return suite;
 }
 
 } // namespace wadi::conformance

@@ -1,4 +1,4 @@
-// Layer 4: what must hold in any scene after many steps.
+// Suite 4: what must hold in any scene after many steps.
 #include "engine/step/world_params.hpp"
 #include "tests/conformance/compare.hpp"
 #include "tests/conformance/half_turn.hpp"
@@ -277,9 +277,9 @@ Verdict run(const CaseSpec& spec, Session& session) {
 
 } // namespace
 
-const Layer& invariant_layer() {
-    static const Layer layer = {"invariant", "mass, bounds, rest, symmetry and repeatability after many steps", list, run};
-    return layer;
+const Suite& invariant_suite() {
+    static const Suite suite = {"invariant", "mass, bounds, rest, symmetry and repeatability after many steps", list, run};
+    return suite;
 }
 
 } // namespace wadi::conformance
