@@ -1,4 +1,4 @@
-// A world: its state on a device, and the parts that step it and answer for it. Each part has a file of its own, and brings the
+// A world: its state on a device, and the components that step it and answer for it. Each has a file of its own, and brings the
 // world to a boundary between two steps where it needs one (Stepper::finish_step).
 #pragma once
 #include "engine/edits/command_log.hpp"
@@ -61,7 +61,7 @@ class World {
     /// What waited for a boundary between two steps.
     Status at_boundary();
 
-    WorldState state_; // first: the parts refer to it
+    WorldState state_; // first: the components refer to it
     Stepper stepper_{state_};
     FrameDriver frames_{state_, stepper_};
     Outputs outputs_{state_};

@@ -14,9 +14,9 @@ namespace {
 // What a host's callback throws ends here: behind it are drivers, which no exception may pass.
 compute::Log to_log(const wadi_device_options* options) {
     if (options == nullptr || options->log == nullptr) return {};
-    return [log = options->log, user = options->log_user](int level, const std::string& message) {
+    return [log = options->log, user = options->log_user](int severity, const std::string& message) {
         try {
-            log(user, level, message.c_str());
+            log(user, severity, message.c_str());
         } catch (...) {
         }
     };

@@ -117,8 +117,8 @@ void Context::wait_idle() {
     note(cudaStreamSynchronize(stream), "cudaStreamSynchronize");
 }
 
-void Context::log(int level, const std::string& message) const {
-    if (options.log) options.log(level, "cuda: " + message);
+void Context::log(int severity, const std::string& message) const {
+    if (options.log) options.log(severity, "cuda: " + message);
 }
 
 CurrentContext::CurrentContext(Context& context)

@@ -1,4 +1,4 @@
-// What every part of the backend shares: the device's primary context, one stream, and how results become Status.
+// What every component of the backend shares: the device's primary context, one stream, and how results become Status.
 #pragma once
 #include "backends/cuda/driver.hpp"
 #include "backends/cuda/errors.hpp"
@@ -26,7 +26,7 @@ struct Context {
     Status lost_status() const;
     /// Waits until the stream has nothing left to do; a lost device counts as done.
     void wait_idle();
-    void log(int level, const std::string& message) const;
+    void log(int severity, const std::string& message) const;
 
     Driver driver;
     CUdevice device = 0;

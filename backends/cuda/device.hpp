@@ -1,4 +1,4 @@
-// compute::Device over the parts of this backend.
+// compute::Device over the components of this backend.
 #pragma once
 #include "engine/compute/device.hpp"
 

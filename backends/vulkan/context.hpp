@@ -1,4 +1,4 @@
-// What every part of the backend shares: the logical device, its queue and limits, and how results become Status.
+// What every component of the backend shares: the logical device, its queue and limits, and how results become Status.
 #pragma once
 #include "backends/vulkan/instance.hpp"
 #include "engine/compute/device.hpp"

@@ -25,7 +25,7 @@ struct InstanceApi {
 
 /// Where driver and validation messages go; drivers call it from any thread.
 struct Messages {
-    std::function<void(int level, const std::string& message)> log;
+    std::function<void(int severity, const std::string& message)> log;
     std::atomic<std::uint64_t> validation{0}; // warnings and errors from validation layers
 };
 

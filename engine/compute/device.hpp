@@ -69,8 +69,8 @@ struct NativeBuffer {
     std::uint64_t bytes = 0;
 };
 
-/// Level 0 = error, 1 = warning, 2 = information. Drivers call it from any thread.
-using Log = std::function<void(int level, const std::string& message)>;
+/// Severity: 0 = error, 1 = warning, 2 = information. Drivers call it from any thread.
+using Log = std::function<void(int severity, const std::string& message)>;
 
 struct DeviceOptions {
     int threads = 0;                // CPU backend: worker threads, 0 = all cores

@@ -48,10 +48,10 @@ struct StageInfo {
     std::span<const StageBinding> bindings;
     std::span<const std::uint32_t> spirv;      // empty when the build has no Vulkan
     std::span<const std::uint32_t> half_spirv; // for masks with EFFECT_HALF_STORAGE; empty where that changes nothing, too
-    int parts;                                 // stages that a fused stage runs in one pass; 0 for a stage that is none
+    int stages;                                // stages that a fused stage runs in one pass; 0 for a stage that is none
     std::uint32_t needs, without;              // a fused stage is for masks that have all of `needs` and nothing of `without`
 
-    bool fused() const { return parts > 0; }
+    bool fused() const { return stages > 0; }
 };
 
 /// Threads of a group of every fused stage, which covers FUSED_COLUMNS x FUSED_ROWS cells, and bytes that groups of any of them

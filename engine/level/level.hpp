@@ -22,7 +22,7 @@ struct Level {
 
 /// What a caller may choose or override before maps are sampled and shapes drawn.
 struct LevelOverrides {
-    /// New grid size. Keeps the x extent and square cells: dx = extent/nx, maps and shapes stretch in y when the aspect
+    /// New grid size. Keeps the length in x and square cells: dx = length/nx, maps and shapes stretch in y when the aspect
     /// changes, dt scales with dx unless given.
     std::optional<std::pair<int, int>> size;
     std::optional<double> dt;           // [s]

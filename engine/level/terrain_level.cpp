@@ -42,15 +42,15 @@ Status scale_heights(Map& map, const std::string& path) {
 Source spring(const std::vector<float>& terrain, const Grid& grid) {
     const auto highest = static_cast<std::size_t>(std::max_element(terrain.begin(), terrain.end()) - terrain.begin());
     const auto width = static_cast<std::size_t>(grid.nx);
-    const double extent[2] = {grid.nx * grid.dx, grid.ny * grid.dx};
+    const double lengths[2] = {grid.nx * grid.dx, grid.ny * grid.dx};
     const double at[2] = {(static_cast<double>(highest % width) + 0.5) * grid.dx,
                           (static_cast<double>(highest / width) + 0.5) * grid.dx};
     Source source;
-    source.radius = std::max(SOURCE_SHARE * std::min(extent[0], extent[1]), SOURCE_LEAST_CELLS * grid.dx);
+    source.radius = std::max(SOURCE_SHARE * std::min(lengths[0], lengths[1]), SOURCE_LEAST_CELLS * grid.dx);
     for (std::size_t axis = 0; axis < 2; ++axis) {
         // Inside by its radius where the grid is wide enough: at the rim the water would leave at once.
-        const double margin = std::min(source.radius, extent[axis] / 2);
-        source.center[axis] = std::clamp(at[axis], margin, extent[axis] - margin);
+        const double margin = std::min(source.radius, lengths[axis] / 2);
+        source.center[axis] = std::clamp(at[axis], margin, lengths[axis] - margin);
     }
     source.rate.samples = {{0.0, SOURCE_RATE}};
     return source;

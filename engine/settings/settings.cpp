@@ -100,8 +100,8 @@ Status check_side(const Settings& settings, std::size_t index) {
     const Side& side = settings.sides[index];
     const std::string path = "sides." + side_names()[index];
     const bool along_y = index == static_cast<std::size_t>(SideName::west) || index == static_cast<std::size_t>(SideName::east);
-    const double extent = (along_y ? settings.grid.ny : settings.grid.nx) * settings.grid.dx;
-    if (!(side.from >= 0 && side.from < extent)) return refuse(outside_text(path + ".from", side.from, 0, extent));
+    const double length = (along_y ? settings.grid.ny : settings.grid.nx) * settings.grid.dx;
+    if (!(side.from >= 0 && side.from < length)) return refuse(outside_text(path + ".from", side.from, 0, length));
     if (!(side.to > side.from))
         return refuse(path + ".to: " + number_text(side.to) + " is not greater than from, " + number_text(side.from));
     const bool has_value = side.kind == SideKind::discharge || side.kind == SideKind::level;
@@ -115,7 +115,7 @@ Status check_side(const Settings& settings, std::size_t index) {
 Status check_source(const Settings& settings, std::size_t index) {
     const Source& source = settings.sources[index];
     const std::string path = "sources[" + std::to_string(index) + "]";
-    const double extent[2] = {settings.grid.nx * settings.grid.dx, settings.grid.ny * settings.grid.dx};
+    const double lengths[2] = {settings.grid.nx * settings.grid.dx, settings.grid.ny * settings.grid.dx};
     const bool box = source.shape == SourceShape::box;
     const double reach = source.shape == SourceShape::disc ? source.radius : 0;
     if (source.shape == SourceShape::disc && !(source.radius > 0 && source.radius <= COORDINATE_MOST))
@@ -131,8 +131,8 @@ Status check_source(const Settings& settings, std::size_t index) {
         if (box && !(high > low))
             return refuse(path + ".to[" + std::to_string(axis) + "]: " + number_text(high) + " is not greater than from, " +
                           number_text(low));
-        if (high + reach < 0 || low - reach >= extent[axis])
-            return refuse(path + ": lies outside the grid, which spans 0 ... " + number_text(extent[axis]) + " m in " +
+        if (high + reach < 0 || low - reach >= lengths[axis])
+            return refuse(path + ": lies outside the grid, which spans 0 ... " + number_text(lengths[axis]) + " m in " +
                           (axis == 0 ? "x" : "y"));
     }
     if (source.rate.samples.empty()) return refuse(path + ".rate: missing");

@@ -1,4 +1,4 @@
-// The buffers of a part of a world, by label: those wanted are made, those no longer wanted are freed.
+// The buffers of a component of a world, by label: those wanted are made, those no longer wanted are freed.
 #pragma once
 #include "engine/step/world_device.hpp"
 #include <map>

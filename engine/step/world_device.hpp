@@ -14,7 +14,7 @@ struct MemoryItem {
     std::uint64_t bytes = 0;
 };
 
-/// What the parts of a world call of compute::Device, with its meaning and its errors.
+/// What the components of a world call of compute::Device, with its meaning and its errors.
 class WorldDevice {
   public:
     /// Is told of the loss, once.

@@ -9,8 +9,8 @@ WorldState::WorldState(const Settings& settings, std::unique_ptr<compute::Device
       level_(level_digest(settings)), group_(group),
       device_(std::move(device), [this](const Status& lost) { tell(0, lost.message); }) {}
 
-void WorldState::tell(int level, const std::string& text) const {
-    if (log) log(level, "step " + std::to_string(steps) + ": " + text);
+void WorldState::tell(int severity, const std::string& text) const {
+    if (log) log(severity, "step " + std::to_string(steps) + ": " + text);
 }
 
 StepPlan WorldState::plan_for(std::uint32_t effects) const {

@@ -1,5 +1,5 @@
-// What every part of a world shares: settings, plan, device, fields and active tiles, and how passes are recorded on them.
-// The parts (stepper, outputs, edits, queries, ...) record their programs against it and know nothing of each other.
+// What every component of a world shares: settings, plan, device, fields and active tiles, and how passes are recorded on them.
+// The components (stepper, outputs, edits, queries, ...) record their programs against it and know nothing of each other.
 #pragma once
 #include "engine/settings/effects.hpp"
 #include "engine/step/active_tiles.hpp"
@@ -53,7 +53,7 @@ class WorldState {
     /// Tells the host what happens to the world: other effects, a lost device. May be empty.
     compute::Log log;
     /// The same with the step ahead of the text.
-    void tell(int level, const std::string& text) const;
+    void tell(int severity, const std::string& text) const;
 
     /// Appends a pass of the plan and flips what it flips.
     Status append(compute::ProgramBuilder& builder, const PlanPass& pass, Parity& parity);

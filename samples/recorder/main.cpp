@@ -138,7 +138,7 @@ int main_checked(int argc, char** argv) {
     app.add_option("--variant", options.variant, "a variant of the level (--list-levels shows them)");
     app.add_option("--accuracy", options.accuracy,
                    "draft, balanced or accurate: half, all or twice the cells, two sand substeps; accurate: order 2 for water");
-    app.add_option("--size", size, "grid NxM instead of the level's; keeps the x extent");
+    app.add_option("--size", size, "grid NxM instead of the level's; keeps the length in x");
     app.add_option("--dt", options.dt, "water time step [s] instead of the level's")->check(CLI::Range(1e-7, 100.0));
     app.add_option("--active-tiles", options.active_tiles,
                    "8, 16, 32 or 64: tiles of so many cells in which nothing changes are left out; -1 = none are")

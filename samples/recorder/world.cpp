@@ -4,9 +4,9 @@
 namespace recorder {
 namespace {
 
-void print_log(void*, int level, const char* message) {
+void print_log(void*, int severity, const char* message) {
     static constexpr const char* names[] = {"error", "warning", "note"};
-    std::fprintf(stderr, "%s: %s\n", names[level < 0 || level > 2 ? 2 : level], message);
+    std::fprintf(stderr, "%s: %s\n", names[severity < 0 || severity > 2 ? 2 : severity], message);
 }
 
 } // namespace

@@ -17,7 +17,7 @@ import recordings
 import scenes
 from side_by_side import METHODS, number, table
 
-SCENES = {  # the paper's grids; its time steps do not fit our extents
+SCENES = {  # the paper's grids; its time steps do not fit our grids' lengths
     "castle": (1024, 512), "spring": (1024, 1024), "dam_break": (512, 512), "seepage": (1024, 512), "flush": (1024, 1024), "canyon": (800, 1024)}
 PAPER = {  # Table 2: percent per row, then ms per step on the authors' GPU
     "castle": (1.2, 1.1, 3.8, 6.2, 40.5, 5.7, 6.1, 2.1, 33.5, 0.73), "spring": (1.7, 1.1, 4.0, 4.8, 44.5, 5.4, 8.4, 1.8, 28.2, 2.16),

@@ -55,7 +55,7 @@ int view_number(const std::string& name) {
     throw std::runtime_error("view: \"" + name + "\" is none of" + known);
 }
 
-float default_clarity(const Grid& grid) { return 0.02f * std::max(grid.extent().x, grid.extent().y); }
+float default_clarity(const Grid& grid) { return 0.02f * std::max(grid.lengths().x, grid.lengths().y); }
 
 FrameParams frame_params(const Picture& picture, const Grid& grid, int width, int height, int sample) {
     const Camera& camera = picture.camera;
@@ -65,8 +65,8 @@ FrameParams frame_params(const Picture& picture, const Grid& grid, int width, in
                 tan_right = tan_up * static_cast<float>(width) / static_cast<float>(height);
     const float azimuth = glm::radians(look.sun_azimuth), elevation = glm::radians(look.sun_elevation);
     const glm::vec3 sun{std::sin(azimuth) * std::cos(elevation), std::cos(azimuth) * std::cos(elevation), std::sin(elevation)};
-    const glm::vec2 extent = grid.extent();
-    const float longest = std::max(extent.x, extent.y);
+    const glm::vec2 lengths = grid.lengths();
+    const float longest = std::max(lengths.x, lengths.y);
     // Low suns are redder.
     const float low_sun = 1.0f - glm::smoothstep(0.0f, 0.6f, sun.z);
 
@@ -80,7 +80,7 @@ FrameParams frame_params(const Picture& picture, const Grid& grid, int width, in
     p.zenith = glm::vec4(0.20f, 0.36f, 0.72f, look.ambient);
     p.horizon = glm::vec4(0.62f, 0.76f, 0.94f, picture.time);
     p.plinth = glm::vec4(0.335f, 0.315f, 0.285f, grid.block.low.z);
-    p.domain = glm::vec4(grid.dx, extent.x, extent.y, 0);
+    p.domain = glm::vec4(grid.dx, lengths.x, lengths.y, 0);
     const bool one = quality.samples == 1;
     p.lens = glm::vec4(one ? 0.0f : halton(sample + 1, 2) - 0.5f, one ? 0.0f : halton(sample + 1, 3) - 0.5f,
                        1.0f / static_cast<float>(sample + 1), 2 * tan_up / static_cast<float>(height));

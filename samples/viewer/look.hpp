@@ -74,7 +74,7 @@ struct Grid {
     int nx = 1, ny = 1;
     float dx = 1; // [m]
     Block block;  // low.z: where the block is cut off below
-    glm::vec2 extent() const { return {static_cast<float>(nx) * dx, static_cast<float>(ny) * dx}; }
+    glm::vec2 lengths() const { return {static_cast<float>(nx) * dx, static_cast<float>(ny) * dx}; }
 };
 
 /// Depth that water of a level of this size is seen through, [m] as Look::clarity: models look like models.

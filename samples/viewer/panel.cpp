@@ -119,8 +119,8 @@ void Panel::tools(Session& session) {
     if (choose(
             "tool", [](int n) { return tool_names[n]; }, static_cast<int>(std::size(tool_names)), tool))
         session.tool = static_cast<Tool>(tool);
-    const glm::vec2 extent = session.simulation().grid.extent();
-    const float longest = std::max(extent.x, extent.y), dx = session.simulation().grid.dx;
+    const glm::vec2 lengths = session.simulation().grid.lengths();
+    const float longest = std::max(lengths.x, lengths.y), dx = session.simulation().grid.dx;
     ImGui::SliderFloat("radius [m]", &session.brush_radius, dx, 0.2f * longest, "%.2f", ImGuiSliderFlags_Logarithmic);
     ImGui::SliderFloat(session.tool == Tool::push ? "strength" : "strength [m/s]", &session.brush_strength, 0.01f, 0.1f * longest,
                        "%.2f", ImGuiSliderFlags_Logarithmic);

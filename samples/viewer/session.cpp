@@ -42,8 +42,8 @@ void Session::open(const std::string& name, const SimulationChoice& choice) {
         picture.section = {};
         sources.clear();
         switched_off_.clear();
-        const glm::vec2 extent = simulation_->grid.extent();
-        brush_radius = 0.04f * std::max(extent.x, extent.y);
+        const glm::vec2 lengths = simulation_->grid.lengths();
+        brush_radius = 0.04f * std::max(lengths.x, lengths.y);
         brush_strength = 0.5f * brush_radius;
     }
     profile.clear();

@@ -20,8 +20,8 @@ constexpr std::array<int, 7> floats = {1, 1, 1, 1, 1, 2, 2};
 std::mutex log_mutex;
 std::vector<std::string> log_lines;
 
-void on_log(void*, int level, const char* message) {
-    if (level > 1) return;
+void on_log(void*, int severity, const char* message) {
+    if (severity > 1) return;
     const std::lock_guard lock(log_mutex);
     log_lines.emplace_back(message);
 }
@@ -126,9 +126,9 @@ Simulation::Simulation(const Gpu& gpu, const SimulationChoice& choice) : gpu_(gp
         const float lowest = *std::min_element(heights.begin(), heights.end());
         check(wadi_world_read_field(world, WADI_FIELD_FREE_SURFACE, heights.data(), cells), "reading the surface");
         const float highest = *std::max_element(heights.begin(), heights.end());
-        const float longest = std::max(grid.extent().x, grid.extent().y);
+        const float longest = std::max(grid.lengths().x, grid.lengths().y);
         grid.block.low = {0, 0, lowest - 0.03f * longest};
-        grid.block.high = {grid.extent().x, grid.extent().y, std::max(highest, lowest + 0.02f * longest)};
+        grid.block.high = {grid.lengths().x, grid.lengths().y, std::max(highest, lowest + 0.02f * longest)};
         choose_outputs();
         make_buffers();
         set_recording(false);

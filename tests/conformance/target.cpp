@@ -15,8 +15,8 @@ std::vector<Target> all_targets() {
 Session::Session(Target target, const compute::DeviceOptions& options)
     : target_(std::move(target)), options_(options), messages_(std::make_shared<std::vector<std::string>>()) {
     backends::apply_environment(options_);
-    options_.log = [messages = messages_](int level, const std::string& message) {
-        if (level <= 1) messages->push_back(message);
+    options_.log = [messages = messages_](int severity, const std::string& message) {
+        if (severity <= 1) messages->push_back(message);
     };
 }
 

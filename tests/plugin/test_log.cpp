@@ -10,17 +10,17 @@ namespace {
 struct Heard {
     std::vector<std::pair<int, std::string>> messages;
     bool throws = false;
-    bool has(int level, const std::string& text) const {
-        for (const auto& [l, message] : messages) {
-            if (l == level && message.find(text) != std::string::npos) return true;
+    bool has(int severity, const std::string& text) const {
+        for (const auto& [s, message] : messages) {
+            if (s == severity && message.find(text) != std::string::npos) return true;
         }
         return false;
     }
 };
 
-void hear(void* user, int level, const char* message) {
+void hear(void* user, int severity, const char* message) {
     auto& heard = *static_cast<Heard*>(user);
-    heard.messages.emplace_back(level, message);
+    heard.messages.emplace_back(severity, message);
     if (heard.throws) throw std::runtime_error("from the host's callback");
 }
 

@@ -358,8 +358,8 @@ TEST_CASE("active tiles: more of them than settings.active_tiles_most are told t
     scene.settings.active_tiles = 8;
     auto world = make_world(scene);
     std::vector<std::string> told;
-    world->set_log([&](int level, const std::string& text) {
-        if (level == 1) told.push_back(text);
+    world->set_log([&](int severity, const std::string& text) {
+        if (severity == 1) told.push_back(text);
     });
     const auto run = [&](int steps) {
         for (int n = 0; n < steps; ++n) {

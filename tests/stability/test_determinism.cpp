@@ -176,10 +176,10 @@ TEST_CASE(
             Target checked{backend};
             checked.options.validate = backend == "vulkan";
             std::string messages;
-            checked.options.log = [&](int level, const std::string& message) {
-                messages += level < 2 ? message + "\n" : std::string();
+            checked.options.log = [&](int severity, const std::string& message) {
+                messages += severity < 2 ? message + "\n" : std::string();
             };
-            // The layers are a development package: a machine with a real GPU may lack them.
+            // Validation layers are a development package: a machine with a real GPU may lack them.
             const auto device = backends::open_device(backend, -1, checked.options);
             if (device.status().code == Code::not_supported) {
                 MESSAGE("no validation layers here: " << backend << " runs unchecked");
@@ -208,8 +208,8 @@ TEST_CASE("a lost device is reported by every call, and only by worlds on it") {
         step(*world, 3);
         const auto saved = save(*world);
         std::vector<std::string> errors;
-        world->set_log([&](int level, const std::string& message) {
-            if (level == 0) errors.push_back(message);
+        world->set_log([&](int severity, const std::string& message) {
+            if (severity == 0) errors.push_back(message);
         });
         world->device().inject_device_lost();
         CHECK(world->step(1).code == Code::device_lost);

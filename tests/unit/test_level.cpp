@@ -264,12 +264,12 @@ TEST_CASE("level: a series from a file") {
     CHECK(level.settings.rain.at(15) == doctest::Approx(5e-5));
 }
 
-TEST_CASE("level: size override keeps the x extent and stretches y") {
+TEST_CASE("level: size override keeps the length in x and stretches y") {
     const std::string rest = R"("terrain": [{"shape": "box", "from": [0, 4], "to": [10, 8], "height": 1}],
         "sides": {"west": {"kind": "outflow", "from": 4}, "south": {"kind": "outflow", "from": 4}},
         "sources": [{"shape": "disc", "center": [5, 2], "radius": 1.5, "rate": 1}, {"shape": "box", "from": [1, 2], "to": [3, 4], "rate": 1}])";
     LevelOverrides overrides;
-    overrides.size = {20, 32}; // dx 0.5, y extent 16 m instead of 8 m
+    overrides.size = {20, 32}; // dx 0.5, length in y 16 m instead of 8 m
     const Level level = must(parse(rest, "", overrides));
     CHECK(level.settings.grid.dx == 0.5);
     CHECK(level.settings.dt == doctest::Approx(0.005));
