@@ -84,7 +84,7 @@ constexpr Setting rows[] = {
     {"material.grain_size", material<&Material::grain_size>, {1e-6, 1}, "m", EFFECT_BED_SHEAR,
      "coarser sand needs faster water before bed_shear moves it"},
     {"material.slope_normal", material<&Material::slope_normal>, {0, 2}, "", EFFECT_SLOPE_NORMAL,
-     "how far weight and friction follow the slope: 1 = normal to it, 0 = as on level ground", InDigest::where_set},
+     "how far weight and friction follow the slope: 1 = normal to it, 0 = level", InDigest::where_set},
     {"material.internal_friction", material<&Material::internal_friction>, {0, 1}, "", EFFECT_INTERNAL_FRICTION,
      "friction within sand that spreads, a share of friction; 0 = off", InDigest::where_set},
     {"material.sand_viscosity", material<&Material::sand_viscosity>, {0, 10}, "m2/s", EFFECT_INTERNAL_FRICTION,

@@ -63,7 +63,7 @@ constexpr FieldRow rows[] = {
     {"stress_xy", scratch, cell, no_hash, no_host, "", "Pa", EFFECT_ELASTOPLASTIC, ""},
     {"stress_yy", scratch, cell, no_hash, no_host, "", "Pa", EFFECT_ELASTOPLASTIC, ""},
     {"cohesive_share", scratch, cell, no_hash, no_host, "", "1", EFFECT_SLOPE_NORMAL | EFFECT_ELASTOPLASTIC,
-     "share of the cohesion that a cliff of the sand's depth needs to stand"},
+     "cohesion over what a cliff of this depth needs"},
     {"friction_limit_x", scratch, west_face, no_hash, no_host, "", "m/s", EFFECT_SLOPE_NORMAL,
      "what friction takes from a velocity in the substep at most"},
     {"friction_limit_y", scratch, south_face, no_hash, no_host, "", "m/s", EFFECT_SLOPE_NORMAL, ""},
