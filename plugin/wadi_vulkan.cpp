@@ -36,7 +36,7 @@ compute::SyncPoint to_point(const wadi_vulkan_sync& point) {
 template <class Call> wadi_result on_host(const char* function, wadi_world_id id, const void* argument, Call call) {
     return with_world(function, id, [&](HostedWorld& hosted) {
         if (argument == nullptr) return bad_argument(std::string(function) + ": a pointer is NULL");
-        Status status = call(hosted.world->device());
+        Status status = call(*hosted.world->device().host_sync()); // the registry's devices are the front end's: never null
         if (!status) status.message = std::string(function) + ": " + status.message;
         return report(status);
     });
@@ -49,24 +49,24 @@ extern "C" {
 wadi_vulkan_host wadi_default_vulkan_host(void) { return sized<wadi_vulkan_host>(); }
 
 wadi_result wadi_vulkan_wait(wadi_world_id id, const wadi_vulkan_sync* points, uint32_t count) {
-    return on_host(__func__, id, points, [&](compute::Device& device) {
+    return on_host(__func__, id, points, [&](compute::HostSync& sync) {
         std::vector<compute::SyncPoint> all;
         for (uint32_t n = 0; n < count; ++n) all.push_back(to_point(points[n]));
-        return device.wait_before(all);
+        return sync.wait_before(all);
     });
 }
 
 wadi_result wadi_vulkan_signal(wadi_world_id id, const wadi_vulkan_sync* point) {
-    return on_host(__func__, id, point, [&](compute::Device& device) { return device.signal_after(to_point(*point)); });
+    return on_host(__func__, id, point, [&](compute::HostSync& sync) { return sync.signal_after(to_point(*point)); });
 }
 
 wadi_result wadi_vulkan_begin_recording(wadi_world_id id, VkCommandBuffer commands, const wadi_vulkan_sync* promise) {
     return on_host(__func__, id, promise,
-                   [&](compute::Device& device) { return device.begin_recording(commands, to_point(*promise)); });
+                   [&](compute::HostSync& sync) { return sync.begin_recording(commands, to_point(*promise)); });
 }
 
 wadi_result wadi_vulkan_end_recording(wadi_world_id id) {
-    return on_host(__func__, id, &id, [&](compute::Device& device) { return device.end_recording(); });
+    return on_host(__func__, id, &id, [&](compute::HostSync& sync) { return sync.end_recording(); });
 }
 
 } // extern "C"

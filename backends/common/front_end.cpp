@@ -162,19 +162,25 @@ Result<compute::NativeBuffer> FrontEnd::native(compute::Buffer buffer) {
     });
 }
 
+template <class Call> Status FrontEnd::with_host_sync(Call call) {
+    compute::HostSync* sync = device_->host_sync();
+    return sync != nullptr ? call(*sync) : compute::no_host_sync(capabilities().backend);
+}
+
 Status FrontEnd::wait_before(std::span<const compute::SyncPoint> points) {
     return unless_lost([&] {
         for (const auto& point : points) {
             if (auto status = check_semaphore(point, "wait_before"); !status) return status;
         }
-        return points.empty() ? ok_status() : device_->wait_before(points);
+        if (points.empty()) return ok_status();
+        return with_host_sync([&](compute::HostSync& sync) { return sync.wait_before(points); });
     });
 }
 
 Status FrontEnd::signal_after(const compute::SyncPoint& point) {
     return unless_lost([&] {
-        Status status = check_semaphore(point, "signal_after");
-        return status ? device_->signal_after(point) : status;
+        if (auto status = check_semaphore(point, "signal_after"); !status) return status;
+        return with_host_sync([&](compute::HostSync& sync) { return sync.signal_after(point); });
     });
 }
 
@@ -183,7 +189,7 @@ Status FrontEnd::begin_recording(void* commands, const compute::SyncPoint& promi
         if (auto status = check_semaphore(promise, "begin_recording"); !status) return status;
         if (commands == nullptr) return error(Code::bad_argument, "begin_recording: the command buffer is null");
         if (recording_) return error(Code::bad_argument, "begin_recording: a recording is under way; end it first");
-        Status status = device_->begin_recording(commands, promise);
+        Status status = with_host_sync([&](compute::HostSync& sync) { return sync.begin_recording(commands, promise); });
         recording_ = bool(status);
         return status;
     });
@@ -193,7 +199,7 @@ Status FrontEnd::end_recording() {
     return unless_lost([&] {
         if (!recording_) return error(Code::bad_argument, "end_recording: no recording is under way");
         recording_ = false;
-        return device_->end_recording();
+        return with_host_sync([](compute::HostSync& sync) { return sync.end_recording(); });
     });
 }
 

@@ -17,7 +17,7 @@ template <class Call> auto guarded(Call call) -> decltype(call()) {
 
 /// Refuses every argument that no backend could take, shares equal pipelines, and remembers that a device is lost. What reaches
 /// the backend is right: handles are alive, ranges inside, group sizes chosen, tickets given out.
-class FrontEnd final : public compute::Device {
+class FrontEnd final : public compute::Device, private compute::HostSync {
   public:
     explicit FrontEnd(std::unique_ptr<compute::Device> device) : device_(std::move(device)) {}
 
@@ -36,13 +36,15 @@ class FrontEnd final : public compute::Device {
     Status wait(compute::Ticket ticket) override;
     Result<std::vector<compute::Timing>> timings(compute::Ticket ticket) override;
     Result<compute::NativeBuffer> native(compute::Buffer buffer) override;
+    compute::HostSync* host_sync() override { return this; }
+    void inject_device_lost() override;
+
+  private:
     Status wait_before(std::span<const compute::SyncPoint> points) override;
     Status signal_after(const compute::SyncPoint& point) override;
     Status begin_recording(void* commands, const compute::SyncPoint& promise) override;
     Status end_recording() override;
-    void inject_device_lost() override;
-
-  private:
+    template <class Call> Status with_host_sync(Call call);
     template <class Call> auto unless_lost(Call call) -> decltype(call());
     Status check_given_out(compute::Ticket ticket) const;
 

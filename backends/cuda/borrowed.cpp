@@ -60,7 +60,8 @@ Result<cudaExternalSemaphore_t> Semaphores::find(std::uint64_t semaphore) {
     return made;
 }
 
-Status Semaphores::wait(std::span<const compute::SyncPoint> points) {
+Status Semaphores::wait_before(std::span<const compute::SyncPoint> points) {
+    const CurrentContext current(c_);
     for (const compute::SyncPoint& point : points) {
         auto semaphore = find(point.semaphore);
         if (!semaphore) return semaphore.status();
@@ -72,7 +73,8 @@ Status Semaphores::wait(std::span<const compute::SyncPoint> points) {
     return ok_status();
 }
 
-Status Semaphores::signal(const compute::SyncPoint& point) {
+Status Semaphores::signal_after(const compute::SyncPoint& point) {
+    const CurrentContext current(c_);
     auto semaphore = find(point.semaphore);
     if (!semaphore) return semaphore.status();
     cudaExternalSemaphoreSignalParams params{};
@@ -80,5 +82,9 @@ Status Semaphores::signal(const compute::SyncPoint& point) {
     const cudaError_t r = cudaSignalExternalSemaphoresAsync(&*semaphore, &params, 1, c_.stream);
     return c_.check(r, "cudaSignalExternalSemaphoresAsync");
 }
+
+Status Semaphores::begin_recording(void*, const compute::SyncPoint&) { return end_recording(); }
+
+Status Semaphores::end_recording() { return compute::no_host_sync(c_.capabilities.backend); }
 
 } // namespace wadi::cuda

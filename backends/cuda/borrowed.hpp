@@ -18,16 +18,17 @@ Result<BorrowedMemory> borrow(Context& context, std::uint64_t bytes, const std::
 void give_back(Context& context, BorrowedMemory& memory);
 
 /// The host's timeline semaphores, imported when first used and kept until the device closes.
-class Semaphores {
+class Semaphores final : public compute::HostSync {
   public:
     explicit Semaphores(Context& context) : c_(context) {}
     ~Semaphores();
     Semaphores(const Semaphores&) = delete;
     Semaphores& operator=(const Semaphores&) = delete;
-    /// What is submitted next starts after these points. Errors: not_supported.
-    Status wait(std::span<const compute::SyncPoint> points);
-    /// Set once what was submitted so far is done.
-    Status signal(const compute::SyncPoint& point);
+    Status wait_before(std::span<const compute::SyncPoint> points) override;
+    Status signal_after(const compute::SyncPoint& point) override;
+    /// Refused: CUDA cannot record into Vulkan's command buffers.
+    Status begin_recording(void* commands, const compute::SyncPoint& promise) override;
+    Status end_recording() override;
 
   private:
     Result<cudaExternalSemaphore_t> find(std::uint64_t semaphore);

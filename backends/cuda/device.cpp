@@ -97,17 +97,7 @@ class CudaDevice final : public compute::Device {
                                      memory.bytes};
     }
 
-    Status wait_before(std::span<const compute::SyncPoint> points) override {
-        if (context_->options.lender == nullptr) return Device::wait_before(points);
-        const CurrentContext current(*context_);
-        return semaphores_.wait(points);
-    }
-
-    Status signal_after(const compute::SyncPoint& point) override {
-        if (context_->options.lender == nullptr) return Device::signal_after(point);
-        const CurrentContext current(*context_);
-        return semaphores_.signal(point);
-    }
+    compute::HostSync* host_sync() override { return context_->options.lender != nullptr ? &semaphores_ : nullptr; }
 
   private:
     // Destroyed from the last to the first.

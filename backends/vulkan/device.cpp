@@ -103,15 +103,7 @@ class VulkanDevice final : public compute::Device {
                                      memory.bytes};
     }
 
-    Status wait_before(std::span<const compute::SyncPoint> points) override { return submissions_.wait_before(points); }
-
-    Status signal_after(const compute::SyncPoint& point) override { return submissions_.signal_after(point); }
-
-    Status begin_recording(void* commands, const compute::SyncPoint& promise) override {
-        return submissions_.begin_recording(static_cast<VkCommandBuffer>(commands), promise);
-    }
-
-    Status end_recording() override { return submissions_.end_recording(); }
+    compute::HostSync* host_sync() override { return &submissions_; }
 
   private:
     // The host's command buffers may refer to anything that was alive when they were recorded.

@@ -152,9 +152,9 @@ Status Submissions::signal_after(const compute::SyncPoint& point) {
     return c_.check(c_.vk.vkQueueSubmit(c_.queue, 1, &info, VK_NULL_HANDLE), "vkQueueSubmit");
 }
 
-Status Submissions::begin_recording(VkCommandBuffer commands, const compute::SyncPoint& promise) {
+Status Submissions::begin_recording(void* commands, const compute::SyncPoint& promise) {
     if (Status s = check_timeline(); !s) return s;
-    host_commands_ = commands;
+    host_commands_ = static_cast<VkCommandBuffer>(commands);
     promise_ = promise;
     return ok_status();
 }

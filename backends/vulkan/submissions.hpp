@@ -7,7 +7,7 @@
 
 namespace wadi::vulkan {
 
-class Submissions {
+class Submissions final : public compute::HostSync {
   public:
     /// Submissions in flight at most; also the number of copies of anything that one submission must own.
     static constexpr std::uint32_t most_in_flight = 32;
@@ -28,11 +28,11 @@ class Submissions {
     Result<compute::Ticket> submit(std::uint32_t slot, const StepInput& input, VkCommandBuffer commands,
                                    compute::Program program);
 
-    Status wait_before(std::span<const compute::SyncPoint> points);
-    Status signal_after(const compute::SyncPoint& point);
+    Status wait_before(std::span<const compute::SyncPoint> points) override;
+    Status signal_after(const compute::SyncPoint& point) override;
     /// Until end_recording() submit() records into `commands`; its programs' command buffers must then be secondary ones.
-    Status begin_recording(VkCommandBuffer commands, const compute::SyncPoint& promise);
-    Status end_recording();
+    Status begin_recording(void* commands, const compute::SyncPoint& promise) override;
+    Status end_recording() override;
     bool recording() const { return host_commands_ != VK_NULL_HANDLE; }
     /// not_ready while recorded work has not run: what goes to the queue now would overtake it.
     Status check_order();

@@ -1,6 +1,7 @@
 // The compute interface that every backend implements, and the only thing the engine knows of a device.
 // How to add a backend: backends/README.md.
 #pragma once
+#include "engine/compute/host_sync.hpp"
 #include "engine/compute/lender.hpp"
 #include "engine/compute/params.hpp"
 #include "engine/compute/program.hpp"
@@ -53,12 +54,6 @@ struct HostDevice {
     std::uint32_t queue_family = 0;              // must have compute
     std::vector<std::uint32_t> sharing_families; // other queue families whose commands touch our buffers
     bool timeline_semaphore = false;             // the feature is enabled on the device
-};
-
-/// A point on a host's timeline semaphore (VkSemaphore as a number).
-struct SyncPoint {
-    std::uint64_t semaphore = 0;
-    std::uint64_t value = 0;
 };
 
 /// A buffer as its API knows it.
@@ -169,23 +164,12 @@ class Device {
 
     /// What a host passes to its own API. Errors: bad_argument (no such buffer).
     virtual Result<NativeBuffer> native(Buffer buffer) = 0;
-    /// The next submission waits for the host's semaphores; signal() sets one once everything submitted so far is done. Neither
-    /// waits. Errors: not_supported (no timeline semaphores, or another API's device), bad_argument (null semaphore).
-    virtual Status wait_before(std::span<const SyncPoint>) { return no_host_sync(); }
-    virtual Status signal_after(const SyncPoint&) { return no_host_sync(); }
-    /// From here to end_recording() every submit() goes into the host's command buffer (VkCommandBuffer, recording, of the
-    /// device's queue family, outside a render pass) instead of the queue. The host promises to submit it, in the order of
-    /// recording, with a signal of `promise`; tickets finish when that is reached. Until then calls that would reach the queue
-    /// ahead of it (read, write, submit outside a recording) are refused with not_ready. Errors: not_supported, bad_argument.
-    virtual Status begin_recording(void*, const SyncPoint&) { return no_host_sync(); }
-    virtual Status end_recording() { return no_host_sync(); }
+    /// The host's semaphores and command buffers. Null where a backend has none; the front end's is never null and refuses.
+    virtual HostSync* host_sync() { return nullptr; }
 
     /// Makes every later call return device_lost, as a real fault would: for tests of the host's reaction. Of the front end
     /// alone; a backend inherits this.
     virtual void inject_device_lost() {}
-
-  private:
-    Status no_host_sync() const;
 };
 
 } // namespace wadi::compute

@@ -52,12 +52,7 @@ class BorrowedDevice final : public compute::Device {
     Status wait(compute::Ticket ticket) override { return device_.wait(ticket); }
     Result<std::vector<compute::Timing>> timings(compute::Ticket ticket) override { return device_.timings(ticket); }
     Result<compute::NativeBuffer> native(compute::Buffer buffer) override { return device_.native(buffer); }
-    Status wait_before(std::span<const compute::SyncPoint> points) override { return device_.wait_before(points); }
-    Status signal_after(const compute::SyncPoint& point) override { return device_.signal_after(point); }
-    Status begin_recording(void* commands, const compute::SyncPoint& promise) override {
-        return device_.begin_recording(commands, promise);
-    }
-    Status end_recording() override { return device_.end_recording(); }
+    compute::HostSync* host_sync() override { return device_.host_sync(); }
     void inject_device_lost() override { device_.inject_device_lost(); }
 
   private:
