@@ -1,5 +1,6 @@
 #include "backends/common/front_end.hpp"
 #include "backends/common/group_size.hpp"
+#include "engine/compute/hazards.hpp"
 #include <algorithm>
 
 namespace wadi::backends {
@@ -61,7 +62,11 @@ std::span<std::byte> FrontEnd::mapped(compute::Buffer buffer) {
 }
 
 void FrontEnd::destroy_buffer(compute::Buffer buffer) {
-    if (objects_.buffers.erase(buffer.id) != 0) device_->destroy_buffer(buffer);
+    if (objects_.buffers.erase(buffer.id) == 0) return;
+    for (auto& [id, program] : programs_) {
+        if (program.buffers.count(buffer.id) != 0) program.gone = buffer.id;
+    }
+    device_->destroy_buffer(buffer);
 }
 
 Status FrontEnd::write(compute::Buffer buffer, std::uint64_t offset, std::span<const std::byte> bytes) {
@@ -106,7 +111,10 @@ Result<compute::Pipeline> FrontEnd::create_pipeline(int index, std::uint32_t eff
 Result<compute::Program> FrontEnd::compile(const compute::ProgramBuilder& builder, const WorldParams& params) {
     return unless_lost([&]() -> Result<compute::Program> {
         if (auto status = check_program(builder, params, objects_); !status) return status;
-        auto row = row_for(programs_, true);
+        Program used{builder.label(), {}};
+        for (const auto& op : builder.ops())
+            for (const auto& use : compute::buffer_uses(op)) used.buffers.insert(use.buffer.id);
+        auto row = row_for(programs_, std::move(used));
         auto made = device_->compile(builder, params);
         if (made) keep(programs_, std::move(row), made->id);
         return made;
@@ -119,8 +127,12 @@ void FrontEnd::destroy_program(compute::Program program) {
 
 Result<compute::Ticket> FrontEnd::submit(compute::Program program, const StepInput& input) {
     return unless_lost([&]() -> Result<compute::Ticket> {
-        if (programs_.count(program.id) == 0)
+        const auto found = programs_.find(program.id);
+        if (found == programs_.end())
             return error(Code::bad_argument, "submit: no program has the handle " + std::to_string(program.id));
+        if (const auto& [label, buffers, gone] = found->second; gone != 0)
+            return error(Code::bad_argument, "submit: program '" + label + "': its buffer with the handle " +
+                                                 std::to_string(gone) + " was destroyed");
         auto ticket = device_->submit(program, input);
         if (ticket) newest_ = *ticket;
         return ticket;

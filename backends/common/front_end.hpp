@@ -3,6 +3,7 @@
 #include "backends/common/backend.hpp"
 #include "backends/common/program_check.hpp"
 #include <new>
+#include <set>
 
 namespace wadi::backends {
 
@@ -51,7 +52,12 @@ class FrontEnd final : public compute::Device, private compute::HostSync {
     std::unique_ptr<compute::Device> device_;
     Status lost_; // not ok: every call that needs the device returns it
     Objects objects_;
-    std::map<std::uint32_t, bool> programs_; // those that exist
+    struct Program {
+        std::string label;
+        std::set<std::uint32_t> buffers;
+        std::uint32_t gone = 0; // of the buffers, one that was destroyed
+    };
+    std::map<std::uint32_t, Program> programs_; // those that exist
     compute::Ticket newest_;
     bool recording_ = false;
 };

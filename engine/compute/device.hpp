@@ -133,7 +133,7 @@ class Device {
     /// here may be read once its ticket has finished. Such buffers take part in copies only: compile() refuses them in
     /// dispatches and fills.
     virtual std::span<std::byte> mapped(Buffer buffer) = 0;
-    /// Frees a buffer; programs that use it must not be submitted again. Null is ignored. Waits for work in flight.
+    /// Frees a buffer; programs that use it can only be destroyed after that. Null is ignored. Waits for work in flight.
     virtual void destroy_buffer(Buffer buffer) = 0;
     /// Copies host bytes into a buffer, ordered after all earlier and before all later submissions. May wait.
     virtual Status write(Buffer buffer, std::uint64_t offset, std::span<const std::byte> bytes) = 0;
@@ -152,7 +152,7 @@ class Device {
     virtual void destroy_program(Program program) = 0;
 
     /// Replays a program with this step's input. Returns at once unless the queue of submissions is full. Tickets count
-    /// up from 1. Errors: bad_argument (no such program).
+    /// up from 1. Errors: bad_argument (no such program, or one of its buffers was destroyed).
     virtual Result<Ticket> submit(Program program, const StepInput& input) = 0;
     /// False for a ticket that was never given out.
     virtual bool finished(Ticket ticket) = 0;

@@ -156,6 +156,48 @@ void bad_transfers(Session&, Device& device, Expect& expect) {
     device.destroy_buffer(b);
 }
 
+// A program outlives what it uses: each kind of operation, and a binding that does not exist.
+void destroyed_buffers(Session&, Device& device, Expect& expect) {
+    const auto check = [&](const char* what, Buffer victim, const ProgramBuilder& builder, bool refused) {
+        auto program = device.compile(builder, small_params());
+        expect.ok(program.status(), "compile");
+        if (!program) return;
+        expect.ok(device.submit(*program, StepInput{}).status(), "submit with all buffers");
+        device.destroy_buffer(victim);
+        const Status status = device.submit(*program, StepInput{}).status();
+        if (!refused) expect.ok(status, what);
+        const std::string handle = std::to_string(victim.id);
+        if (refused)
+            expect.refused(status, "submit: program 'outlives': its buffer with the handle " + handle + " was destroyed", what);
+        device.destroy_program(*program);
+    };
+    const Buffer kept = buffer_of(device, {1, 2});
+    for (const bool from : {true, false}) {
+        const Buffer victim = buffer_of(device, {3, 4});
+        ProgramBuilder builder("outlives");
+        builder.copy(from ? compute::Copy{victim, kept, 0, 0, 8} : compute::Copy{kept, victim, 0, 0, 8});
+        check("a copy", victim, builder, true);
+    }
+    Buffer victim = buffer_of(device, {5});
+    ProgramBuilder fill("outlives");
+    fill.fill({kept, 1});
+    fill.fill({victim, 1});
+    check("a fill", victim, fill, true);
+    const Rain rain(device);
+    auto dispatch = rain_dispatch(device, rain.terrain, rain.water, rain.ledger);
+    expect.ok(dispatch.status(), "create_pipeline");
+    if (!dispatch) return;
+    victim = dispatch->slots[3] = buffer_of(device, {6});
+    ProgramBuilder absent("outlives");
+    absent.dispatch(*dispatch);
+    check("a dispatch whose binding does not exist", victim, absent, false);
+    victim = rain.water;
+    ProgramBuilder present("outlives");
+    present.dispatch(*dispatch);
+    check("a dispatch", victim, present, true);
+    device.destroy_buffer(kept);
+}
+
 // A submission that is still running when it is asked for its times, where the device is slow enough to be caught at it.
 void early_timings(Session&, Device& device, Expect& expect) {
     const Buffer a = buffer_of(device, std::vector<std::uint32_t>(1u << 22, 1)),
@@ -184,10 +226,8 @@ void early_timings(Session&, Device& device, Expect& expect) {
 
 std::span<const Contract> refusal_contracts() {
     static constexpr Contract contracts[] = {
-        {"bad_dispatches", bad_dispatches},
-        {"bad_tiles", bad_tiles},
-        {"bad_transfers", bad_transfers},
-        {"early_timings", early_timings},
+        {"bad_dispatches", bad_dispatches},       {"bad_tiles", bad_tiles},         {"bad_transfers", bad_transfers},
+        {"destroyed_buffers", destroyed_buffers}, {"early_timings", early_timings},
     };
     return contracts;
 }
