@@ -1,4 +1,6 @@
-"""Columns of dry sand that collapse, against own computations with the material point method (data/README.md) and fitted laws."""
+"""Columns of dry sand that collapse, against own computations with the material point method (data/README.md) and laws fitted to
+experiments: Lube, Huppert, Sparks and Hallworth 2004 (axisymmetric) and Lube, Huppert, Sparks and Freundt 2005 (planar)."""
+import math
 import pathlib
 
 import numpy as np
@@ -6,63 +8,177 @@ import numpy as np
 import shapes
 from cases import case
 from scene import grid, level
-from table import at_most, near
+from table import at_most, near, shown
 
 DATA = pathlib.Path(__file__).parent / "data"
-RING = 0.1  # of the references' profiles [m]
+STRIP = 0.1  # width of the rings and strips of the references' profiles [m]
 FOOT = 0.02  # depth at which sand ends [m]
+ASPECTS = (0.5, 1, 2)
+HALF = 2.0  # radius or half-width of a column [m]
+TIMES = (0.4, 0.8, 1.2, 1.6, 2, 2.4, 2.8, 3.2, 3.6, 4)  # of the references
+AXIS_BOX, PLANAR_BOX, ROWS = 16, 32, 4  # metres, metres, cells: no wall is met
 
 
-def profile(name):
-    """Depths of a reference in rings of 0.1 m."""
-    return np.loadtxt(DATA / f"{name}.txt", skiprows=1)[:, 1]
+def profile(name, count):
+    """Depths of a reference, 0 beyond its end."""
+    depth = np.loadtxt(DATA / f"{name}.txt", skiprows=1)[:, 1]
+    return np.pad(depth, (0, max(0, count - len(depth))))[:count]
 
 
 def history(name):
-    """Time, centre and toe of a reference."""
+    """Time: (centre, toe) of a reference."""
     rows = [line.split() for line in (DATA / f"{name}_times.txt").read_text().splitlines() if line]
-    return np.array([[float(row[2]), float(row[4]), float(row[6])] for row in rows])
+    return {float(row[2]): (float(row[4]), float(row[6])) for row in rows}
 
 
 def rings(cells, hs, samples=8):
-    """Volume and area of rings of RING about the middle, cells shared out between them by area."""
+    """Depth in rings of STRIP about the middle, cells shared out between them by area."""
     x, y = shapes.centres(cells)
     offsets = ((np.arange(samples) + 0.5) / samples - 0.5) * cells["dx"]
-    count = int(np.hypot(x.max() + cells["dx"], y.max() + cells["dx"]) / RING) + 1
+    count = int(np.hypot(x.max() + cells["dx"], y.max() + cells["dx"]) / STRIP) + 1
     volumes, areas = np.zeros(count), np.zeros(count)
     for oy in offsets:
         for ox in offsets:
-            ring = (np.hypot(x + ox, y + oy) / RING).astype(int).ravel()
+            ring = (np.hypot(x + ox, y + oy) / STRIP).astype(int).ravel()
             volumes += np.bincount(ring, hs.ravel(), count)
             areas += np.bincount(ring, minlength=count)
-    return volumes * (cells["dx"] / samples) ** 2, areas * (cells["dx"] / samples) ** 2
+    return volumes / np.maximum(areas, 1)
 
 
-def toe(volumes, areas):
-    """Outer edge of the outermost ring whose mean depth is above FOOT."""
-    deep = np.nonzero(volumes > FOOT * areas)[0]
-    return (deep[-1] + 1) * RING if len(deep) else 0.0
+def strips(cells, hs):
+    """Depth in strips of STRIP from the west wall."""
+    fine = 80  # samples to a strip, a multiple of what a cell of 0.1, 0.05 or 0.025 m has
+    x = (np.arange(round(cells["nx"] * cells["dx"] / STRIP) * fine) + 0.5) * STRIP / fine
+    column = np.minimum((x / cells["dx"]).astype(int), cells["nx"] - 1)
+    return hs.mean(0)[column].reshape(-1, fine).mean(1)
 
 
-def axisymmetric(a):
-    @case(f"column_axi_{a:g}", quick=(0.1,))
-    def measure(lab, dx):
-        cells = grid(16, 16, dx)
-        sand = shapes.draw(cells, shapes.disc(2, 2 * a))
-        run = lab.run(level(cells, sand=[{"file": sand}]), [4])
+def toe(depth):
+    """Outer edge of the outermost strip that is deeper than FOOT."""
+    deep = np.nonzero(depth > FOOT)[0]
+    return (deep[-1] + 1) * STRIP if len(deep) else 0.0
+
+
+def elsewhere(depth, reference, weights):
+    """Share of the sand that lies elsewhere than in the reference [%]."""
+    here, there = depth * weights, reference * weights
+    return 50 * np.abs(here / here.sum() - there / there.sum()).sum()
+
+
+def front(cells, hs, diagonal):
+    """Distance from the middle at which the depth passes FOOT along the axes or the diagonals, between cells, mean of four."""
+    half = cells["nx"] // 2
+    quarters = (hs[half:, half:], hs[half:, :half][:, ::-1], hs[:half, half:][::-1], hs[:half, :half][::-1, ::-1])
+    found = []
+    for quarter in quarters:
+        line = np.diag(quarter) if diagonal else (quarter[0] + quarter[:, 0]) / 2
+        last = np.nonzero(line > FOOT)[0][-1]
+        beyond = line[last + 1] if last + 1 < half else 0.0
+        found.append((last + 0.5 + (line[last] - FOOT) / (line[last] - beyond)) * cells["dx"] * (math.sqrt(2) if diagonal else 1))
+    return float(np.mean(found))
+
+
+def front_history(run, reference, reach):
+    """Largest deviation of the front's place from the reference's, in the time that this takes to come to rest [%]."""
+    past = history(reference)
+    return max(100 * abs(reach(run.field("hs", time)) / past[time][1] - 1) for time in TIMES if time in past)
+
+
+def collapsed(run, cells, name, depth_of, distance, weights):
+    """The rows that all columns share; `distance` of the cells from the middle."""
+    hs = run.field("hs", TIMES[-1])
+    depth = depth_of(hs)
+    centre, end = history(name)[TIMES[-1]]
+    return [
+        near("toe", toe(depth), end, 0.1, "MPM"),
+        near("centre", hs[distance < 0.5].mean(), centre, 0.1, "MPM"),
+        at_most("elsewhere", elsewhere(depth, profile(name, len(depth)), weights), 6, "%", "than in MPM"),
+        at_most("front until then", front_history(run, name, lambda field: toe(depth_of(field))), 15, "%", "MPM at 0.4, 0.8 ... s"),
+    ]
+
+
+def axisymmetric(lab, dx, a, material):
+    cells = grid(AXIS_BOX, AXIS_BOX, dx)
+    column = shapes.draw(cells, shapes.disc(HALF, HALF * a))
+    return cells, lab.run(level(cells, sand=[{"file": column}], material=material), TIMES)
+
+
+def planar(lab, dx, a, material):
+    cells = {"nx": round(PLANAR_BOX / dx), "ny": ROWS, "dx": dx}
+    column = shapes.draw(cells, shapes.block(2 * HALF, 2 * ROWS * dx, HALF * a))
+    return cells, lab.run(level(cells, sand=[{"file": column}], material=material), TIMES)
+
+
+def halves(cells, hs):
+    """Depth in strips from the middle, both sides together."""
+    depth = strips(cells, hs)
+    middle = len(depth) // 2
+    return (depth[middle:] + depth[:middle][::-1]) / 2
+
+
+def against_mpm(a, suffix, material, quick):
+    @case(f"column_axi_{a:g}{suffix}", quick=quick)
+    def measure_axisymmetric(lab, dx):
+        cells, run = axisymmetric(lab, dx, a, material)
         x, y = shapes.centres(cells)
-        hs, radius = run.field("hs", 4), np.hypot(x, y)
-        volumes, areas = rings(cells, hs)
-        reference = profile(f"axi_triaxial_a{a:g}")
-        there = np.zeros_like(volumes)
-        there[:len(reference)] = reference[:len(there)] * np.pi * (2 * np.arange(len(reference[:len(there)])) + 1) * RING**2
-        there *= volumes.sum() / there.sum()
+        count = len(rings(cells, x * 0))
+        rows = collapsed(run, cells, f"axi_triaxial_a{a:g}", lambda hs: rings(cells, hs), np.hypot(x, y), 2 * np.arange(count) + 1)
+        hs = run.field("hs", TIMES[-1])
+        axis, diagonal = front(cells, hs, False), front(cells, hs, True)
+        return [*rows, at_most("axis from diagonal", 100 * abs(axis / diagonal - 1), 3, "%", f"toes {axis:.3f} and {diagonal:.3f} m")]
+
+    @case(f"column_planar_{a:g}{suffix}", quick=quick)
+    def measure_planar(lab, dx):
+        cells, run = planar(lab, dx, a, material)
+        return collapsed(run, cells, f"planar_triaxial_a{a:g}", lambda hs: halves(cells, hs), np.abs(shapes.centres(cells)[0]), 1)
+
+
+def against_lube(name, measure, law, source, depth_of):
+    @case(name)
+    def rows(lab, dx):
+        found = []
+        for a in ASPECTS:
+            cells, run = measure(lab, dx, a, {"friction": 0.6})
+            found.append(near(f"toe, a = {a:g}", toe(depth_of(cells, run.field("hs", TIMES[-1]))), law(a), 0.12, source))
+        return found
+
+
+def on_slope(a):
+    @case(f"column_slope_{a:g}")
+    def measure(lab, dx):
+        cells = {"nx": round(PLANAR_BOX / dx), "ny": ROWS, "dx": dx}
+        middle, name = 6.0, f"slope03_a{a:g}"
+        x = shapes.centres(cells)[0] + PLANAR_BOX / 2
+        column = shapes.draw(cells, lambda x, y: np.where(np.abs(x + PLANAR_BOX / 2 - middle) < HALF, HALF * a, 0.0))
+        run = lab.run(level(cells, terrain=[{"file": shapes.incline(cells, 0.3)}], sand=[{"file": column}]), [*TIMES, 5])
+        depth = strips(cells, run.field("hs", 5))
+        reference = profile(name, len(depth))
         return [
-            near("toe", toe(volumes, areas), history(f"axi_triaxial_a{a:g}")[-1, 2], 0.1, "MPM"),
-            near("centre", hs[radius < 0.5].mean(), history(f"axi_triaxial_a{a:g}")[-1, 1], 0.1, "MPM"),
-            at_most("elsewhere", 50 * np.abs(volumes - there).sum() / volumes.sum(), 6, "%"),
+            near("run-out from the middle", toe(depth) - middle, history(name)[5][1] - middle, 0.12, "MPM"),
+            shown("upper edge", np.nonzero(depth > FOOT)[0][0] * STRIP - middle, "m", f"MPM {np.nonzero(reference > FOOT)[0][0] * STRIP - middle:.2f}"),
+            shown("elsewhere", elsewhere(depth, reference, 1), "%"),
+            at_most("front until then", front_history(run, name, lambda hs: toe(strips(cells, hs))), 15, "%", "MPM at 0.4, 0.8 ... s"),
         ]
 
 
-for aspect in (0.5, 1, 2):
-    axisymmetric(aspect)
+@case("reservoir")
+def reservoir(lab, dx):
+    cells = {"nx": round(PLANAR_BOX / 2 / dx), "ny": ROWS, "dx": dx}
+    gate = 6.0
+    sand = shapes.draw(cells, lambda x, y: np.where(x + PLANAR_BOX / 4 < gate, 1.0, 0.0))
+    run = lab.run(level(cells, sand=[{"file": sand}]), TIMES)
+    depth = strips(cells, run.field("hs", TIMES[-1]))
+    return [
+        near("run-out from the gate", toe(depth) - gate, history("reservoir")[TIMES[-1]][1] - gate, 0.12, "MPM"),
+        shown("elsewhere", elsewhere(depth, profile("reservoir", len(depth)), 1), "%"),
+        at_most("front until then", front_history(run, "reservoir", lambda hs: toe(strips(cells, hs))), 15, "%", "MPM at 0.4, 0.8 ... s"),
+    ]
+
+
+for aspect in ASPECTS:
+    against_mpm(aspect, "", {}, (0.1,))
+    against_mpm(aspect, "_friction_only", {"young_modulus": 0}, ())
+against_lube("lube_axi", axisymmetric, lambda a: HALF * (1 + (1.24 * a if a < 1.7 else 1.6 * math.sqrt(a))), "Lube et al. 2004", rings)
+against_lube("lube_planar", planar, lambda a: HALF * (1 + 1.2 * a), "Lube et al. 2005", halves)
+for aspect in (0.5, 1):
+    on_slope(aspect)

@@ -55,7 +55,7 @@ def options():
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="runs at once")
     parser.add_argument("--work", help="folder that keeps the runs; default: sand_runs beside the recorder's folder")
     parser.add_argument("--list", action="store_true", help="names of the cases")
-    return parser.parse_args()
+    return parser.parse_intermixed_args()
 
 
 def chosen(patterns):
