@@ -4,7 +4,7 @@ set -euo pipefail
 
 packages=(
     # build
-    build-essential cmake ninja-build python3 pkg-config
+    build-essential cmake ninja-build python3 python3-numpy pkg-config
     # shaders and Vulkan; mesa-vulkan-drivers brings a software device
     glslang-tools spirv-tools libvulkan-dev libvulkan-volk-dev libvulkan1 mesa-vulkan-drivers vulkan-validationlayers
     # NVIDIA's Vulkan driver loads these

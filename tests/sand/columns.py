@@ -15,6 +15,7 @@ STRIP = 0.1  # width of the rings and strips of the references' profiles [m]
 FOOT = 0.02  # depth at which sand ends [m]
 ASPECTS = (0.5, 1, 2)
 HALF = 2.0  # radius or half-width of a column [m]
+SLOPE_SHARE = 0.2  # within which a pile's flank is as steep as the reference's
 TIMES = (0.4, 0.8, 1.2, 1.6, 2, 2.4, 2.8, 3.2, 3.6, 4)  # of the references
 AXIS_BOX, PLANAR_BOX, ROWS = 16, 32, 4  # metres, metres, cells: no wall is met
 
@@ -65,6 +66,13 @@ def elsewhere(depth, reference, weights):
     return 50 * np.abs(here / here.sum() - there / there.sum()).sum()
 
 
+def mean_slope(depth):
+    """Of the flank from 75 to 25 % of the pile's height."""
+    top = depth[:3].mean()
+    inner, outer = (STRIP * (np.nonzero(depth > share * top)[0][-1] + 0.5) for share in (0.75, 0.25))
+    return 0.5 * top / (outer - inner)
+
+
 def front(cells, hs, diagonal):
     """Distance from the middle at which the depth passes FOOT along the axes or the diagonals, between cells, mean of four."""
     half = cells["nx"] // 2
@@ -94,6 +102,7 @@ def collapsed(run, cells, name, depth_of, distance, weights):
         near("centre", hs[distance < 0.5].mean(), centre, 0.1, "MPM"),
         at_most("elsewhere", elsewhere(depth, profile(name, len(depth)), weights), 6, "%", "than in MPM"),
         at_most("front until then", front_history(run, name, lambda field: toe(depth_of(field))), 15, "%", "MPM at 0.4, 0.8 ... s"),
+        near("mean slope", mean_slope(depth), mean_slope(profile(name, len(depth))), SLOPE_SHARE, "MPM", ""),
     ]
 
 

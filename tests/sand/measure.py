@@ -9,6 +9,7 @@ import fnmatch
 import json
 import os
 import sys
+import tempfile
 
 try:
     import numpy  # noqa: F401, first of all, for a message that helps
@@ -19,7 +20,8 @@ import cases
 import scene
 import table
 
-import columns  # noqa: F401, registers its cases
+import columns  # noqa: F401, registers its cases, as do:
+import slopes  # noqa: F401
 
 
 def setting(text):
@@ -53,7 +55,7 @@ def options():
     parser.add_argument("--control", action="store_true", help="run each case once more with its control, which must miss a limit")
     parser.add_argument("--check", action="store_true", help="fail where a limit is missed, or where a control misses none")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="runs at once")
-    parser.add_argument("--work", help="folder that keeps the runs; default: sand_runs beside the recorder's folder")
+    parser.add_argument("--work", metavar="DIR", help="keeps the runs there and takes them from there")
     parser.add_argument("--list", action="store_true", help="names of the cases")
     return parser.parse_intermixed_args()
 
@@ -66,33 +68,40 @@ def chosen(patterns):
     return [cases.CASES[name] for name in names]
 
 
+def measured(wanted, lab):
+    """(title, rows, rows of the control or None) of each case on each of its grids."""
+    # Threads for all: the lab itself holds back more runs than --jobs.
+    with concurrent.futures.ThreadPoolExecutor(64) as pool:
+        waiting = []
+        for case in chosen(wanted.cases):
+            for dx in (case.quick if wanted.quick else wanted.dx or case.dx):
+                control = pool.submit(case.measure, lab.variant(case.control), dx) if wanted.control else None
+                waiting.append((f"{case.name}, dx {dx:g}", pool.submit(case.measure, lab, dx), control))
+        for title, rows, control in waiting:
+            yield title, rows.result(), control and control.result()
+
+
 def main():
     wanted = options()
     if wanted.list:
         print("\n".join(cases.CASES))
         return 0
-    missed, tame = [], []
+    count, missed, tame = 0, [], []
     try:
-        lab = scene.Lab(wanted.recorder, wanted.backend, dict(wanted.set), max(1, wanted.jobs), wanted.work)
-        # Threads for all: the lab itself holds back more runs than --jobs.
-        with concurrent.futures.ThreadPoolExecutor(64) as pool:
-            waiting = []
-            for case in chosen(wanted.cases):
-                for dx in wanted.dx or (case.quick if wanted.quick else case.dx):
-                    control = pool.submit(case.measure, lab.variant(case.control), dx) if wanted.control else None
-                    waiting.append((f"{case.name}, dx {dx:g}", pool.submit(case.measure, lab, dx), control))
-            for title, rows, control in waiting:
-                rows, control = rows.result(), control and control.result()
+        with tempfile.TemporaryDirectory(prefix="wadi_sand_") as scratch:
+            lab = scene.Lab(wanted.recorder, wanted.work or scratch, wanted.backend, dict(wanted.set), max(1, wanted.jobs))
+            for title, rows, control in measured(wanted, lab):
                 print("\n".join(table.lines(title, rows, control)), flush=True)
+                count += 1
                 missed += [f"{title}: {row.name}" for row in rows if not row.ok]
                 if control and all(row.ok for row in control):
                     tame.append(title)
     except scene.RunError as error:
         sys.exit(f"measure.py: {error}")
-    print(f"{len(waiting)} cases, {len(missed)} limits missed{''.join(f'{chr(10)}  {name}' for name in missed)}")
+    print(f"{count} cases, {len(missed)} limits missed{''.join(f'{chr(10)}  {name}' for name in missed)}")
     for title in tame:
         print(f"  {title}: its control misses no limit")
-    return 1 if wanted.check and (missed or tame or not waiting) else 0
+    return 1 if wanted.check and (missed or tame or count == 0) else 0
 
 
 if __name__ == "__main__":

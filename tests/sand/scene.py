@@ -71,7 +71,7 @@ def with_files(scene, maps):
 
 
 class Run:
-    """Fields of a run by the recorder's names, as doubles, row 0 in the south; row and column order is [y, x]."""
+    """Fields of a run by the recorder's names at cell centres, velocities too, as doubles; [y, x], row 0 in the south."""
 
     def __init__(self, folder, cells, times):
         self.folder, self.grid, self.dx, self.times = folder, cells, cells["dx"], times
@@ -84,14 +84,17 @@ class Run:
 class Lab:
     """Runs levels, as many at once as `jobs` says, and keeps the runs in `work`, named by all that they depend on."""
 
-    def __init__(self, recorder, backend="cpu", settings=None, jobs=1, work=None):
+    def __init__(self, recorder, work, backend="cpu", settings=None, jobs=1):
         self.recorder = pathlib.Path(recorder).resolve()
         if not os.access(self.recorder, os.X_OK) or self.recorder.is_dir():
             raise RunError(f"{recorder}: no program to run")
         self.backend, self.settings = backend, dict(settings or {})
-        self.work = pathlib.Path(work) if work else self.recorder.parent.parent / "sand_runs"
+        self.work = pathlib.Path(work)
         self.slots = threading.Semaphore(jobs)
-        self.version = hashlib.sha256(self.recorder.read_bytes()).hexdigest()
+        program = hashlib.sha256(self.recorder.read_bytes())
+        for library in sorted((self.recorder.parent.parent / "lib").glob("libwadi.so*")):
+            program.update(library.read_bytes())
+        self.version = program.hexdigest()
 
     def variant(self, settings):
         """The same lab with other settings on top of its own."""

@@ -40,7 +40,5 @@ def cone(slope, height):
 
 
 def incline(grid, slope, turn=0.0):
-    """Ground that falls along the turned x axis, exact at cell centres; nowhere below 0."""
-    x, y = centres(grid)
-    ground = -slope * turned(x, y, turn)[0]
-    return ground - ground.min()
+    """Ground that falls along the turned x axis, exact at cell centres, 0 in the middle."""
+    return -slope * turned(*centres(grid), turn)[0]
