@@ -21,6 +21,9 @@ import scene
 import table
 
 import columns  # noqa: F401, registers its cases, as do:
+import damp  # noqa: F401
+import piles  # noqa: F401
+import seepage  # noqa: F401
 import slopes  # noqa: F401
 
 

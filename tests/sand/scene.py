@@ -2,6 +2,7 @@
 import concurrent.futures
 import copy
 import hashlib
+import io
 import json
 import os
 import pathlib
@@ -58,10 +59,16 @@ def override(scene, settings):
 
 
 def with_files(scene, maps):
-    """The scene with arrays replaced by names of files, which go into `maps`."""
+    """The scene with arrays and paths replaced by names of files, whose bytes go into `maps`."""
     if isinstance(scene, np.ndarray):
         name = f"map{len(maps)}.npy"
-        maps[name] = np.ascontiguousarray(scene, dtype="<f8")
+        with io.BytesIO() as text:
+            np.save(text, np.ascontiguousarray(scene, dtype="<f8"))
+            maps[name] = text.getvalue()
+        return name
+    if isinstance(scene, pathlib.Path):
+        name = f"map{len(maps)}{scene.suffix}"
+        maps[name] = scene.read_bytes()
         return name
     if isinstance(scene, dict):
         return {key: with_files(value, maps) for key, value in scene.items()}
@@ -113,7 +120,7 @@ class Lab:
             arguments += ["--threads", "1"]
         digest = hashlib.sha256(json.dumps([self.version, text, arguments], sort_keys=True).encode())
         for name in sorted(maps):
-            digest.update(maps[name].tobytes())
+            digest.update(maps[name])
         folder = self.work / digest.hexdigest()[:24]
         if not folder.exists():
             with self.slots:
@@ -132,7 +139,7 @@ class Lab:
         with tempfile.TemporaryDirectory(dir=self.work, prefix="running_") as scratch:
             scratch = pathlib.Path(scratch)
             for name, values in maps.items():
-                np.save(scratch / name, values)
+                (scratch / name).write_bytes(values)
             (scratch / "level.json").write_text(json.dumps(text, indent=1))
             out = scratch / "out"
             command = [str(self.recorder), str(scratch / "level.json"), *arguments, "--out", str(out), "--summary", str(out / "summary.json")]
