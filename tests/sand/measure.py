@@ -22,8 +22,8 @@ import table
 
 import columns  # noqa: F401, registers its cases, as do:
 import damp  # noqa: F401
+import dams  # noqa: F401
 import piles  # noqa: F401
-import seepage  # noqa: F401
 import slopes  # noqa: F401
 
 

@@ -1,5 +1,5 @@
-"""What grids and instabilities leave in sand: ripples by wavelength, lobes of fronts, differences between grids and between turned drawings,
-lost relief. Heights are arrays [y, x], lengths metres."""
+"""What grids and instabilities leave in sand: ripples by wavelength, lobes of fronts, differences between grids and between turned
+drawings, lost relief. Heights are arrays [y, x], lengths metres."""
 import numpy as np
 
 import shapes
@@ -92,9 +92,8 @@ def mean_around(heights, cells):
     weights = [cells - 0.5 - whole, *[1] * (2 * whole + 1), cells - 0.5 - whole]
     mean, there = np.pad(heights, whole + 1), np.pad(np.ones_like(heights), whole + 1)
     for axis, size in enumerate(heights.shape):
-        mean, there = (
-            sum(weight * np.take(field, range(first, first + size), axis) for first, weight in enumerate(weights)) for field in (mean, there)
-        )
+        parts = [(weight, range(first, first + size)) for first, weight in enumerate(weights)]
+        mean, there = (sum(weight * np.take(field, part, axis) for weight, part in parts) for field in (mean, there))
     return mean / there
 
 
