@@ -39,7 +39,7 @@ def seepage(lab, dx):
 DAMS = {1: (20, 80, 91, 101), 2: (40, 84, 59, 69), 3: (20, 80, 27, 37)}  # boxes around them [m]
 
 
-@case("canyon", dx=(1, 0.5), control={"sources": []})
+@case("canyon", dx=(1, 0.5), control={"sources": []}, quick=(1,))
 def canyon(lab, dx):
     """The flood cuts three dams one after the other; cut: the crest has lost a third of 3.8 m somewhere."""
     times = tuple(range(0, 71, 2))

@@ -40,12 +40,12 @@ def ripple_limit(name, measured, unit):
 
 def middle(heights, dx, width=0.2):
     """Mean over the square in the middle."""
-    half, low = round(width / dx / 2), len(heights) // 2
+    half, low = max(1, round(width / dx / 2)), len(heights) // 2
     return heights[low - half : low + half, low - half : low + half].mean()
 
 
-def pile(wet, quick=(), control=None):
-    @case(f"pile_{wet:g}", dx=(0.1,), quick=quick, control=control)
+def pile(wet, misses="", control=None):
+    @case(f"pile_{wet:g}", dx=(0.1,), control=control, misses=misses)
     def measure(lab, dx):
         noise, spacings = uneven(), (dx, dx / 2)
         cells = [grid(FIELD, FIELD, spacing) for spacing in spacings]
@@ -75,12 +75,16 @@ def pile(wet, quick=(), control=None):
         return rows
 
 
-# Some never had patterns: a time step in which the speed's clamp holds the finer grid back must show.
-for share, held_back in ((0, 0.03), (0.1, 0.018), (0.25, None), (0.33, None), (0.45, None), (1, 0.018)):
-    pile(share, quick=(0.1,) if share == 0.45 else (), control=held_back and {"dt": held_back})
+# Where the neutral laws make no patterns, a time step so long that the speed's clamp holds the finer grid back must show.
+pile(0, control={"dt": 0.03})
+pile(0.1, control={"dt": 0.018}, misses="bulk viscosity is counted in cells")
+pile(0.25, misses="sand starts without stress")
+pile(0.33, misses="sand starts without stress")
+pile(0.45, misses="bulk viscosity is counted in cells")
+pile(1, control={"dt": 0.018})
 
 
-@case("film")
+@case("film", quick=(0.1,))
 def film(lab, dx):
     """The front of the water that a soaked pile sheds is round."""
     cells, depth = grid(2 * FIELD, 2 * FIELD, dx), 0.005
@@ -95,7 +99,7 @@ def film(lab, dx):
     ]
 
 
-@case("blocks_turned")
+@case("blocks_turned", misses="0.03 by 0.002 at dx 0.1")
 def blocks_turned(lab, dx):
     """A square block turned against the grid does what it does along the grid."""
     cells, turns, shares = grid(FIELD, FIELD, dx), (0, 15, 30, 45), (0.1, 0.45)
