@@ -23,10 +23,11 @@ FN void explicit_drag(REF(float) sand, REF(float) water, float impulse, float sa
 }
 
 // Sand's velocity after drag and stick or slip. along, across: sand momentum per mass with the water's share, us + kappa um;
-// slip: mu g dts max(0, 1 - rho_w h_m/(rho_s h_s)).
-FN float stick_or_slip(float along, float across, float slip, float kappa) {
+// slip: mu g dts max(0, 1 - rho_w h_m/(rho_s h_s)); limit: clamp of the speed that is left.
+FN float stick_or_slip(float along, float across, float slip, float kappa, float limit) {
     float size = wsqrt(square(along) + square(across));
-    return along * divide_or_zero(wmax(size - slip, 0.0f), size * (1.0f + kappa));
+    float left = wmin(wmax(size - slip, 0.0f), limit * (1.0f + kappa));
+    return wclamp(along * divide_or_zero(left, size * (1.0f + kappa)), -limit, limit);
 }
 
 // How freely water moves through sand, 0 up to the share W/hs that pores hold back and 1 where they are full (NUMERICS 2.19).

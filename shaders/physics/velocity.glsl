@@ -117,6 +117,14 @@ FN bool blocked(float height_low, float height_high, float surface_low, float su
     return either(both_dry, either(wall_high, wall_low));
 }
 
+// Clamp of a velocity by its size, across being its other component at the face (NUMERICS 2.4d): a clamp by component would let water run
+// faster along the diagonals of the grid.
+FN float clamped_speed(float along, float across, float limit) {
+    float size2 = square(along) + square(across);
+    float shortened = along * divide_or_zero(limit, wsqrt(size2));
+    return wclamp(size2 > limit * limit ? shortened : along, -limit, limit);
+}
+
 // Rest rule (NUMERICS 2.4e): a level and slow face stands still for ever.
 FN bool at_rest(float surface_low, float surface_high, float u, float rest_surface, float rest_velocity) {
     return both(wabs(surface_high - surface_low) <= rest_surface, wabs(u) <= rest_velocity);
