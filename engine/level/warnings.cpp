@@ -60,9 +60,10 @@ double cohesion_at(const Material& m, double phi) {
     return 0;
 }
 
-/// Cohesion that holds a vertical wall of this height [Pa].
+/// Cohesion that holds a vertical wall of this height, by Rankine's law [Pa].
 double wall_cohesion(const Settings& settings, double height) {
-    return settings.material.yield_friction * settings.material.sand_density * settings.gravity * height;
+    const double c_f = settings.material.yield_friction;
+    return settings.material.sand_density * settings.gravity * height / (4 * (c_f + std::sqrt(1 + c_f * c_f)));
 }
 
 void survey_face(const Settings& settings, const Column& a, const Column& b, Survey& survey) {
@@ -183,7 +184,7 @@ void warn_sand(const Settings& s, const Survey& survey, std::vector<std::string>
         const double peak = std::max(m.cohesion_wet, m.cohesion_capillary);
         if (survey.wet_wall_ratio < m.saturation[2] && peak < least)
             warnings.push_back("material.cohesion_wet: a wet sand wall of " + meters(survey.wet_wall) + " needs " +
-                               at_least(least) + " Pa (yield_friction sand_density g h) and the level has " + number_text(peak) +
+                               at_least(least) + " Pa (sand_density g h / (4 tan(45 deg + phi/2)), tan phi = yield_friction) and the level has " + number_text(peak) +
                                " Pa: it will fall; raise cohesion_wet and cohesion_capillary, or lower the wall");
     }
     if (survey.steep_faces > 0)

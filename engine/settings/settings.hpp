@@ -27,8 +27,8 @@ struct Material {
     double poisson_ratio = 0.3;
     double yield_friction = 0.4; // c_f
     double cohesion_dry = 0;     // c0
-    double cohesion_wet = 2e4;   // c1
-    double cohesion_capillary = 2e4;
+    double cohesion_wet = 8.5e3; // c1
+    double cohesion_capillary = 8.5e3;
     std::array<double, 3> saturation = {0.2, 0.25, 0.33};
     double exchange_rate = 1e5; // c_e
     double diffusion_rate = 0.01;
@@ -74,7 +74,7 @@ struct Method {
     double rest_velocity = 1e-3;
     double passive_pressure = 1; // K of the compression cap, NUMERICS 2.7
     double gradient_clamp = 0.4; // largest |dts grad v| entry
-    double cohesion_cap = 0.9;   // c <= 2 c_f cohesion_cap rho_s g hs
+    double cohesion_cap = 0.9;   // tension <= cohesion_cap rho_s g hs, NUMERICS 2.7
     double stress_taper = 0;
     int saturation_smoothing = 2;
     VelocityTransport velocity_transport = VelocityTransport::flux_form; // semi_lagrangian: velocity_clamp at most 1

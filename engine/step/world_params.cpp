@@ -33,6 +33,12 @@ void bound_sources(const Settings& s, WorldParams& p) {
     p.source_s1 = std::min((j1 + 1) / STRIP + 1, p.strips);
 }
 
+// Cohesion of the yield surface per cohesion of the material: its tip then holds cuts up to Rankine's height (NUMERICS 2.7).
+double yield_cohesion(const Material& m) {
+    const double c_f = m.yield_friction;
+    return 4 * c_f * (c_f + std::sqrt(1 + c_f * c_f));
+}
+
 } // namespace
 
 double ledger_quantum(const Method& method) {
@@ -149,14 +155,15 @@ WorldParams derive_params(const Settings& s) {
     p.stress_taper = w.stress_taper > 0 ? f(1 / w.stress_taper) : off;
     p.cohesion_cap = w.cohesion_cap > 0 ? f(2 * m.yield_friction * w.cohesion_cap * weight) : off;
     const auto [phi1, phi2, phi3] = m.saturation;
-    p.cohesion0 = f(m.cohesion_dry);
-    p.cohesion1 = f(m.cohesion_wet);
+    const double apex = yield_cohesion(m);
+    p.cohesion0 = f(apex * m.cohesion_dry);
+    p.cohesion1 = f(apex * m.cohesion_wet);
     p.phi1 = f(phi1);
     p.phi2 = f(phi2);
     p.phi3 = f(phi3);
-    p.slope01 = f((m.cohesion_wet - m.cohesion_dry) / phi1);
-    p.slope12 = f((m.cohesion_capillary - m.cohesion_wet) / (phi2 - phi1));
-    p.slope23 = f(m.cohesion_capillary / (phi3 - phi2));
+    p.slope01 = f(apex * (m.cohesion_wet - m.cohesion_dry) / phi1);
+    p.slope12 = f(apex * (m.cohesion_capillary - m.cohesion_wet) / (phi2 - phi1));
+    p.slope23 = f(apex * m.cohesion_capillary / (phi3 - phi2));
     // Tensor weights: 1 | 2,1 | 3,2,1 by distance; zero weights switch the outer rings off.
     p.smooth0 = f(w.saturation_smoothing + 1);
     p.smooth1 = f(std::max(0, w.saturation_smoothing));
