@@ -71,7 +71,7 @@ Result<LevelGrid> apply_overrides(const LevelOverrides& overrides, Settings& set
     if (overrides.dt) settings.dt = *overrides.dt;
     if (overrides.fused_stages) settings.fused_stages = *overrides.fused_stages;
     if (overrides.active_tiles) settings.active_tiles = *overrides.active_tiles;
-    if (overrides.method && *overrides.method != settings.method.name) choose_method(settings.method, *overrides.method);
+    if (overrides.method && *overrides.method != settings.method.name) choose_method(settings, *overrides.method);
     if (overrides.accuracy) {
         const AccuracyPreset& preset = *find_accuracy_preset(*overrides.accuracy);
         settings.method.substeps = preset.substeps;

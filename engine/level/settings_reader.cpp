@@ -58,7 +58,7 @@ void read_method(const Json& value, Settings& settings, Status& status) {
     ObjectReader reader(value, "method", status);
     std::string name = settings.method.name;
     reader.string("name", name);
-    choose_method(settings.method, name); // the other keys change what the preset chose
+    choose_method(settings, name); // the other keys change what the preset chose
     read_rows(reader, "method", settings);
     reader.finish();
 }
@@ -133,8 +133,8 @@ void read_settings(ObjectReader& root, const FileReader& files, Settings& settin
     Status& status = root.status();
     if (const Json* grid = root.require("grid")) read_grid(*grid, settings, status);
     read_rows(root, "", settings);
-    if (const Json* material = root.find("material")) read_material(*material, settings, status);
     if (const Json* method = root.find("method")) read_method(*method, settings, status);
+    if (const Json* material = root.find("material")) read_material(*material, settings, status); // over the method's choice
     if (const Json* sides = root.find("sides")) read_sides(*sides, files, settings.sides, status);
     if (const Json* sources = root.find("sources")) {
         const auto elements = read_array(*sources, "sources", SOURCES_READ, status);

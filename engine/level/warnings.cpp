@@ -183,9 +183,10 @@ void warn_sand(const Settings& s, const Survey& survey, std::vector<std::string>
         const double least = wall_cohesion(s, survey.wet_wall);
         const double peak = std::max(m.cohesion_wet, m.cohesion_capillary);
         if (survey.wet_wall_ratio < m.saturation[2] && peak < least)
-            warnings.push_back("material.cohesion_wet: a wet sand wall of " + meters(survey.wet_wall) + " needs " +
-                               at_least(least) + " Pa (sand_density g h / (4 tan(45 deg + phi/2)), tan phi = yield_friction) and the level has " + number_text(peak) +
-                               " Pa: it will fall; raise cohesion_wet and cohesion_capillary, or lower the wall");
+            warnings.push_back(
+                "material.cohesion_wet: a wet sand wall of " + meters(survey.wet_wall) + " needs " + at_least(least) +
+                " Pa (sand_density g h / (4 tan(45 deg + phi/2)), tan phi = yield_friction) and the level has " +
+                number_text(peak) + " Pa: it will fall; raise cohesion_wet and cohesion_capillary, or lower the wall");
     }
     if (survey.steep_faces > 0)
         warnings.push_back("wet sand slopes up to " + number_text(std::round(survey.steepest_wet * 1000) / 1000) + " at " +

@@ -46,8 +46,7 @@ Why holds_shape(const Settings& s, Content content) {
 }
 
 constexpr Effect effects[] = {
-    {row(EFFECT_WATER), "the level, a source, rain, a discharge or a level side brings water",
-     brings_water},
+    {row(EFFECT_WATER), "the level, a source, rain, a discharge or a level side brings water", brings_water},
     {row(EFFECT_SAND), "the level or a source brings sand",
      [](const Settings& s, Content content) -> Why {
          if (content.sand) return {true, "the world holds sand"};

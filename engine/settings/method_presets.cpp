@@ -7,6 +7,13 @@ namespace {
 constexpr const char* robust = "robust";
 constexpr const char* published = "published";
 
+// Sand as the paper has it.
+Material level_ground() {
+    Material material;
+    material.slope_normal = material.internal_friction = material.sand_viscosity = material.retention = 0;
+    return material;
+}
+
 } // namespace
 
 const std::vector<std::string>& method_names() {
@@ -14,7 +21,8 @@ const std::vector<std::string>& method_names() {
     return names;
 }
 
-void choose_method(Method& method, const std::string& name) {
+void choose_method(Settings& settings, const std::string& name) {
+    Method& method = settings.method;
     const bool known = name == robust || name == published;
     Method chosen = known ? Method{} : method; // the defaults are robust
     chosen.name = name;
@@ -33,6 +41,14 @@ void choose_method(Method& method, const std::string& name) {
         chosen.rest_surface = chosen.rest_velocity = 0;
         chosen.passive_pressure = chosen.gradient_clamp = chosen.cohesion_cap = 0;
         chosen.saturation_smoothing = 0;
+    }
+    if (known) {
+        const Material usual = name == published ? level_ground() : Material{};
+        Material& material = settings.material;
+        material.slope_normal = usual.slope_normal;
+        material.internal_friction = usual.internal_friction;
+        material.sand_viscosity = usual.sand_viscosity;
+        material.retention = usual.retention;
     }
     method = chosen;
 }

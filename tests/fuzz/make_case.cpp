@@ -101,10 +101,11 @@ void make_material(Random& random, Material& m) {
     if (random.chance(0.1)) m.saturation = {random.real(0.01, 0.3), random.real(0.35, 0.6), random.real(0.65, 1)};
 }
 
-void make_method(Random& random, Method& m) {
+void make_method(Random& random, Settings& s) {
+    Method& m = s.method;
     m.substeps = random.whole(1, 6);
     if (random.chance(0.08)) {
-        choose_method(m, "published");
+        choose_method(s, "published");
         return;
     }
     if (random.chance(0.15)) m.quantum = 0;
@@ -202,7 +203,7 @@ Case make_case(std::uint64_t seed) {
     if (random.chance(0.08)) (random.chance(0.5) ? s.grid.nx : s.grid.ny) = random.whole(1, 4);
     const double size = random.log(0.5, 20) * s.grid.dx; // of depths
     s.gravity = random.chance(0.1) ? random.pick({0.0, 1.6, 100.0}) : 9.81;
-    make_method(random, s.method);
+    make_method(random, s);
     s.method.largest_height = std::exp2(std::ceil(std::log2(100 * s.grid.dx + 40 * size))); // what is drawn, edited and piled up
     const double courant = random.log(0.02, 10);
     s.dt = std::clamp(courant * s.grid.dx / std::sqrt(9.81 * size), 1e-5, 2.0);

@@ -49,7 +49,7 @@ TEST_CASE("fused stages: every level gives the bits of its stages one by one") {
 
 TEST_CASE("fused stages: the method published has none that fit and runs as it is") {
     auto scene = mixed_scene(40, 30);
-    choose_method(scene.settings.method, "published");
+    choose_method(scene.settings, "published");
     auto expected = apart(scene), world = fused(scene, "cpu");
     REQUIRE(world);
     step(*expected, 10);
