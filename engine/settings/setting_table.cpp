@@ -109,7 +109,7 @@ constexpr Setting rows[] = {
      "softens sand that the sand substep cannot follow; 0 = off"},
     {"method.shock_viscosity", method<&Method::shock_viscosity>, {0, 1}, "", EFFECT_WATER,
      "damps ripples of two cells behind a bore; 0 = off"},
-    {"method.bulk_viscosity", method<&Method::bulk_viscosity>, {0, 1}, "", EFFECT_ELASTOPLASTIC,
+    {"method.bulk_viscosity", method<&Method::bulk_viscosity>, {0, 1e3}, "m2/s", EFFECT_ELASTOPLASTIC,
      "damps waves of stress in sand; 0 = off"},
     {"method.rest_surface", method<&Method::rest_surface>, {0, 1}, "m", EFFECT_WATER,
      "differences of the surface that count as still; 0 with rest_velocity 0 = off"},

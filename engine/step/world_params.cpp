@@ -145,7 +145,7 @@ WorldParams derive_params(const Settings& s) {
     // Viscosity of shear takes half of that room at most, the bulk's the rest.
     const double room = std::max(0.0, 0.2 - 0.4 * wave * wave),
                  sheared = std::min(m.sand_viscosity * dts / (dx * dx), 0.5 * room);
-    const double viscous = std::min(w.bulk_viscosity * wave, room - sheared);
+    const double viscous = std::min(w.bulk_viscosity * dts / (dx * dx), room - sheared);
     p.viscosity_number = f(sheared);
     p.bulk_viscosity = f(viscous * m.sand_density / ks);
     p.tip_pressure = f(0.5 / m.yield_friction);
