@@ -25,10 +25,10 @@ NEUTRAL = {key: 0 for key in RECOMMENDED}
 
 # Sand and method of level `piles`, on which the references were made; its cohesion is for water's sake, dry sand has none.
 MATERIAL = {
-    "friction": 0.5, "young_modulus": 2e5, "cohesion_dry": 0, "cohesion_wet": 2e4, "cohesion_capillary": 2e4, "exchange_rate": 1e5,
+    "friction": 0.5, "young_modulus": 2e5, "cohesion_dry": 0, "cohesion_wet": 8.5e3, "cohesion_capillary": 8.5e3, "exchange_rate": 1e5,
     "diffusion_rate": 0.002,
 }
-METHOD = {"substeps": 3, "saturation_smoothing": 2, "bulk_viscosity": 0.5}
+METHOD = {"substeps": 3, "saturation_smoothing": 2, "bulk_viscosity": 0.1}
 STEP = 0.09  # dt / dx [s/m], as in `piles`
 
 
