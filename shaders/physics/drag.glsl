@@ -30,10 +30,11 @@ FN float stick_or_slip(float along, float across, float slip, float kappa, float
     return wclamp(along * divide_or_zero(left, size * (1.0f + kappa)), -limit, limit);
 }
 
-// How freely water moves through sand, 0 up to the share W/hs that pores hold back and 1 where they are full (NUMERICS 2.19).
+// How freely water moves through sand, 0 up to the share W/hs that pores hold back and 1 where they are full or there is no sand
+// (NUMERICS 2.19).
 FN float relative_permeability(float water, float sand, float retained, float inv_drainable) {
     float drainable = wclamp((divide_or_zero(water, sand) - retained) * inv_drainable, 0.0f, 1.0f);
-    return drainable * drainable * drainable;
+    return water < sand ? drainable * drainable * drainable : 1.0f;
 }
 
 // At a face: of the cell that the water leaves relative to the sand, of the freer one where it does not move against it.
