@@ -24,37 +24,59 @@ bool smaller(std::uint32_t a, std::uint32_t b) {
     return std::popcount(a) != std::popcount(b) ? std::popcount(a) < std::popcount(b) : a < b;
 }
 
+// Which stages the plan of a mask holds.
+class Plans {
+  public:
+    bool hold(std::uint32_t mask, std::size_t stage) {
+        auto& stages = known_[mask];
+        if (stages.empty()) {
+            stages.resize(compute::stage_table().size());
+            const StepPlan plan = make_step_plan(mask, 1);
+            for (const auto* passes : {&plan.water_passes, &plan.substep_passes})
+                for (const auto& pass : *passes) stages[static_cast<std::size_t>(pass.stage)] = true;
+        }
+        return stages[stage];
+    }
+    bool any_holds(std::size_t stage) const {
+        return std::any_of(known_.begin(), known_.end(), [&](const auto& entry) { return entry.second[stage]; });
+    }
+
+  private:
+    std::map<std::uint32_t, std::vector<bool>> known_;
+};
+
 std::vector<ByTested> find_masks() {
     const auto table = compute::stage_table();
-    std::vector<ByTested> seen(table.size());
-    std::vector<bool> planned(table.size(), false);
-    const auto note = [&](std::size_t stage, std::uint32_t mask) {
-        const auto [at, added] = seen[stage].emplace(mask & table[stage].tested_effects, mask);
-        if (!added && smaller(mask, at->second)) at->second = mask;
-    };
-    std::uint32_t all = 0;
-    for (const auto& effect : effect_table()) all |= effect.bit;
-    for (const auto& choice : choice_table()) all |= choice.bit;
-    std::vector<std::uint32_t> legal;
-    for (std::uint32_t mask = 0; mask <= all; ++mask)
-        if ((mask & ~all) == 0 && is_legal(mask)) legal.push_back(mask);
-    for (const std::uint32_t mask : legal) {
-        const StepPlan plan = make_step_plan(mask, 1);
-        for (const auto* passes : {&plan.water_passes, &plan.substep_passes}) {
-            for (const auto& pass : *passes) {
-                planned[static_cast<std::size_t>(pass.stage)] = true;
-                note(static_cast<std::size_t>(pass.stage), mask);
-            }
-        }
-    }
+    std::vector<ByTested> least(table.size());
+    Plans plans;
+    // Not every bit that a plan wants is one that the stage names, but two beside those are enough.
+    const auto bits = named_bits();
+    std::set<std::uint32_t> pairs = {0};
+    for (const auto& [one, one_name] : bits)
+        for (const auto& [other, other_name] : bits) pairs.insert(with_needs(one | other));
+    for (const std::uint32_t mask : pairs)
+        if (is_legal(mask)) plans.hold(mask, 0);
     for (std::size_t stage = 0; stage < table.size(); ++stage) {
-        if (planned[stage]) continue;
-        for (const std::uint32_t mask : legal) {
-            const bool fits = (mask & table[stage].needs) == table[stage].needs && (mask & table[stage].without) == 0;
-            if (fits) note(stage, mask);
-        }
+        const std::uint32_t tested = table[stage].tested_effects;
+        const bool planned = plans.any_holds(stage);
+        std::uint32_t wanted = 0;
+        do {
+            const auto fits = [&](std::uint32_t mask) {
+                return (mask & tested) == wanted && (mask & table[stage].without) == 0 && is_legal(mask);
+            };
+            // What a mask needs only grows with it: no mask with these bits is smaller than this one.
+            const std::uint32_t smallest = with_needs(wanted | table[stage].needs);
+            std::vector<std::uint32_t> candidates;
+            if (fits(smallest)) candidates.push_back(smallest);
+            if (planned && fits(smallest) && !plans.hold(smallest, stage))
+                for (const std::uint32_t more : pairs) candidates.push_back(smallest | more);
+            std::sort(candidates.begin(), candidates.end(), smaller);
+            for (const std::uint32_t mask : candidates)
+                if (fits(mask) && (!planned || plans.hold(mask, stage))) least[stage].emplace(wanted, mask);
+            wanted = (wanted - tested) & tested;
+        } while (wanted != 0);
     }
-    return seen;
+    return least;
 }
 
 } // namespace
