@@ -13,11 +13,14 @@ using reference::Solver;
 
 template <class Real> const Field<Real>* cell_field(const Solver<Real>& s, const std::string& base) {
     const std::map<std::string, const Field<Real>*> fields = {
-        {"terrain", &s.terrain},       {"sand_height", &s.sand},       {"water_height", &s.water},
-        {"stretch_xx", &s.Vxx},        {"stretch_xy", &s.Vxy},         {"stretch_yy", &s.Vyy},
-        {"rotation", &s.rotation},     {"water_scale", &s.pure_scale}, {"mixed_scale", &s.mixed_scale},
-        {"sand_scale", &s.sand_scale}, {"saturation", &s.saturation},  {"mixed_predicted", &s.mixed_predicted},
-        {"stress_xx", &s.sxx},         {"stress_xy", &s.sxy},          {"stress_yy", &s.syy},
+        {"terrain", &s.terrain},         {"sand_height", &s.sand},
+        {"water_height", &s.water},      {"stretch_xx", &s.Vxx},
+        {"stretch_xy", &s.Vxy},          {"stretch_yy", &s.Vyy},
+        {"rotation", &s.rotation},       {"water_scale", &s.pure_scale},
+        {"mixed_scale", &s.mixed_scale}, {"sand_scale", &s.sand_scale},
+        {"saturation", &s.saturation},   {"mixed_predicted", &s.mixed_predicted},
+        {"stress_xx", &s.sxx},           {"stress_xy", &s.sxy},
+        {"stress_yy", &s.syy},           {"cohesive_share", &s.cohesive_share},
     };
     const auto found = fields.find(base);
     return found == fields.end() ? nullptr : found->second;
@@ -25,12 +28,13 @@ template <class Real> const Field<Real>* cell_field(const Solver<Real>& s, const
 
 template <class Real> const Faces<Real>* face_field(const Solver<Real>& s, const std::string& layer) {
     const std::map<std::string, const Faces<Real>*> fields = {
-        {"water_velocity", &s.pure_velocity}, {"mixed_velocity", &s.mixed_velocity},
-        {"sand_velocity", &s.sand_velocity},  {"water_flux", &s.pure_flux},
-        {"mixed_flux", &s.mixed_flux},        {"sand_flux", &s.sand_flux},
-        {"pressure", &s.mixed_push},          {"bed_load", &s.bed_load},
-        {"water_face_type", &s.pure_type},    {"mixed_face_type", &s.mixed_type},
-        {"sand_face_type", &s.sand_type},     {"extrapolated_velocity", &s.extrapolated},
+        {"water_velocity", &s.pure_velocity},  {"mixed_velocity", &s.mixed_velocity},
+        {"sand_velocity", &s.sand_velocity},   {"water_flux", &s.pure_flux},
+        {"mixed_flux", &s.mixed_flux},         {"sand_flux", &s.sand_flux},
+        {"pressure", &s.mixed_push},           {"bed_load", &s.bed_load},
+        {"water_face_type", &s.pure_type},     {"mixed_face_type", &s.mixed_type},
+        {"sand_face_type", &s.sand_type},      {"extrapolated_velocity", &s.extrapolated},
+        {"friction_limit", &s.friction_limit}, {"withheld_push", &s.withheld_push},
     };
     const auto found = fields.find(layer);
     return found == fields.end() ? nullptr : found->second;

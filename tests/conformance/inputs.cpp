@@ -60,6 +60,7 @@ void make_deep(Scene& scene) {
     s.method.largest_height = 1024;
     s.material.young_modulus = 1e8;
     s.material.cohesion_wet = s.material.cohesion_capillary = 1e5;
+    s.material.sand_viscosity = 10;
     fill_heights(scene, [](const Place& p) {
         return Fields{20 + 15 * noise(1, p), std::max(0.0, 40 + 30 * noise(2, p)),
                       800 + 60 * std::sin(2 * PI * p.u) * std::cos(3 * p.v)};
@@ -93,7 +94,8 @@ bool make_heights(Scene& scene) {
     } else if (name == "brimful") { // columns that one step's rain or source lifts past the declared largest height, or not
         const double full = scene.settings.method.largest_height;
         fill_heights(scene, [&](const Place& p) {
-            return Fields{full - 1 - 4e-6 - 2e-5 * ((p.i * 5 + p.j * 3) % 7), 0.4, 0.6 - 3e-4 * (p.i % 2)};
+            const double more = 0.0625 * ((p.i + p.j) % 2); // sand in place of water: a slope
+            return Fields{full - 1 - 4e-6 - 2e-5 * ((p.i * 5 + p.j * 3) % 7), 0.4 + more, 0.6 - more - 3e-4 * (p.i % 2)};
         });
         scene.pilot_steps = 0;
     } else if (name == "slope") {
@@ -113,6 +115,10 @@ bool make_heights(Scene& scene) {
             return Fields{0.1 * p.u, p.s >= 0.5 && p.s < 0.8 ? 0.8 : 0.0, p.s < 0.55 ? 2.0 - 0.3 * p.v : 0.0};
         });
     } else if (name == "cliff") {
+        auto& material = scene.settings.material;
+        material.sand_viscosity = 2; // more than the step bears
+        material.cohesion_dry = 100; // less than the cliffs need
+        material.cohesion_wet = material.cohesion_capillary = 700;
         fill_heights(scene, [](const Place& p) {
             return Fields{p.s < 0.4 ? 4.0 : 0.0, p.s < 0.55 ? 1.0 : 0.1, p.s < 0.3 ? 0.5 : 0.2 + 0.1 * p.v};
         });
@@ -269,6 +275,10 @@ Result<Scene> make_scene(const std::string& grid, const std::string& name, const
     s.material.exchange_rate = 3e4;
     s.material.bed_friction = 0.01;
     s.material.bed_shear = 0.05;
+    s.material.slope_normal = 1;
+    s.material.internal_friction = 0.4;
+    s.material.sand_viscosity = 0.05;
+    s.material.retention = 0.3;
     for (const auto& choice : choice_table())
         if ((effects & choice.bit) != 0) choice.choose(s.method);
     if (!set_method(s.method, method)) return error(Code::bad_argument, "method=" + method + ": no such choice");

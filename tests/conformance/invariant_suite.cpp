@@ -19,6 +19,7 @@ constexpr std::uint32_t TRACED = EFFECT_SEMI_LAGRANGIAN;
 constexpr std::uint32_t POLAR = EFFECT_WHOLE_STRAIN, DIRECT = EFFECT_WHOLE_STRAIN | EFFECT_DIRECT_STRAIN;
 constexpr std::uint32_t PUBLISHED = TRACED | POLAR | EFFECT_EXPLICIT_DRAG | EFFECT_LAPLACE_DIFFUSION;
 constexpr std::uint32_t SECOND = EFFECT_SECOND_ORDER_WATER;
+constexpr std::uint32_t SLOPES = EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION;
 constexpr std::uint32_t ALL = all_effects;
 
 CaseSpec spec_of(const char* name, const char* grid, std::uint32_t effects, const std::string& scene, const std::string& method,
@@ -63,16 +64,24 @@ std::vector<CaseSpec> list() {
     add("lake_at_rest", "33x17", WET | EFFECT_BED_SHEAR, "lake_at_rest", "default", 200);
     add("lake_at_rest", "33x17", EFFECT_WATER | EFFECT_SAND | EFFECT_DRAG | EFFECT_BED_FRICTION, "lake_at_rest", "default", 200);
     add("lake_at_rest", "33x17", WET | ELASTIC | EFFECT_COHESION | TRACED, "lake_at_rest", "default", 200);
+    add("lake_at_rest", "33x17", WET | SLOPES | EFFECT_RETENTION, "lake_at_rest", "default", 200);
+    add("lake_at_rest", "33x17", WET | ELASTIC | EFFECT_COHESION | SLOPES | EFFECT_RETENTION, "lake_at_rest", "default", 200);
     add("lake_at_rest", "33x17", EFFECT_WATER | SECOND, "lake_at_rest", "default", 200);
     add("lake_at_rest", "33x17", WET | ELASTIC | EFFECT_COHESION | SECOND, "lake_at_rest", "default", 200);
     add("static_pile", "33x17", EFFECT_SAND | TRACED, "static_pile", "default", 200);
     add("static_pile", "33x17", EFFECT_SAND, "static_pile", "default", 200);
     add("static_pile", "65x33", EFFECT_SAND | ELASTIC, "static_pile", "default", 200);
     add("static_pile", "33x17", EFFECT_SAND | ELASTIC, "static_pile", "bare", 200);
+    add("static_pile", "65x33", EFFECT_SAND | SLOPES, "static_pile", "default", 200);
+    add("static_pile", "33x17", EFFECT_SAND | ELASTIC | SLOPES, "static_pile", "default", 200);
+    add("static_pile", "33x17", EFFECT_SAND | SLOPES | TRACED, "static_pile", "default", 200);
+    add("static_pile", "33x17", WET | SLOPES | EFFECT_RETENTION, "static_pile", "default", 200);
     for (const char* symmetry : {"mirror_x", "mirror_y", "transpose"}) {
         add(symmetry, "33x17", EFFECT_WATER | EFFECT_OPEN_SIDES | EFFECT_BED_FRICTION, "islands", "default", 40);
         add(symmetry, "33x17", EFFECT_SAND | ELASTIC, "cliff", "default", 40);
         add(symmetry, "33x17", WET | EFFECT_BED_SHEAR, "islands", "default", 40);
+        add(symmetry, "33x17", EFFECT_SAND | SLOPES, "cliff", "default", 40);
+        add(symmetry, "33x17", WET | ELASTIC | EFFECT_COHESION | SLOPES | EFFECT_RETENTION, "cliff", "default", 40);
         add(symmetry, "33x17", ALL, "random", "default", 40);
         add(symmetry, "33x17", ALL | TRACED, "random", "default", 40);
         add(symmetry, "33x17", ALL | SECOND, "random", "default", 40);

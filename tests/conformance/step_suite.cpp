@@ -20,6 +20,7 @@ constexpr std::uint32_t TRACED = EFFECT_SEMI_LAGRANGIAN;
 constexpr std::uint32_t POLAR = EFFECT_WHOLE_STRAIN, DIRECT = EFFECT_WHOLE_STRAIN | EFFECT_DIRECT_STRAIN;
 constexpr std::uint32_t PUBLISHED = TRACED | POLAR | EFFECT_EXPLICIT_DRAG | EFFECT_LAPLACE_DIFFUSION;
 constexpr std::uint32_t SECOND = EFFECT_SECOND_ORDER_WATER, HALF = EFFECT_HALF_STORAGE;
+constexpr std::uint32_t SLOPES = EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION;
 constexpr std::uint32_t ALL = all_effects;
 
 struct Row {
@@ -51,6 +52,10 @@ constexpr Row against_reference[] = {
     {"65x3", WET, "dam_break", "coarse", 3},
     {"33x17", WET | ELASTIC | EFFECT_COHESION, "slope", "default", 2},
     {"33x17", WET | EFFECT_BED_SHEAR, "dam_break", "default", 2},
+    {"33x17", EFFECT_SAND | SLOPES, "slope", "default", 3},
+    {"33x17", WET | ELASTIC | EFFECT_COHESION | SLOPES | EFFECT_RETENTION, "cliff", "default", 2},
+    {"33x17", WET | SLOPES | EFFECT_RETENTION, "dam_break", "default", 3},
+    {"33x17", WET | ELASTIC | EFFECT_COHESION | SLOPES | EFFECT_RETENTION, "slope", "default", 2},
     {"33x17", WET | ELASTIC | EFFECT_COHESION, "flat", "plain", 2},
     {"257x130", WET | ELASTIC | EFFECT_COHESION, "dam_break", "default", 2},
     {"33x17", WET | ELASTIC | EFFECT_COHESION, "deep", "default", 2},
@@ -90,6 +95,7 @@ constexpr Row in_bits[] = {
     {"33x17", ALL | DIRECT, "random", "default", 20},
     {"33x17", ALL | PUBLISHED, "random", "default", 20},
     {"33x17", ALL | PUBLISHED, "random", "bare", 20},
+    {"33x17", WET | SLOPES | EFFECT_RETENTION, "dam_break", "default", 40},
     {"33x17", EFFECT_WATER | SECOND, "dam_break", "default", 40},
     {"64x4", WET | SECOND, "slope", "coarse", 30},
     {"33x17", ALL | SECOND, "random", "default", 20},

@@ -169,7 +169,10 @@ template <class Real> void Solver<Real>::project_deformation_gradient() {
     const Axis x = axis(false);
     const Axis y_axis = axis(true);
     for (std::size_t c = 0; c < cells(); ++c) {
-        sxx[c] = sxy[c] = syy[c] = Real(0);
+        sxx[c] = sxy[c] = syy[c] = cohesive_share[c] = Real(0);
+        const Real coh = cohesion(c);
+        const Real cliff = P.yield_friction * P.rho_s * P.gravity * sand[c];
+        if (cliff > Real(0)) cohesive_share[c] = std::min(Real(1), Real(4) * coh / cliff);
         if (sand[c] <= P.eps) continue;
         // 2.13: the right stretch and the rotation (cs, sn) that F is kept with.
         Real cs(1);
@@ -211,7 +214,6 @@ template <class Real> void Solver<Real>::project_deformation_gradient() {
             }
         }
         // Compression cap, tip and cone of the yield surface.
-        const Real coh = cohesion(c);
         if (P.passive_pressure > Real(0)) {
             const Real pressure = P.passive_pressure * P.rho_s * P.gravity * sand[c] + coh / P.yield_friction;
             tr = std::max(tr, -pressure / lm);

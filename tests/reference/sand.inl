@@ -1,6 +1,6 @@
 // The sand substep: heights, velocity, exchange with the water inside the sand (2.4a, 2.5, 2.7, 2.8).
 #pragma once
-#include "tests/reference/transport.inl"
+#include "tests/reference/slope.inl"
 #include <array>
 
 namespace wadi::reference {
@@ -34,16 +34,12 @@ template <class Real> Real Solver<Real>::sand_gravity(Real deepest) const {
     return std::min(P.gravity, P.sand_gravity_cap / (P.k_sand * P.k_sand * deepest));
 }
 
-/// Force of the stress, gravity and the wet/dry rule with S = H + hs + (rho_w/rho_s) h_w.
-template <class Real> void Solver<Real>::add_stress_and_gravity() {
-    const bool elastic = has(EFFECT_ELASTOPLASTIC);
-    const auto surface = [&](std::size_t c) {
-        return terrain[c] + sand[c] + P.rho_w / P.rho_s * (water[c] - std::min(water[c], sand[c]));
-    };
+/// Force of the stress on an inner face.
+template <class Real> void Solver<Real>::add_stress(const Axis& ax, int a, int b) {
     // Shear at the corner between the cells a - 1, a along and b - 1, b across; 0 on the wall.
-    const auto corner = [&](const Axis& ax, int a, int b) {
-        if (b == 0 || b == ax.across()) return Real(0);
-        const std::array<std::size_t, 4> c = {ax.cell(a - 1, b - 1), ax.cell(a, b), ax.cell(a, b - 1), ax.cell(a - 1, b)};
+    const auto corner = [&](int row) {
+        if (row == 0 || row == ax.across()) return Real(0);
+        const std::array<std::size_t, 4> c = {ax.cell(a - 1, row - 1), ax.cell(a, row), ax.cell(a, row - 1), ax.cell(a - 1, row)};
         if (mean_corner_shear) {
             Real sum(0);
             for (const std::size_t n : c) sum += sand[n] * sxy[n];
@@ -52,26 +48,51 @@ template <class Real> void Solver<Real>::add_stress_and_gravity() {
         const Real thinnest = std::min(std::min(sand[c[0]], sand[c[1]]), std::min(sand[c[2]], sand[c[3]]));
         return thinnest * (((sxy[c[0]] + sxy[c[1]]) + (sxy[c[2]] + sxy[c[3]])) / Real(4));
     };
-    for_inner_faces([&](const Axis& ax, int a, int b) {
-        const std::size_t L = ax.cell(a - 1, b);
-        const std::size_t R = ax.cell(a, b);
-        Real& u = sand_velocity.along(ax)[ax.face(a, b)];
-        if (elastic) {
-            const Field<Real>& normal = ax.is_y ? syy : sxx;
-            const Real force = (sand[R] * normal[R] - sand[L] * normal[L]) + (corner(ax, a, b + 1) - corner(ax, a, b));
-            const Real hb = mean(sand[L], sand[R]);
-            u = hb < P.eps / Real(2) ? Real(0) : u + P.k_sand * force / (P.rho_s * hb);
-        }
-        const Real S_L = surface(L);
-        const Real S_R = surface(R);
-        u -= P.k_sand * sand_gravity(std::max(sand[L], sand[R])) * (S_R - S_L);
-        if (blocked(sand[L], sand[R], S_L, S_R, P.eps)) u = Real(0);
-    });
+    const std::size_t L = ax.cell(a - 1, b);
+    const std::size_t R = ax.cell(a, b);
+    Real& u = sand_velocity.along(ax)[ax.face(a, b)];
+    const Field<Real>& normal = ax.is_y ? syy : sxx;
+    const Real force = (sand[R] * normal[R] - sand[L] * normal[L]) + (corner(b + 1) - corner(b));
+    const Real hb = mean(sand[L], sand[R]);
+    u = hb < P.eps / Real(2) ? Real(0) : u + P.k_sand * force / (P.rho_s * hb);
+}
+
+/// 2.7 and 2.18: gravity and the wet/dry rule with S = H + hs + (rho_w/rho_s) h_w.
+template <class Real> void Solver<Real>::add_gravity(const Axis& ax, int a, int b) {
+    const std::size_t L = ax.cell(a - 1, b);
+    const std::size_t R = ax.cell(a, b);
+    const std::size_t f = ax.face(a, b);
+    const Real buoyancy = P.rho_w / P.rho_s;
+    const auto open_water = [&](std::size_t c) { return water[c] - std::min(water[c], sand[c]); };
+    const auto surface = [&](std::size_t c) { return terrain[c] + sand[c] + buoyancy * open_water(c); };
+    const Real S_L = surface(L);
+    const Real S_R = surface(R);
+    const Real g_f = sand_gravity(std::max(sand[L], sand[R]));
+    Real& u = sand_velocity.along(ax)[f];
+    if (has(EFFECT_SLOPE_NORMAL)) {
+        const Slope slope = slope_at(ax, a, b);
+        const Real D = open_water(R) - open_water(L);
+        const Real m = minmod(-D, slope.d); // where the water's surface is level the sand feels its buoyant weight
+        u -= P.k_sand * g_f * slope.C * (slope.r * (slope.d - buoyancy * m) + buoyancy * (D + m));
+        withheld_push.along(ax)[f] = P.k_sand * g_f * (Real(1) - slope.C * slope.r) * slope.d;
+        friction_limit.along(ax)[f] = slope.C * level_friction(L, R);
+    } else {
+        u -= P.k_sand * g_f * (S_R - S_L);
+    }
+    if (blocked(sand[L], sand[R], S_L, S_R, P.eps)) u = Real(0);
 }
 
 template <class Real> void Solver<Real>::integrate_sand_velocity() {
+    const Faces<Real> old = sand_velocity;
     if (!has(EFFECT_SEMI_LAGRANGIAN)) advect_velocity(sand, sand_flux, sand_velocity);
-    add_stress_and_gravity();
+    for_inner_faces([&](const Axis& ax, int a, int b) {
+        if (has(EFFECT_INTERNAL_FRICTION)) {
+            slow_from_within(old, ax, a, b);
+            shear_in_plane(old, ax, a, b);
+        }
+        if (has(EFFECT_ELASTOPLASTIC)) add_stress(ax, a, b);
+        add_gravity(ax, a, b);
+    });
 }
 
 /// 2.4a: momentum follows the water that changes between the pure and the mixed layer.
@@ -153,20 +174,35 @@ template <class Real> void Solver<Real>::apply_friction() {
         // Per bed area: inertia of the partner layer and of the sand, and the drag impulse per velocity difference.
         // In the two-layer form both sides are divided by h_m, so that thin layers divide by nothing small.
         const Real r = hm_bar / (P.rho_s * hs_bar);
+        // 2.19: of the water that pores hold back nothing moves on its own.
+        const Real slip = um_old.along(ax)[f] - us_old.along(ax)[f];
+        Real free(1);
+        if (has(EFFECT_RETENTION)) {
+            const Real left = relative_permeability(L);
+            const Real right = relative_permeability(R);
+            free = slip > Real(0) ? left : slip < Real(0) ? right : std::max(left, right);
+        }
         const Real inertia = two_layers ? P.rho_w : P.rho_w * mean(water[L], water[R]);
         const Real kd = P.substep * P.exchange * (two_layers ? Real(1) : hm_bar);
         Real kappa(0);
-        if (drag && hm_bar > P.eps) kappa = (two_layers ? r : Real(1) / (P.rho_s * hs_bar)) * inertia * kd / (inertia + kd);
-        const Real p = us_old.along(ax)[f] + kappa * um_old.along(ax)[f];
+        if (drag && kd > Real(0) && hm_bar > P.eps)
+            kappa = (two_layers ? r : Real(1) / (P.rho_s * hs_bar)) * inertia * kd / (inertia * free + kd);
+        const Real carried = kappa * um_old.along(ax)[f];
+        Real p = us_old.along(ax)[f] + carried;
+        if (has(EFFECT_SLOPE_NORMAL)) { // 2.18: what the water brings uphill meets the whole push
+            const Real withheld = withheld_push.along(ax)[f];
+            const Real uphill = withheld > Real(0) ? std::max(carried, Real(0)) : std::max(-carried, Real(0));
+            const Real extra = std::min(std::abs(withheld), uphill);
+            if (p * withheld > Real(0)) p = std::copysign(std::max(std::abs(p) - extra, Real(0)), p);
+        }
         const Real p_cross = crosswise(us_old) + kappa * crosswise(um_old);
         const Real size = std::sqrt(p * p + p_cross * p_cross);
-        const Real g_f = sand_gravity(std::max(sand[L], sand[R]));
-        const Real N = P.friction * g_f * P.substep * std::max(Real(1) - P.rho_w * r, Real(0));
+        const Real N = has(EFFECT_SLOPE_NORMAL) ? friction_limit.along(ax)[f] : level_friction(L, R);
         us = size > Real(0) ? std::max(Real(1) - N / size, Real(0)) * p / (Real(1) + kappa) : Real(0);
         if (absent && two_layers && hm_bar <= Real(0))
             um = Real(0);
-        else if (drag && inertia + kd > Real(0))
-            um = (inertia * um_old.along(ax)[f] + kd * us) / (inertia + kd);
+        else if (drag && inertia * free + kd > Real(0))
+            um = (inertia * free * um_old.along(ax)[f] + kd * us) / (inertia * free + kd);
         us = clamped(us, P.clamp_sand);
         um = clamped(um, P.clamp);
     });

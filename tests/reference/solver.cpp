@@ -4,6 +4,7 @@
 #include "tests/reference/deformation.inl"
 #include "tests/reference/rim.inl"
 #include "tests/reference/sand.inl"
+#include "tests/reference/slope.inl"
 #include "tests/reference/water.inl"
 
 namespace wadi::reference {
@@ -56,6 +57,10 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
     P.shock_viscosity = static_cast<Real>(method.shock_viscosity);
     P.cohesion_cap = static_cast<Real>(method.cohesion_cap);
     P.taper = static_cast<Real>(method.stress_taper);
+    P.chi = static_cast<Real>(material.slope_normal);
+    P.wedge = static_cast<Real>(material.friction + std::sqrt(material.friction * material.friction + 1 / material.slope_normal));
+    P.spread_friction = static_cast<Real>(material.internal_friction);
+    P.retained = static_cast<Real>(material.retention);
     P.substeps = method.substeps;
     P.smoothing = method.saturation_smoothing;
     P.limiter = method.outflow_limiter;
@@ -63,14 +68,15 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
 
     const std::size_t nx = static_cast<std::size_t>(world.grid.nx);
     const std::size_t ny = static_cast<std::size_t>(world.grid.ny);
-    for (Field<Real>* field : {&terrain, &sand, &water, &Vxy, &pure, &mixed, &pure_predicted, &mixed_predicted, &pure_scale,
-                               &mixed_scale, &sand_scale, &saturation, &sand_before, &mixed_before, &sxx, &sxy, &syy, &rotation})
+    for (Field<Real>* field :
+         {&terrain, &sand, &water, &Vxy, &pure, &mixed, &pure_predicted, &mixed_predicted, &pure_scale, &mixed_scale, &sand_scale,
+          &saturation, &sand_before, &mixed_before, &sxx, &sxy, &syy, &rotation, &cohesive_share})
         field->assign(nx * ny, Real(0));
     Vxx.assign(nx * ny, Real(1));
     Vyy.assign(nx * ny, Real(1));
     for (Faces<Real>* faces :
          {&sand_velocity, &pure_velocity, &mixed_velocity, &diffusion_flux, &pure_flux, &mixed_flux, &sand_flux, &bed_load,
-          &mixed_push, &ghost_water, &pure_type, &mixed_type, &sand_type, &extrapolated}) {
+          &mixed_push, &ghost_water, &pure_type, &mixed_type, &sand_type, &extrapolated, &friction_limit, &withheld_push}) {
         faces->x.assign((nx + 1) * ny, Real(0));
         faces->y.assign(nx * (ny + 1), Real(0));
     }
@@ -100,7 +106,10 @@ template <class Real> void Solver<Real>::set_time_step(double dt) {
     const Real beta = static_cast<Real>(settings.method.bulk_viscosity);
     const Real wave = std::sqrt((P.lambda + Real(2) * P.shear) / P.rho_s); // speed of pressure waves in sand
     const Real courant = wave * P.k_sand;
-    const Real number = std::min(beta * courant, std::max(Real(0), Real(0.2) - Real(0.4) * courant * courant));
+    const Real room = std::max(Real(0), Real(0.2) - Real(0.4) * courant * courant);
+    const Real shear = static_cast<Real>(settings.material.sand_viscosity) * P.substep / (P.dx * P.dx);
+    P.shear_number = std::min(shear, room / Real(2));
+    const Real number = std::min(beta * courant, room - P.shear_number);
     P.viscosity = number * P.rho_s * P.dx * P.dx / P.substep;
 }
 
@@ -159,6 +168,7 @@ template <class Real> template <class Other> void Solver<Real>::copy_from(const 
     field(&A::sxx, &B::sxx);
     field(&A::sxy, &B::sxy);
     field(&A::syy, &B::syy);
+    field(&A::cohesive_share, &B::cohesive_share);
     faces(&A::sand_velocity, &B::sand_velocity);
     faces(&A::pure_velocity, &B::pure_velocity);
     faces(&A::mixed_velocity, &B::mixed_velocity);
@@ -173,6 +183,8 @@ template <class Real> template <class Other> void Solver<Real>::copy_from(const 
     faces(&A::mixed_type, &B::mixed_type);
     faces(&A::sand_type, &B::sand_type);
     faces(&A::extrapolated, &B::extrapolated);
+    faces(&A::friction_limit, &B::friction_limit);
+    faces(&A::withheld_push, &B::withheld_push);
     water_added = other.water_added;
     sand_added = other.sand_added;
     refused = other.refused;

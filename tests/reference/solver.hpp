@@ -36,6 +36,10 @@ template <class Real> struct Constants {
     Real shock_viscosity{}; // c1 of 2.3
     Real viscosity{};       // bulk viscosity of sand [Pa s], bounded for stability (2.7)
     Real taper{};           // h_el [m]
+    Real chi{}, wedge{};    // 2.18: slope-normal factor, slope s* of Coulomb's wedge (infinite without chi)
+    Real spread_friction{}; // 2.18: b, share of mu
+    Real shear_number{};    // 2.18: nu substep/dx^2 of the in-plane viscosity, bounded for stability
+    Real retained{};        // 2.19: W/hs that pores hold back
     int substeps{};
     int smoothing{}; // radius of the saturation's low-pass [cells]
     bool limiter{};
@@ -79,10 +83,10 @@ template <class Real> class Solver {
     void compute_sand_flux();                    // 2.2 -> sand_flux
     void integrate_sand_height();                // 2.5 -> sand, sand_before, pure, mixed, mixed_before
     void evolve_deformation_gradient();          // 2.5, 2.6 -> Vxx, Vxy, Vyy
-    void project_deformation_gradient();         // 2.7 -> Vxx, Vxy, Vyy, sxx, sxy, syy
+    void project_deformation_gradient();         // 2.7 -> Vxx, Vxy, Vyy, sxx, sxy, syy, cohesive_share
     void extrapolate_sand_velocity();            // 2.12 -> extrapolated
     void backtrace_sand_velocity();              // 2.12 -> sand_velocity
-    void integrate_sand_velocity();              // 2.3, 2.7, rule 2.4c -> sand_velocity
+    void integrate_sand_velocity();              // 2.3, 2.7, rule 2.4c, 2.18 -> sand_velocity, friction_limit, withheld_push
     void advect_deformation_gradient();          // 2.13 -> Vxx, Vxy, Vyy, rotation
     void stretch_deformation_gradient();         // 2.13, after the velocity -> Vxx, Vxy, Vyy, rotation
     void compute_momentum_exchange();            // 2.4a after the sand height, then mixed_push on mixed_velocity
@@ -117,6 +121,8 @@ template <class Real> class Solver {
     Field<Real> saturation;                       // phibar
     Field<Real> sand_before, mixed_before;        // hs^n and min(W, hs^n)
     Field<Real> sxx, sxy, syy;                    // Cauchy stress [Pa]
+    Field<Real> cohesive_share;                   // w of 2.18, 0 without elastoplastic
+    Faces<Real> friction_limit, withheld_push;    // 2.18: N, k_sand g_f (1 - C r) d [m/s]
     Faces<Real> ghost_water;                      // depth outside the open sides [m], on boundary faces
 
     // What sources, rain and open sides added, as sums of depths [m]: exact in double with a quantum.
@@ -152,7 +158,18 @@ template <class Real> class Solver {
     std::array<Real, 4> velocity_gradient(const Field<Real>& depth, int i, int j) const; // substep * (xx, xy, yx, yy)
     void stretch_by_velocity_gradient(int i, int j);
     Real cohesion(std::size_t cell) const;
-    void add_stress_and_gravity();
+    /// 2.18: C and r of a face, 1 and 1 without slope_normal; d is the rise of the bed of sand across it.
+    struct Slope {
+        Real d, C, r;
+    };
+    Slope slope_at(const Axis& axis, int a, int b) const;
+    Real open_rise(const Axis& axis, int a, int b) const;
+    Real level_friction(std::size_t left, std::size_t right) const;
+    Real relative_permeability(std::size_t cell) const;
+    void slow_from_within(const Faces<Real>& old, const Axis& axis, int a, int b);
+    void shear_in_plane(const Faces<Real>& old, const Axis& axis, int a, int b);
+    void add_stress(const Axis& axis, int a, int b);
+    void add_gravity(const Axis& axis, int a, int b);
 
     double quanta(double& total, double amount) const;
     void add_depth(Field<Real>& field, std::size_t cell, Real amount, double& ledger);

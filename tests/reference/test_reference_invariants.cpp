@@ -10,6 +10,7 @@ using namespace wadi::reference::test;
 
 namespace {
 
+constexpr std::uint32_t SLOPES = EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION;
 constexpr std::uint32_t MASKS[] = {
     EFFECT_WATER,
     EFFECT_SAND,
@@ -20,6 +21,9 @@ constexpr std::uint32_t MASKS[] = {
     WET_SAND | EFFECT_BED_FRICTION,
     WET_SAND | ELASTIC,
     EFFECT_WATER | EFFECT_SAND | EFFECT_DRAG | ELASTIC,
+    EFFECT_SAND | SLOPES,
+    WET_SAND | EFFECT_RETENTION | SLOPES,
+    WET_SAND | ELASTIC | EFFECT_RETENTION | SLOPES,
 };
 
 /// Smooth random heights with dry parts, at rest; `seed` fixes them.
@@ -43,6 +47,10 @@ Settings scene_settings(int nx, int ny) {
     Settings set = make_settings(nx, ny, 0.1, 0.01);
     set.material.friction = 0.3;
     set.material.bed_friction = 0.01;
+    set.material.slope_normal = 1;
+    set.material.internal_friction = 0.4;
+    set.material.sand_viscosity = 0.05;
+    set.material.retention = 0.3;
     return set;
 }
 
@@ -86,8 +94,10 @@ template <class Real> void copy_turned(const Solver<Real>& a, Solver<Real>& b, b
 } // namespace
 
 TEST_CASE_TEMPLATE("reference: a lake over dunes and a shore is a fixed point", Real, float, double) {
-    for (const std::uint32_t mask : {WET_SAND | ELASTIC, EFFECT_WATER | EFFECT_SAND | EFFECT_DRAG, WET_SAND}) {
-        Settings set = make_settings(120, 40, 0.1, 0.01);
+    for (const std::uint32_t mask : {WET_SAND | ELASTIC, EFFECT_WATER | EFFECT_SAND | EFFECT_DRAG, WET_SAND,
+                                     WET_SAND | SLOPES | EFFECT_RETENTION, WET_SAND | ELASTIC | SLOPES | EFFECT_RETENTION}) {
+        Settings set = scene_settings(120, 40);
+        set.material.friction = 0.5;
         Solver<Real> s(set, mask);
         const auto bump = [](double x, double y, double cx, double cy, double height, double slope) {
             return std::max(0.0, height - slope * std::hypot(x - cx, y - cy));

@@ -1,6 +1,6 @@
 // The water step: diffusion, heights, pressure (2.1 to 2.4).
 #pragma once
-#include "tests/reference/transport.inl"
+#include "tests/reference/slope.inl"
 
 namespace wadi::reference {
 
@@ -21,6 +21,7 @@ template <class Real> void Solver<Real>::diffuse_mixed_water() {
             q = -P.diffusion * (mixed[R] - mixed[L]) / P.dx;
         else if (sand[L] > P.eps && sand[R] > P.eps)
             q = -P.diffusion * minmod(mixed[R] - mixed[L], (terrain[R] + water[R]) - (terrain[L] + water[L])) / P.dx;
+        if (has(EFFECT_RETENTION)) q *= relative_permeability(q > Real(0) ? L : R);
         diffusion_flux.along(ax)[ax.face(a, b)] = q;
     });
 }
