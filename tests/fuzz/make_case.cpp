@@ -164,6 +164,23 @@ void make_rims_and_sources(Random& random, Settings& s, double size) {
         if (random.chance(0.05)) s.effects.push_back({name, Force::off});
 }
 
+// NUMERICS 2.18 and 2.19: over the ranges, at their ends, and a little above 0, where an effect is on and has next to nothing to
+// do.
+void make_sand_laws(Random& random, Settings& s) {
+    Material& m = s.material;
+    const auto maybe = [&](double& value, double most) {
+        if (!random.chance(0.5)) return;
+        const int kind = random.whole(0, 3);
+        value = kind == 0 ? most : kind == 1 ? random.log(1e-12, 1e-3) : random.real(0, most);
+    };
+    maybe(m.slope_normal, 2);
+    maybe(m.internal_friction, 1);
+    maybe(m.sand_viscosity, random.log(1e-3, 10));
+    maybe(m.retention, 0.95);
+    for (const char* name : {"slope_normal", "internal_friction", "retention"})
+        if (random.chance(0.03)) s.effects.push_back({name, Force::off});
+}
+
 void make_commands(Random& random, Case& c, double size) {
     const auto& grid = c.scene.settings.grid;
     const auto place = [&](int cells) { return random.whole(-256, 256 * cells + 256) / 256.0 * grid.dx; }; // whole 1/256 cells
@@ -211,12 +228,14 @@ Case make_case(std::uint64_t seed) {
     make_fields(random, c, size);
     make_rims_and_sources(random, s, size);
     make_commands(random, c, size);
-    if (random.chance(0.4)) s.method.water_transport_order = 2; // drawn last: seeds keep the rest of their cases
+    // Drawn last, as they came: seeds keep the rest of their cases.
+    if (random.chance(0.4)) s.method.water_transport_order = 2;
     const Method& m = s.method;
     const bool plain = m.velocity_transport == VelocityTransport::flux_form &&
                        m.strain_transport == StrainTransport::left_stretch && m.drag_friction == DragFriction::joint &&
                        m.diffusion == Diffusion::limited && m.water_transport_order == 1;
     if (random.chance(0.4) && plain) s.method.half_storage = true;
+    make_sand_laws(random, s);
     return c;
 }
 

@@ -109,7 +109,8 @@ std::vector<Change> changes() {
             });
     list.push_back([](Case& c) { return reset(c.scene.settings.method.name, Method().name); });
     // Whole effects: what is forced off needs what depends on it off as well.
-    for (const char* name : {"bed_shear", "bed_friction", "cohesion", "elastoplastic", "diffusion", "drag", "mixture"})
+    for (const char* name : {"retention", "internal_friction", "slope_normal", "bed_shear", "bed_friction", "cohesion",
+                             "elastoplastic", "diffusion", "drag", "mixture"})
         list.push_back([name](Case& c) {
             for (const auto& [known, force] : c.scene.settings.effects)
                 if (known == name) return false;
