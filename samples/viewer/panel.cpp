@@ -245,7 +245,7 @@ void Panel::effects(Session& session) {
     check(wadi_world_get_effects(session.simulation().world, effects.data(), &count), "effects");
     ImGui::TextWrapped("At once, by the number of the material that is 0 without:");
     for (const wadi_effect_info& now : effects) {
-        if (Session::switch_of(now.name) == nullptr) continue;
+        if (!Session::has_switch(now.name)) continue;
         bool on = now.on != 0;
         if (ImGui::Checkbox(now.name, &on)) session.switch_effect(now.name, on);
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", now.why);

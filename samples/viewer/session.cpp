@@ -80,35 +80,49 @@ void Session::take_over(const std::vector<wadi_material_info>& kept) {
     }
 }
 
-const char* Session::switch_of(const std::string& effect) {
-    static const std::map<std::string, const char*> numbers = {{"elastoplastic", "young_modulus"},
-                                                               {"drag", "exchange_rate"},
-                                                               {"diffusion", "diffusion_rate"},
-                                                               {"bed_friction", "bed_friction"},
-                                                               {"bed_shear", "bed_shear"}};
-    const auto found = numbers.find(effect);
-    return found == numbers.end() ? nullptr : found->second;
-}
+namespace {
+
+struct Switch {
+    const char* number;
+    double usual;
+};
+
+// The numbers that are all 0 where an effect is off.
+const std::map<std::string, std::vector<Switch>> switches = {
+    {"elastoplastic", {{"young_modulus", 2e5}}},
+    {"drag", {{"exchange_rate", 1e5}}},
+    {"diffusion", {{"diffusion_rate", 0.01}}},
+    {"bed_friction", {{"bed_friction", 0.02}}},
+    {"bed_shear", {{"bed_shear", 0.01}}},
+    {"slope_normal", {{"slope_normal", 1}}},
+    {"internal_friction", {{"internal_friction", 0.4}, {"sand_viscosity", 0.05}}},
+    {"retention", {{"retention", 0.4925}}}};
+
+} // namespace
+
+bool Session::has_switch(const std::string& effect) { return switches.contains(effect); }
 
 void Session::switch_effect(const std::string& effect, bool on) {
-    static const std::map<std::string, double> usual = {
-        {"elastoplastic", 2e5}, {"drag", 1e5}, {"diffusion", 0.01}, {"bed_friction", 0.02}, {"bed_shear", 0.01}};
-    const char* number = switch_of(effect);
-    if (number == nullptr) throw std::runtime_error("effect \"" + effect + "\" cannot be switched while the world runs");
-    const auto value_in = [&](const std::vector<wadi_material_info>& infos) {
+    const auto found = switches.find(effect);
+    if (found == switches.end()) throw std::runtime_error("effect \"" + effect + "\" cannot be switched while the world runs");
+    const auto value_in = [](const std::vector<wadi_material_info>& infos, const std::string& number) {
         for (const wadi_material_info& info : infos) {
-            if (info.name == std::string(number)) return info.value;
+            if (info.name == number) return info.value;
         }
         return 0.0;
     };
-    double value = 0;
-    if (on) {
-        value = switched_off_.contains(effect) ? switched_off_.at(effect) : value_in(level_material_);
-        if (value <= 0) value = usual.at(effect);
-    } else if (const double now = value_in(material()); now > 0) {
-        switched_off_[effect] = now;
+    std::vector<double> values;
+    for (const auto& [number, usual] : found->second) {
+        if (!on) {
+            if (const double now = value_in(material(), number); now > 0) switched_off_[number] = now;
+            values.push_back(0);
+        } else {
+            values.push_back(switched_off_.contains(number) ? switched_off_.at(number) : value_in(level_material_, number));
+        }
     }
-    set_material(number, value);
+    const bool none = std::none_of(values.begin(), values.end(), [](double value) { return value > 0; });
+    for (std::size_t n = 0; n < values.size(); ++n)
+        set_material(found->second[n].number, on && none ? found->second[n].usual : values[n]);
 }
 
 void Session::queue_edits(double simulated_seconds, double seconds) {

@@ -50,9 +50,9 @@ class Session {
     const std::vector<wadi_material_info>& level_material() const { return level_material_; }
     /// From the next step on; throws std::runtime_error naming number and range.
     void set_material(const std::string& name, double value);
-    /// The number whose 0 switches an effect off while the world runs; null for an effect without one.
-    static const char* switch_of(const std::string& effect);
-    /// By that number: 0, or what it was before, or the level's, or a usual value.
+    /// Whether there are numbers whose 0 switches the effect off while the world runs.
+    static bool has_switch(const std::string& effect);
+    /// By those numbers: 0, or what they were before, or the level's, or usual values.
     void switch_effect(const std::string& effect, bool on);
 
     std::string check_determinism(uint32_t steps);
@@ -89,7 +89,7 @@ class Session {
     SimulationChoice choice_;
     std::unique_ptr<Simulation> simulation_;
     std::vector<wadi_material_info> level_material_;
-    std::map<std::string, double> switched_off_; // by effect: the value that switch_effect() took away
+    std::map<std::string, double> switched_off_; // by number: the value that switch_effect() took away
     uint32_t steps_due_ = 0;
     std::optional<glm::vec3> pointed_, last_pointed_;
     bool pressed_ = false;
