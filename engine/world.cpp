@@ -1,5 +1,6 @@
 #include "engine/world.hpp"
 #include "engine/step/initial_fields.hpp"
+#include "engine/step/prestress.hpp"
 
 namespace wadi {
 
@@ -21,6 +22,7 @@ Result<std::unique_ptr<World>> World::create(const Settings& settings, const Ini
     world->state_.content = content_of(fields);
     if (auto status = world->state_.set_effects(*effects); !status) return status;
     if (auto status = upload(world->state_, fields); !status) return status;
+    if (auto status = put_in_balance(world->state_); !status) return status;
     if (auto status = world->stepper_.record(); !status) return status;
     return world;
 }

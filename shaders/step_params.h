@@ -13,6 +13,7 @@
 #define EDIT_BRUSH 0
 #define EDIT_STAMP 1
 #define EDIT_PUSH 2
+#define EDIT_BALANCE 3   // the engine's own
 #define LAYER_TERRAIN 0
 #define LAYER_SAND 1
 #define LAYER_WATER 2
@@ -108,6 +109,7 @@ struct WorldParams {
     float viscosity_number;     // nu dts/dx^2 of sand in its plane, at most what the explicit step bears beside bulk_viscosity
     float retained;             // r: depth of water per depth of sand that pores hold back
     float inv_drainable;        // 1/(1 - r)
+    float prestress;            // 1: sand starts in balance, NUMERICS 2.20; 0: unstrained
 
     // elastoplastic sand
     float lambda;               // Lame's first parameter after the elastic cap [Pa]
@@ -155,6 +157,7 @@ struct StepInput {
     // Per edit, lengths in cells. Brush and push: (x, y of the start, x, y to the end), (radius, 1/width of the falloff,
     // 1/length^2, kind), brush (amount [m], layer, 0, 0), push (strength, velocity x, y [m/s], 0). Stamp: (x, y of the low
     // corner, width, height), (columns, rows, page, kind), (metres per unit of the image, layer, columns and rows per cell).
+    // Balance: (x, y of the low corner, width, height), (0, 0, 0, kind), (1 to add the stretch in balance, -1 to take it, 0, 0, 0).
     vec4 edit[EDIT_VECTORS * MAX_EDITS];
     vec4 wake[MAX_WAKES];       // tiles woken in this step: first column, row, last column, row
     int edit_count;             // edits in this submission of apply_edits

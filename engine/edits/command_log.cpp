@@ -1,5 +1,6 @@
 #include "engine/edits/command_log.hpp"
 #include "engine/settings/material_keys.hpp"
+#include "engine/step/prestress.hpp"
 #include <algorithm>
 
 namespace wadi {
@@ -40,8 +41,10 @@ Status CommandLog::set_material(int key, double value) {
     if (auto status = stepper_.finish_step(); !status) return status;
     if (auto status = check_material_change("set_material", state_.settings(), key, value); !status) return status;
     Material material = state_.settings().material;
+    const bool slack = material.young_modulus == 0;
     set_material_value(material, key, value);
     auto status = stepper_.set_material(material);
+    if (status && slack && material.young_modulus > 0) status = put_in_balance(state_);
     if (status) note(MaterialChange{state_.steps, key, value});
     return status;
 }

@@ -89,6 +89,10 @@ Status Edits::promote() {
 }
 
 Status Edits::submit() {
+    if (recorded_with_ != state_.settings().material) {
+        program_.forget();
+        recorded_with_ = state_.settings().material;
+    }
     while (!due_.empty()) {
         StepInput input{};
         input.step = static_cast<int>(state_.steps);

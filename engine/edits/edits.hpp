@@ -49,6 +49,7 @@ class Edits {
     compute::Buffer images_;
     std::uint64_t pages_ = 0, pages_used_ = 0;
     StateProgram program_;
+    Material recorded_with_; // what program_ knows of sand in balance
 };
 
 /// Writes an edit as apply_edits reads it: EDIT_VECTORS vec4. False where it misses the grid. `stamps` by their number less 1.

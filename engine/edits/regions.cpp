@@ -2,6 +2,7 @@
 #include "engine/settings/messages.hpp"
 #include "engine/settings/quanta.hpp"
 #include "engine/step/ledger.hpp"
+#include "engine/step/prestress.hpp"
 #include "engine/step/world_params.hpp"
 #include <algorithm>
 #include <cmath>
@@ -115,6 +116,7 @@ Status write_region(WorldState& state, Stepper& stepper, EditLayer layer, const 
     if (content != state.content) {
         if (auto status = stepper.set_content(content); !status) return status;
     }
+    if (auto status = sand ? change_balance(state, region, Balance::take) : ok_status(); !status) return status;
     Bands bands(state, first, end);
     if (auto status = bands.read(); !status) return status;
     Rows& written = bands.of(layer);
@@ -145,6 +147,7 @@ Status write_region(WorldState& state, Stepper& stepper, EditLayer layer, const 
         return written.write();
     }
     if (auto status = sand ? write_sand(bands) : written.write(); !status) return status;
+    if (auto status = sand ? change_balance(state, region, Balance::add) : ok_status(); !status) return status;
     if (auto status = count_in_ledger(state, sand ? LEDGER_SAND_IN : LEDGER_WATER_IN, in); !status) return status;
     return count_in_ledger(state, sand ? LEDGER_SAND_OUT : LEDGER_WATER_OUT, out);
 }

@@ -76,6 +76,7 @@ struct Method {
     double gradient_clamp = 0.4; // largest |dts grad v| entry
     double cohesion_cap = 0.9;   // tension <= cohesion_cap rho_s g hs, NUMERICS 2.7
     double stress_taper = 0;
+    bool prestress = false; // NUMERICS 2.20
     int saturation_smoothing = 2;
     VelocityTransport velocity_transport = VelocityTransport::flux_form; // semi_lagrangian: velocity_clamp at most 1
     StrainTransport strain_transport = StrainTransport::left_stretch;

@@ -122,6 +122,7 @@ WorldParams derive_params(const Settings& s) {
     p.internal_friction = f(m.internal_friction);
     p.retained = f(m.retention);
     p.inv_drainable = f(1 / (1 - m.retention));
+    p.prestress = w.prestress ? 1.0F : 0.0F;
 
     double lambda = m.young_modulus * m.poisson_ratio / ((1 + m.poisson_ratio) * (1 - 2 * m.poisson_ratio));
     double shear = m.young_modulus / (2 * (1 + m.poisson_ratio));

@@ -236,6 +236,7 @@ Case make_case(std::uint64_t seed) {
                        m.diffusion == Diffusion::limited && m.water_transport_order == 1;
     if (random.chance(0.4) && plain) s.method.half_storage = true;
     make_sand_laws(random, s);
+    if (random.chance(0.3)) s.method.prestress = true;
     return c;
 }
 

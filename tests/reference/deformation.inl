@@ -150,27 +150,13 @@ template <class Real> void Solver<Real>::stretch_deformation_gradient() {
     }
 }
 
-/// Cohesion c_c(phibar) [Pa]: the paper's piecewise linear law, capped for thin layers (2.7).
-template <class Real> Real Solver<Real>::cohesion(std::size_t cell) const {
-    const Real phi = has(EFFECT_COHESION) ? saturation[cell] : Real(0);
-    Real c(0);
-    if (phi < P.phi1)
-        c = P.c0 + phi * (P.c1 - P.c0) / P.phi1;
-    else if (phi < P.phi2)
-        c = P.c1 + (phi - P.phi1) * (P.c2 - P.c1) / (P.phi2 - P.phi1);
-    else if (phi <= P.phi3)
-        c = P.c2 * (P.phi3 - phi) / (P.phi3 - P.phi2);
-    if (P.cohesion_cap > Real(0)) c = std::min(c, Real(2) * P.yield_friction * P.cohesion_cap * P.rho_s * P.gravity * sand[cell]);
-    return c;
-}
-
 template <class Real> void Solver<Real>::project_deformation_gradient() {
     const Real lm = P.lambda + P.shear;
     const Axis x = axis(false);
     const Axis y_axis = axis(true);
     for (std::size_t c = 0; c < cells(); ++c) {
         sxx[c] = sxy[c] = syy[c] = cohesive_share[c] = Real(0);
-        const Real coh = cohesion(c);
+        const Real coh = cohesion(has(EFFECT_COHESION) ? saturation[c] : Real(0), sand[c]);
         const Real cliff = P.yield_friction * P.rho_s * P.gravity * sand[c];
         if (cliff > Real(0)) cohesive_share[c] = std::min(Real(1), Real(4) * coh / cliff);
         if (sand[c] <= P.eps) continue;

@@ -1,6 +1,6 @@
 // What enters and leaves: sources, rain, evaporation and open sides (2.9). Amounts are whole quanta.
 #pragma once
-#include "tests/reference/transport.inl"
+#include "tests/reference/prestress.inl"
 
 namespace wadi::reference {
 
@@ -12,21 +12,15 @@ template <class Real> double Solver<Real>::quanta(double& total, double amount) 
     return Q > 0 ? (std::floor(total / Q) - std::floor(before / Q)) * Q : amount;
 }
 
-/// Adds to a cell, or removes what is there at most; refuses to pass the declared largest column. Sand that is added is
-/// unstrained: V - I of the cell is diluted by it.
+/// Adds to a cell, or removes what is there at most; refuses to pass the declared largest column. Sand that is added
+/// dilutes the strain of the cell.
 template <class Real> void Solver<Real>::add_depth(Field<Real>& field, std::size_t cell, Real amount, double& ledger) {
     if (amount > Real(0) && terrain[cell] + sand[cell] + water[cell] + amount > P.largest_height) {
         ++refused;
         return;
     }
     const Real change = std::max(amount, -field[cell]);
-    if (&field == &sand && change > Real(0)) {
-        const Real keep = sand[cell] / (sand[cell] + change);
-        Vxx[cell] = Real(1) + keep * (Vxx[cell] - Real(1));
-        Vxy[cell] = keep * Vxy[cell];
-        Vyy[cell] = Real(1) + keep * (Vyy[cell] - Real(1));
-        rotation[cell] = keep * rotation[cell];
-    }
+    if (&field == &sand && change != Real(0)) change_strain(cell, change);
     field[cell] += change;
     ledger += static_cast<double>(change);
 }

@@ -2,6 +2,7 @@
 #include "tests/reference/solver.hpp"
 #include "tests/reference/backtrace.inl"
 #include "tests/reference/deformation.inl"
+#include "tests/reference/prestress.inl"
 #include "tests/reference/rim.inl"
 #include "tests/reference/sand.inl"
 #include "tests/reference/slope.inl"
@@ -131,6 +132,7 @@ template <class Real> void Solver<Real>::load(const InitialFields& fields) {
     heights(fields.terrain, terrain);
     if (has(EFFECT_SAND)) heights(fields.sand, sand);
     if (has(EFFECT_WATER)) heights(fields.water, water);
+    for (std::size_t c = 0; c < cells(); ++c) Vxx[c] = Vyy[c] = Real(1) + balance(sand[c], water[c]);
     if (has(EFFECT_SAND)) velocities(fields.sand_velocity_x, fields.sand_velocity_y, sand_velocity);
     if (has(EFFECT_WATER)) velocities(fields.velocity_x, fields.velocity_y, pure_velocity);
     if (has(EFFECT_MIXTURE)) velocities(fields.velocity_x, fields.velocity_y, mixed_velocity);

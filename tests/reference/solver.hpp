@@ -157,7 +157,9 @@ template <class Real> class Solver {
     void advect_stretch();
     std::array<Real, 4> velocity_gradient(const Field<Real>& depth, int i, int j) const; // substep * (xx, xy, yx, yy)
     void stretch_by_velocity_gradient(int i, int j);
-    Real cohesion(std::size_t cell) const;
+    Real cohesion(Real phi, Real depth) const;
+    Real balance(Real depth, Real held) const; // 2.20
+    void change_strain(std::size_t cell, Real added);
     /// 2.18: C and r of a face, 1 and 1 without slope_normal; d is the rise of the bed of sand across it.
     struct Slope {
         Real d, C, r;

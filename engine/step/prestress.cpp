@@ -1,0 +1,37 @@
+#include "engine/step/prestress.hpp"
+
+namespace wadi {
+
+Status change_balance(WorldState& state, const Region& region, Balance change) {
+    if (!state.settings().method.prestress || (state.plan().effects & EFFECT_ELASTOPLASTIC) == 0) return ok_status();
+    StepInput input{};
+    input.edit_count = 1;
+    const auto f = [](int cells) { return static_cast<float>(cells); };
+    input.edit[0] = {f(region.i0), f(region.j0), f(region.nx), f(region.ny)};
+    input.edit[1] = {0, 0, 0, float{EDIT_BALANCE}};
+    input.edit[2] = {static_cast<float>(change), 0, 0, 0};
+    auto& device = state.device();
+    auto no_stamps = device.create_buffer({STAMP_PAGE * 4, "no stamps"});
+    if (!no_stamps) return no_stamps.status();
+    const auto run = [&] {
+        compute::ProgramBuilder builder("balance");
+        if (auto status = state.append_stage(builder, "apply_edits", state.fields().parity(), {{"stamp_images", *no_stamps}});
+            !status)
+            return status;
+        auto program = device.compile(builder, state.params());
+        if (!program) return program.status();
+        auto ticket = device.submit(*program, input);
+        const auto status = ticket ? device.wait(*ticket) : ticket.status();
+        device.destroy_program(*program);
+        return status;
+    };
+    const auto status = run();
+    device.destroy_buffer(*no_stamps);
+    return status;
+}
+
+Status put_in_balance(WorldState& state) {
+    return change_balance(state, {0, 0, state.layout().nx, state.layout().ny}, Balance::add);
+}
+
+} // namespace wadi
