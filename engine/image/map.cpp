@@ -15,7 +15,7 @@ std::string lower_case_ending(const std::string& path) {
     return ending;
 }
 
-/// The two neighbouring samples of a cell centre and the weight of the second.
+/// The two neighbouring samples of a position and the weight of the second.
 struct Tap {
     std::size_t low = 0;
     std::size_t high = 0;
@@ -34,6 +34,9 @@ std::vector<Tap> taps(int source, int target) {
     }
     return result;
 }
+
+/// Places per cell along an axis, so that no sample is passed over.
+int places(int source, int target) { return (source + target - 1) / target; }
 
 } // namespace
 
@@ -86,19 +89,27 @@ Result<Map> read_map(const std::string& path, std::optional<std::pair<int, int>>
 
 std::vector<float> resample(const Map& map, int nx, int ny) {
     if (map.nx == nx && map.ny == ny) return map.values;
-    const std::vector<Tap> columns = taps(map.nx, nx);
-    const std::vector<Tap> rows = taps(map.ny, ny);
+    const auto width = static_cast<std::size_t>(places(map.nx, nx));
+    const auto depth = static_cast<std::size_t>(places(map.ny, ny));
+    const std::vector<Tap> columns = taps(map.nx, nx * static_cast<int>(width));
+    const std::vector<Tap> rows = taps(map.ny, ny * static_cast<int>(depth));
+    const auto share = 1.0 / static_cast<double>(width * depth);
     std::vector<float> result;
-    result.reserve(columns.size() * rows.size());
-    for (const Tap& row : rows) {
+    result.reserve(static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny));
+    std::vector<double> sums(static_cast<std::size_t>(nx));
+    for (std::size_t j = 0; j < rows.size(); ++j) {
+        const Tap& row = rows[j];
         const std::size_t south = row.low * static_cast<std::size_t>(map.nx);
         const std::size_t north = row.high * static_cast<std::size_t>(map.nx);
         const auto along = [&](std::size_t start, const Tap& column) {
             return static_cast<double>(map.values[start + column.low]) * (1 - column.weight) +
                    static_cast<double>(map.values[start + column.high]) * column.weight;
         };
-        for (const Tap& column : columns)
-            result.push_back(static_cast<float>(along(south, column) * (1 - row.weight) + along(north, column) * row.weight));
+        if (j % depth == 0) std::fill(sums.begin(), sums.end(), 0.0);
+        for (std::size_t i = 0; i < columns.size(); ++i)
+            sums[i / width] += along(south, columns[i]) * (1 - row.weight) + along(north, columns[i]) * row.weight;
+        if ((j + 1) % depth > 0) continue;
+        for (const double sum : sums) result.push_back(static_cast<float>(sum * share));
     }
     return result;
 }

@@ -1,4 +1,5 @@
 #include "engine/image/map.hpp"
+#include "engine/level/coverage.hpp"
 #include "engine/level/layers.hpp"
 #include "engine/settings/messages.hpp"
 #include "engine/settings/quanta.hpp"
@@ -9,7 +10,9 @@
 namespace wadi {
 namespace {
 
-std::size_t cell_count(const LevelGrid& grid) { return static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny); }
+std::size_t cell_count(const LevelGrid& grid) {
+    return static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny);
+}
 
 double value_at(const std::vector<float>& field, std::size_t cell) {
     return field.empty() ? 0 : static_cast<double>(field[cell]);
@@ -59,22 +62,204 @@ Result<std::vector<float>> load_heights(const Layer& layer, const LevelGrid& gri
     return values;
 }
 
-/// What a layer says about one cell: nothing outside its shape.
-struct Sample {
-    bool inside = false;
-    double value = 0;
+/// What lies below a layer [m]. Surfaces count from the cell's means, so that they are flat whatever its parts hold.
+struct Below {
+    double terrain = 0;
+    double sand = 0;
+    double sand_here = 0; // in a part of the cell: what a share of the sand's depth counts from
 };
 
-Sample sample_layer(const Layer& layer, double relative, double ground, double sand) {
-    if (std::isinf(relative)) return {};
-    if (layer.amount == Amount::wet) return {true, layer.top * sand};
-    double value = layer.top + relative;
+double layer_height(const Layer& layer, double relative, const Below& below) {
+    if (layer.amount == Amount::wet) return layer.top * below.sand_here;
+    const double value = layer.top + relative;
+    const double ground = below.terrain + below.sand;
     // Water counts from the terrain, inside the sand too; sand that stands above the surface stays as it is.
-    if (layer.amount == Amount::surface) value = value > ground ? value - ground + sand : 0.0;
-    // Beyond the line where a sloping side meets the ground, the shape is over.
-    if (has_sloping_sides(layer.shape) && relative < 0 && value <= 0) return {};
-    return {true, value};
+    if (layer.amount == Amount::surface) return value > ground ? value - ground + below.sand : 0.0;
+    return value;
 }
+
+/// The field at a place, whose height relative to the layer's top is given, after the layer.
+double after_layer(const Layer& layer, LayerTarget target, const LevelGrid& grid, double current, double relative,
+                   const Below& below) {
+    if (std::isinf(relative) || (layer.only_present && !(current > 0))) return current;
+    const double height = layer_height(layer, relative, below);
+    // Beyond the line where a sloping side meets the ground, the shape is over.
+    if (has_sloping_sides(layer.shape) && relative < 0 && height <= 0) return current;
+    double next = combined(current, height, layer.combine);
+    if (target != LayerTarget::terrain) next = std::max(next, 0.0);
+    return nearest_quantum(next, grid.quantum, Halves::away);
+}
+
+std::vector<const Layer*> pointers(const std::vector<Layer>& first, const std::vector<Layer>& second = {}) {
+    std::vector<const Layer*> layers;
+    for (const auto* list : {&first, &second})
+        for (const Layer& layer : *list) layers.push_back(&layer);
+    return layers;
+}
+
+class Drawing {
+  public:
+    Drawing(const LayerLists& lists, const LevelGrid& grid, const FileReader& files, InitialFields& fields,
+            std::vector<std::string>& warnings)
+        : lists_(lists), frame_(grid), files_(files), fields_(fields), warnings_(warnings),
+          cut_(cut_cells(pointers(lists.sand, lists.water), grid)), map_heights_(lists.sand.size() + lists.water.size()) {}
+
+    Status draw() {
+        if (Status status = draw_terrain(); !status) return status;
+        if (Status status = draw_sand(); !status) return status;
+        return draw_water();
+    }
+
+  private:
+    Status draw_terrain() {
+        fields_.terrain.resize(lists_.terrain.empty() ? 0 : cell_count(frame_));
+        for (const Layer& layer : lists_.terrain) {
+            auto changed = draw_centers(layer, LayerTarget::terrain, fields_.terrain, nullptr);
+            if (!changed) return changed.status();
+            warn_unchanged(layer, *changed);
+        }
+        return ok_status();
+    }
+
+    Status draw_sand() {
+        std::vector<char> changed;
+        if (Status status = draw_list(lists_.sand, LayerTarget::sand, fields_.sand, 0, changed); !status) return status;
+        CellSamples samples(pointers(lists_.sand), frame_);
+        const auto cells = cut_cells(pointers(lists_.sand), frame_);
+        std::size_t at = 0; // of the cell in cut_, which holds it
+        for (const std::size_t cell : cells) {
+            while (cut_[at] != cell) ++at;
+            sample_cell(samples, at);
+            const Below below = below_of(cell, false);
+            values_.assign(samples.count(), 0.0);
+            for (std::size_t n = 0; n < values_.size(); ++n)
+                values_[n] = stack(lists_.sand, LayerTarget::sand, samples, n, 0, below, changed);
+            store(fields_.sand, cell, mean_of(values_, samples, terms_));
+        }
+        warn_unchanged(lists_.sand, changed);
+        return ok_status();
+    }
+
+    Status draw_water() {
+        std::vector<char> changed;
+        if (Status status = draw_list(lists_.water, LayerTarget::water, fields_.water, lists_.sand.size(), changed); !status)
+            return status;
+        if (lists_.water.empty()) return ok_status();
+        CellSamples samples(pointers(lists_.sand, lists_.water), frame_);
+        std::vector<char> sand_changed(lists_.sand.size());
+        std::vector<double> sand;
+        for (std::size_t at = 0; at < cut_.size(); ++at) {
+            const std::size_t cell = cut_[at];
+            sample_cell(samples, at);
+            sand.assign(samples.count(), 0.0);
+            for (std::size_t n = 0; n < sand.size(); ++n)
+                sand[n] = stack(lists_.sand, LayerTarget::sand, samples, n, 0, below_of(cell, false), sand_changed);
+            // The sides of water's boxes part the cell further: in the mean its sand stays what was drawn.
+            const double mean = mean_of(sand, samples, terms_);
+            Below below = below_of(cell, true);
+            const double scale = mean > 0 ? below.sand / mean : 0;
+            values_.assign(samples.count(), 0.0);
+            for (std::size_t n = 0; n < values_.size(); ++n) {
+                below.sand_here = mean == sand[n] ? below.sand : sand[n] * scale;
+                values_[n] = stack(lists_.water, LayerTarget::water, samples, n, lists_.sand.size(), below, changed);
+            }
+            store(fields_.water, cell, mean_of(values_, samples, terms_));
+        }
+        warn_unchanged(lists_.water, changed);
+        return ok_status();
+    }
+
+    Below below_of(std::size_t cell, bool with_sand) const {
+        const double sand = with_sand ? value_at(fields_.sand, cell) : 0;
+        return {value_at(fields_.terrain, cell), sand, sand};
+    }
+
+    /// Draws every layer at the middles of cells; keeps the heights of maps in cut cells. `first`: number of the first layer
+    /// there.
+    Status draw_list(const std::vector<Layer>& layers, LayerTarget target, std::vector<float>& field, std::size_t first,
+                     std::vector<char>& changed) {
+        field.resize(layers.empty() ? 0 : cell_count(frame_));
+        for (std::size_t n = 0; n < layers.size(); ++n) {
+            auto result = draw_centers(layers[n], target, field, &map_heights_[first + n]);
+            if (!result) return result.status();
+            changed.push_back(*result);
+        }
+        return ok_status();
+    }
+
+    /// Whether it changed anything.
+    Result<bool> draw_centers(const Layer& layer, LayerTarget target, std::vector<float>& field, std::vector<float>* at_cut) {
+        std::vector<float> heights;
+        if (layer.map) {
+            auto loaded = load_heights(layer, frame_, files_, warnings_);
+            if (!loaded) return loaded.status();
+            heights = std::move(*loaded);
+            if (at_cut != nullptr)
+                for (const std::size_t cell : cut_) at_cut->push_back(heights[cell]);
+        }
+        bool changed = false;
+        const CellRange range = reach_of(layer, frame_);
+        for (int j = range.begin_y; j < range.end_y; ++j)
+            for (int i = range.begin_x; i < range.end_x; ++i) {
+                const std::size_t cell =
+                    static_cast<std::size_t>(j) * static_cast<std::size_t>(frame_.nx) + static_cast<std::size_t>(i);
+                const double current = static_cast<double>(field[cell]);
+                if (layer.only_present && !(current > 0)) continue;
+                const Point center = cell_center(frame_, i, j);
+                const double relative =
+                    layer.map ? static_cast<double>(heights[cell]) : relative_height(layer.shape, center[0], center[1]);
+                const double next =
+                    after_layer(layer, target, frame_, current, relative, below_of(cell, target == LayerTarget::water));
+                field[cell] = static_cast<float>(next);
+                changed = changed || field[cell] != static_cast<float>(current);
+            }
+        return changed;
+    }
+
+    void sample_cell(CellSamples& samples, std::size_t at) {
+        for (std::size_t n = 0; n < samples.map_heights().size(); ++n)
+            if (!map_heights_[n].empty()) samples.map_heights()[n] = static_cast<double>(map_heights_[n][at]);
+        const auto width = static_cast<std::size_t>(frame_.nx);
+        samples.sample(static_cast<int>(cut_[at] % width), static_cast<int>(cut_[at] / width));
+    }
+
+    /// The layers' result in a sample of a cell. `first`: number of the first layer in the samples.
+    double stack(const std::vector<Layer>& layers, LayerTarget target, const CellSamples& samples, std::size_t sample,
+                 std::size_t first, const Below& below, std::vector<char>& changed) const {
+        double value = 0;
+        for (std::size_t n = 0; n < layers.size(); ++n) {
+            const double next = after_layer(layers[n], target, frame_, value, samples.relative(sample, first + n), below);
+            if (next != value) changed[n] = 1;
+            value = next;
+        }
+        return value;
+    }
+
+    void store(std::vector<float>& field, std::size_t cell, double height) const {
+        field[cell] = static_cast<float>(nearest_quantum(height, frame_.quantum, Halves::away));
+    }
+
+    void warn_unchanged(const std::vector<Layer>& layers, const std::vector<char>& changed) {
+        for (std::size_t n = 0; n < layers.size(); ++n) warn_unchanged(layers[n], changed[n] != 0);
+    }
+
+    void warn_unchanged(const Layer& layer, bool changed) {
+        const bool meant_as_nothing = !layer.map && layer.top == 0 && layer.amount != Amount::surface;
+        if (!changed && !meant_as_nothing)
+            warnings_.push_back(layer.path +
+                                ": changes no cell; it lies outside the grid, between cell centres, below the ground "
+                                "or under what is already there");
+    }
+
+    const LayerLists& lists_;
+    const LevelGrid& grid_;
+    const FileReader& files_;
+    InitialFields& fields_;
+    std::vector<std::string>& warnings_;
+    const std::vector<std::size_t> cut_;          // by the edges of sand and water
+    std::vector<std::vector<float>> map_heights_; // of the maps among sand's layers, then water's, in cut_
+    std::vector<double> values_, terms_;
+};
 
 } // namespace
 
@@ -83,43 +268,9 @@ std::string filled_warning(const Map& map, const std::string& path) {
            " cells hold NODATA_value; they take the height of the nearest cell that has one";
 }
 
-Result<std::vector<float>> draw_layers(const std::vector<Layer>& layers, LayerTarget target, const LevelGrid& grid,
-                                       const FileReader& files, const std::vector<float>& terrain, const std::vector<float>& sand,
-                                       std::vector<std::string>& warnings) {
-    std::vector<float> field(layers.empty() ? 0 : cell_count(grid), 0.0f);
-    for (const Layer& layer : layers) {
-        std::vector<float> heights;
-        if (layer.map) {
-            auto loaded = load_heights(layer, grid, files, warnings);
-            if (!loaded) return loaded.status();
-            heights = std::move(*loaded);
-        }
-        bool changed = false;
-        std::size_t cell = 0;
-        for (int j = 0; j < grid.ny; ++j) {
-            const double y = (j + 0.5) * grid.dx / grid.stretch_y;
-            for (int i = 0; i < grid.nx; ++i, ++cell) {
-                const double current = static_cast<double>(field[cell]);
-                if (layer.only_present && !(current > 0)) continue;
-                const double sand_here = value_at(sand, cell);
-                const double ground = value_at(terrain, cell) + sand_here;
-                const double relative =
-                    layer.map ? static_cast<double>(heights[cell]) : relative_height(layer.shape, (i + 0.5) * grid.dx, y);
-                const Sample sample = sample_layer(layer, relative, ground, sand_here);
-                if (!sample.inside) continue;
-                double next = combined(current, sample.value, layer.combine);
-                if (target != LayerTarget::terrain) next = std::max(next, 0.0);
-                field[cell] = static_cast<float>(nearest_quantum(next, grid.quantum, Halves::away));
-                changed = changed || field[cell] != static_cast<float>(current);
-            }
-        }
-        const bool meant_as_nothing = !layer.map && layer.top == 0 && layer.amount != Amount::surface;
-        if (!changed && !meant_as_nothing)
-            warnings.push_back(layer.path +
-                               ": changes no cell; it lies outside the grid, between cell centres, below the ground or under "
-                               "what is already there");
-    }
-    return field;
+Status draw_layers(const LayerLists& lists, const LevelGrid& grid, const FileReader& files, InitialFields& fields,
+                   std::vector<std::string>& warnings) {
+    return Drawing(lists, grid, files, fields, warnings).draw();
 }
 
 void draw_velocities(const std::vector<VelocityRegion>& regions, bool of_sand, const LevelGrid& grid, std::vector<float>& x,
@@ -131,7 +282,8 @@ void draw_velocities(const std::vector<VelocityRegion>& regions, bool of_sand, c
         std::size_t cell = 0;
         for (int j = 0; j < grid.ny; ++j)
             for (int i = 0; i < grid.nx; ++i, ++cell) {
-                const double relative = relative_height(region.shape, (i + 0.5) * grid.dx, (j + 0.5) * grid.dx / grid.stretch_y);
+                const Point center = cell_center(grid, i, j);
+                const double relative = relative_height(region.shape, center[0], center[1]);
                 if (std::isinf(relative)) continue;
                 x[cell] = static_cast<float>(region.velocity[0]);
                 y[cell] = static_cast<float>(region.velocity[1]);

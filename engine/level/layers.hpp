@@ -4,6 +4,7 @@
 #include "engine/image/map.hpp"
 #include "engine/level/json_reader.hpp"
 #include "engine/level/shapes.hpp"
+#include "engine/settings/settings.hpp"
 #include <optional>
 #include <string>
 #include <utility>
@@ -67,11 +68,18 @@ struct VelocityRegion {
 std::vector<Layer> read_layers(const Json& value, const std::string& path, LayerTarget target, Status& status);
 std::vector<VelocityRegion> read_velocities(const Json& value, const std::string& path, Status& status);
 
-/// Draws the layers. `terrain` and `sand` are the fields below, empty = zero. Maps come from `files`. A layer that
-/// changes no cell is worth a warning. The result is empty when there are no layers.
-Result<std::vector<float>> draw_layers(const std::vector<Layer>& layers, LayerTarget target, const LevelGrid& grid,
-                                       const FileReader& files, const std::vector<float>& terrain, const std::vector<float>& sand,
-                                       std::vector<std::string>& warnings);
+/// The layers of a level by what they make.
+struct LayerLists {
+    std::vector<Layer> terrain;
+    std::vector<Layer> sand;
+    std::vector<Layer> water;
+};
+
+/// Draws terrain, sand and water into `fields`; a field without layers is empty. Maps come from `files`. Terrain is what its
+/// layers say at the middle of a cell, sand and water the mean over the cell where an edge runs through it. A layer that changes
+/// no cell is worth a warning.
+Status draw_layers(const LayerLists& lists, const LevelGrid& grid, const FileReader& files, InitialFields& fields,
+                   std::vector<std::string>& warnings);
 
 /// Draws the velocities of water or of sand into x and y; both stay empty when no region sets any.
 void draw_velocities(const std::vector<VelocityRegion>& regions, bool of_sand, const LevelGrid& grid, std::vector<float>& x,

@@ -14,10 +14,7 @@ constexpr int FORMAT_VERSION = 1;
 constexpr std::uint64_t LEVEL_BYTES_MOST = 16u << 20;
 constexpr double DURATION_MOST = 1e9; // [s]
 
-struct Layers {
-    std::vector<Layer> terrain;
-    std::vector<Layer> sand;
-    std::vector<Layer> water;
+struct Layers : LayerLists {
     std::vector<VelocityRegion> velocities;
 };
 
@@ -55,14 +52,7 @@ Status read_root(const Json& json, const FileReader& files, Level& level, Layers
 
 Status draw(const Layers& layers, const LevelGrid& grid, const FileReader& files, Level& level) {
     InitialFields& fields = level.fields;
-    const auto into = [&](std::vector<float>& field, const std::vector<Layer>& list, LayerTarget target) {
-        auto drawn = draw_layers(list, target, grid, files, fields.terrain, fields.sand, level.warnings);
-        if (drawn) field = std::move(*drawn);
-        return drawn.status();
-    };
-    if (Status status = into(fields.terrain, layers.terrain, LayerTarget::terrain); !status) return status;
-    if (Status status = into(fields.sand, layers.sand, LayerTarget::sand); !status) return status;
-    if (Status status = into(fields.water, layers.water, LayerTarget::water); !status) return status;
+    if (Status status = draw_layers(layers, grid, files, fields, level.warnings); !status) return status;
     draw_velocities(layers.velocities, false, grid, fields.velocity_x, fields.velocity_y);
     draw_velocities(layers.velocities, true, grid, fields.sand_velocity_x, fields.sand_velocity_y);
     return ok_status();

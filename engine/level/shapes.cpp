@@ -8,38 +8,24 @@ namespace {
 
 double length(double x, double y) { return std::sqrt(x * x + y * y); }
 
-double distance_to_segment(double x, double y, const Point& a, const Point& b) {
+Point offset_from_segment(double x, double y, const Point& a, const Point& b) {
     const double dx = b[0] - a[0];
     const double dy = b[1] - a[1];
     const double square = dx * dx + dy * dy;
     const double along = square > 0 ? std::clamp(((x - a[0]) * dx + (y - a[1]) * dy) / square, 0.0, 1.0) : 0;
-    return length(x - a[0] - along * dx, y - a[1] - along * dy);
+    return {x - a[0] - along * dx, y - a[1] - along * dy};
 }
 
-double distance_to_line(const std::vector<Point>& points, double x, double y) {
-    double least = length(x - points[0][0], y - points[0][1]);
-    for (std::size_t n = 1; n < points.size(); ++n) least = std::min(least, distance_to_segment(x, y, points[n - 1], points[n]));
-    return least;
-}
-
-/// How far (x, y) lies outside the top region of the shape [m]; 0 inside.
-double distance_from_top(const Shape& shape, double x, double y) {
-    switch (shape.kind) {
-    case ShapeKind::box: {
-        const double dx = std::max({shape.from[0] - x, x - shape.to[0], 0.0});
-        const double dy = std::max({shape.from[1] - y, y - shape.to[1], 0.0});
-        return length(dx, dy);
+/// From the nearest point of the shape's middle (centre or crest line) to (x, y).
+Point offset_from_middle(const Shape& shape, double x, double y) {
+    if (shape.kind != ShapeKind::ridge) return {x - shape.center[0], y - shape.center[1]};
+    const auto square = [](const Point& p) { return p[0] * p[0] + p[1] * p[1]; };
+    Point nearest = {x - shape.points[0][0], y - shape.points[0][1]};
+    for (std::size_t n = 1; n < shape.points.size(); ++n) {
+        const Point offset = offset_from_segment(x, y, shape.points[n - 1], shape.points[n]);
+        if (square(offset) < square(nearest)) nearest = offset;
     }
-    case ShapeKind::cylinder:
-    case ShapeKind::cone:
-        return std::max(length(x - shape.center[0], y - shape.center[1]) - shape.radius, 0.0);
-    case ShapeKind::ridge:
-        return std::max(distance_to_line(shape.points, x, y) - shape.width / 2, 0.0);
-    case ShapeKind::plane:
-    case ShapeKind::noise:
-        break;
-    }
-    return 0;
+    return nearest;
 }
 
 /// A well-mixed 32-bit hash of a lattice point ("lowbias32" of C. Wellons), as a number in -1 ... 1.
@@ -70,9 +56,39 @@ double value_noise(double x, double y, std::uint32_t seed) {
     return south * (1 - v) + north * v;
 }
 
-bool has_sloping_sides(const Shape& shape) {
-    return shape.kind != ShapeKind::plane && shape.kind != ShapeKind::noise && std::isfinite(shape.side_slope);
+double rim_distance(const Shape& shape, double x, double y) {
+    if (shape.kind == ShapeKind::box) {
+        const double dx = std::max(shape.from[0] - x, x - shape.to[0]);
+        const double dy = std::max(shape.from[1] - y, y - shape.to[1]);
+        return dx > 0 || dy > 0 ? length(std::max(dx, 0.0), std::max(dy, 0.0)) : std::max(dx, dy);
+    }
+    const Point offset = offset_from_middle(shape, x, y);
+    return length(offset[0], offset[1]) - (shape.kind == ShapeKind::ridge ? shape.width / 2 : shape.radius);
 }
+
+Point rim_normal(const Shape& shape, double x, double y) {
+    const Point offset = offset_from_middle(shape, x, y);
+    const double size = length(offset[0], offset[1]);
+    return size > 0 ? Point{offset[0] / size, offset[1] / size} : Point{0, 0};
+}
+
+bool has_rim(const Shape& shape) { return shape.kind != ShapeKind::plane && shape.kind != ShapeKind::noise; }
+
+std::array<double, 4> rim_bounds(const Shape& shape) {
+    if (shape.kind == ShapeKind::box) return {shape.from[0], shape.from[1], shape.to[0], shape.to[1]};
+    const bool ridge = shape.kind == ShapeKind::ridge;
+    const double reach = ridge ? shape.width / 2 : shape.radius;
+    Point low = ridge ? shape.points[0] : shape.center;
+    Point high = low;
+    for (const Point& point : shape.points)
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            low[axis] = std::min(low[axis], point[axis]);
+            high[axis] = std::max(high[axis], point[axis]);
+        }
+    return {low[0] - reach, low[1] - reach, high[0] + reach, high[1] + reach};
+}
+
+bool has_sloping_sides(const Shape& shape) { return has_rim(shape) && std::isfinite(shape.side_slope); }
 
 double relative_height(const Shape& shape, double x, double y) {
     if (shape.kind == ShapeKind::plane) return shape.slope[0] * x + shape.slope[1] * y;
@@ -90,8 +106,8 @@ double relative_height(const Shape& shape, double x, double y) {
         }
         return shape.amplitude * sum / total;
     }
-    const double distance = distance_from_top(shape, x, y);
-    if (distance == 0) return 0;
+    const double distance = rim_distance(shape, x, y);
+    if (distance <= 0) return 0;
     return std::isfinite(shape.side_slope) ? -shape.side_slope * distance : -std::numeric_limits<double>::infinity();
 }
 

@@ -27,6 +27,18 @@ struct Shape {
     std::uint32_t seed = 0;
 };
 
+/// Distance from (x, y) to the rim of the top region of a box, cylinder, cone or ridge, negative inside [m].
+double rim_distance(const Shape& shape, double x, double y);
+
+/// The direction in which rim_distance() of a cylinder or ridge grows fastest, of length 1; (0, 0) on its middle.
+Point rim_normal(const Shape& shape, double x, double y);
+
+/// True for the shapes that have a rim.
+bool has_rim(const Shape& shape);
+
+/// West, south, east and north bound of the top region of a shape with a rim [m].
+std::array<double, 4> rim_bounds(const Shape& shape);
+
 /// Height of the shape at (x, y) relative to its top [m]: 0 on top, negative on the sides, -infinity where it is not.
 /// A plane gives its rise from the south-west corner, noise a value within +-amplitude.
 double relative_height(const Shape& shape, double x, double y);

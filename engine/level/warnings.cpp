@@ -66,7 +66,39 @@ double wall_cohesion(const Settings& settings, double height) {
     return settings.material.sand_density * settings.gravity * height / (4 * (c_f + std::sqrt(1 + c_f * c_f)));
 }
 
-void survey_face(const Settings& settings, const Column& a, const Column& b, Survey& survey) {
+/// The columns of the initial fields.
+class Columns {
+  public:
+    Columns(const Settings& settings, const InitialFields& fields) : grid_(settings.grid), fields_(fields) {}
+
+    Column at(int i, int j) const {
+        const std::size_t cell = static_cast<std::size_t>(j) * static_cast<std::size_t>(grid_.nx) + static_cast<std::size_t>(i);
+        const auto part = [&](const std::vector<float>& field) { return field.empty() ? 0.0 : static_cast<double>(field[cell]); };
+        return Column{part(fields_.terrain), part(fields_.sand), part(fields_.water)};
+    }
+
+    /// How far sand falls within a cell of (i, j): a wall that runs through cells is lower in these, and whole around them.
+    double fall_around(int i, int j) const {
+        Column highest = at(i, j);
+        double lowest = highest.ground();
+        for (int b = std::max(j - 1, 0); b <= std::min(j + 1, grid_.ny - 1); ++b)
+            for (int a = std::max(i - 1, 0); a <= std::min(i + 1, grid_.nx - 1); ++a) {
+                const Column column = at(a, b);
+                if (column.ground() > highest.ground()) highest = column;
+                lowest = std::min(lowest, column.ground());
+            }
+        return std::min(highest.ground() - lowest, highest.sand);
+    }
+
+  private:
+    Grid grid_;
+    const InitialFields& fields_;
+};
+
+/// The face between the cell (i, j) and its neighbour to the east or north.
+void survey_face(const Settings& settings, const Columns& columns, int i, int j, bool north, Survey& survey) {
+    const Column a = columns.at(i, j);
+    const Column b = columns.at(i + (north ? 0 : 1), j + (north ? 1 : 0));
     const double eps = settings.method.dry_threshold;
     for (const auto& [wet, other] : {std::pair{a, b}, std::pair{b, a}}) {
         const double pure = wet.water - wet.sand;
@@ -78,15 +110,17 @@ void survey_face(const Settings& settings, const Column& a, const Column& b, Sur
     if (high.water <= WET_SHARE * high.sand || high.sand <= eps) return;
     const double step = std::min(high.ground() - low.ground(), high.sand);
     const double slope = step / settings.grid.dx;
-    if (slope > WALL_SLOPE) {
-        if (step > survey.wet_wall) {
-            survey.wet_wall = step;
+    const Material& m = settings.material;
+    const double limit = m.friction * (1 - m.water_density / m.sand_density * high.wetness());
+    if (slope <= std::min(limit, WALL_SLOPE)) return;
+    const double fall = std::max(columns.fall_around(i, j), columns.fall_around(i + (north ? 0 : 1), j + (north ? 1 : 0)));
+    if (slope > WALL_SLOPE || fall > 2 * WALL_SLOPE * settings.grid.dx) {
+        if (fall > survey.wet_wall) {
+            survey.wet_wall = fall;
             survey.wet_wall_ratio = high.wetness();
         }
         return;
     }
-    const Material& m = settings.material;
-    const double limit = m.friction * (1 - m.water_density / m.sand_density * high.wetness());
     const bool submerged = low.surface() > low.ground() + eps;
     const bool held = cohesion_at(m, high.wetness()) >= wall_cohesion(settings, high.sand);
     if (slope <= limit || submerged || held) return;
@@ -98,21 +132,16 @@ void survey_face(const Settings& settings, const Column& a, const Column& b, Sur
 }
 
 Survey survey_fields(const Settings& settings, const InitialFields& fields) {
-    const auto nx = static_cast<std::size_t>(settings.grid.nx);
-    const auto ny = static_cast<std::size_t>(settings.grid.ny);
-    const auto column = [&](std::size_t cell) {
-        const auto part = [&](const std::vector<float>& field) { return field.empty() ? 0.0 : static_cast<double>(field[cell]); };
-        return Column{part(fields.terrain), part(fields.sand), part(fields.water)};
-    };
+    const Columns columns(settings, fields);
     Survey survey;
-    for (std::size_t j = 0; j < ny; ++j)
-        for (std::size_t i = 0; i < nx; ++i) {
-            const Column here = column(j * nx + i);
+    for (int j = 0; j < settings.grid.ny; ++j)
+        for (int i = 0; i < settings.grid.nx; ++i) {
+            const Column here = columns.at(i, j);
             survey.highest_column = std::max(survey.highest_column, here.ground() + here.water);
             survey.deepest_water = std::max(survey.deepest_water, here.water);
             survey.deepest_sand = std::max(survey.deepest_sand, here.sand);
-            if (i + 1 < nx) survey_face(settings, here, column(j * nx + i + 1), survey);
-            if (j + 1 < ny) survey_face(settings, here, column((j + 1) * nx + i), survey);
+            if (i + 1 < settings.grid.nx) survey_face(settings, columns, i, j, false, survey);
+            if (j + 1 < settings.grid.ny) survey_face(settings, columns, i, j, true, survey);
         }
     return survey;
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <doctest/doctest.h>
 #include <limits>
+#include <numeric>
 #include <random>
 
 using namespace wadi;
@@ -217,7 +218,7 @@ TEST_CASE("image: files by the ending of their name") {
     CHECK(says(message(read_file_bytes(folder.file("a.npy"), 10)), "more than the largest accepted file, 10 bytes"));
 }
 
-TEST_CASE("image: resampling is exact at equal size, bilinear otherwise") {
+TEST_CASE("image: resampling is exact at equal size, bilinear on finer grids, a mean on coarser ones") {
     Map map;
     map.nx = 3;
     map.ny = 2;
@@ -236,12 +237,19 @@ TEST_CASE("image: resampling is exact at equal size, bilinear otherwise") {
             for (int i = 0; i < nx; ++i) {
                 const double x = (i + 0.5) / nx;
                 const double y = (j + 0.5) / ny;
-                if (x < 0.5 / 8 || x > 7.5 / 8 || y < 0.5 / 4 || y > 3.5 / 4) continue;
+                const double a = 0.25 / nx, b = 0.25 / ny; // to the places of a cell that has two
+                if (x - a < 0.5 / 8 || x + a > 7.5 / 8 || y - b < 0.5 / 4 || y + b > 3.5 / 4) continue;
                 CHECK(values[static_cast<std::size_t>(j * nx + i)] == doctest::Approx(x + 10 * y).epsilon(1e-6));
             }
     }
     const auto single = resample(map, 1, 1);
-    CHECK(single[0] == (VALUES[1] + VALUES[4]) / 2);
+    CHECK(single[0] == doctest::Approx(std::accumulate(VALUES.begin(), VALUES.end(), 0.0F) / 6));
+    Map spikes; // every third sample of a row: none falls between the cells, none counts twice
+    spikes.nx = 12;
+    spikes.ny = 1;
+    for (int i = 0; i < 12; ++i) spikes.values.push_back(i % 3 == 1 ? 3.0F : 0.0F);
+    for (const int cells : {1, 2, 4})
+        for (const float value : resample(spikes, cells, 1)) CHECK(value == doctest::Approx(1));
 }
 
 TEST_CASE("image: random damage never crashes a reader") {

@@ -54,22 +54,29 @@ TEST_CASE("level: box with vertical and with sloping sides") {
     CHECK(at(level, level.fields.sand, 4, 3) == 0.75); // 0.5 m outside
     CHECK(at(level, level.fields.sand, 5, 3) == 0.25);
     CHECK(at(level, level.fields.sand, 6, 3) == 0);
-    CHECK(at(level, level.fields.sand, 4, 4) == doctest::Approx(1 - 0.5 * std::sqrt(0.5)).epsilon(1e-6)); // round the corner
+    // Round the corner, the mean over the cell: the mean distance from the corner of a unit square is 0.765196 m.
+    CHECK(at(level, level.fields.sand, 4, 4) == doctest::Approx(1 - 0.5 * 0.765196).epsilon(0.002));
 }
 
 TEST_CASE("level: cylinder and cone") {
     const Level level = must(parse(R"("sand": [{"shape": "cylinder", "center": [3.5, 3.5], "radius": 1.2, "height": 2}],
         "terrain": [{"shape": "cone", "center": [6.5, 3.5], "radius": 2, "height": 4}])"));
     CHECK(at(level, level.fields.sand, 3, 3) == 2);
-    CHECK(at(level, level.fields.sand, 4, 3) == 2);
-    CHECK(at(level, level.fields.sand, 4, 4) == 0);
+    // Of the cell beside it the disc covers 0.5 sqrt(R^2 - 1/4) + R^2 asin(1/(2 R)) - 1/2.
+    CHECK(at(level, level.fields.sand, 4, 3) ==
+          doctest::Approx(2 * (0.5 * std::sqrt(1.19) + 1.44 * std::asin(0.5 / 1.2) - 0.5)).epsilon(0.002));
+    CHECK(at(level, level.fields.sand, 5, 3) == 0);
     CHECK(at(level, level.fields.terrain, 6, 3) == 4);
     CHECK(at(level, level.fields.terrain, 7, 3) == 2);
     CHECK(at(level, level.fields.terrain, 8, 3) == 0);
     const Level sloped = must(parse(R"("sand": [{"shape": "cone", "center": [6.5, 3.5], "side_slope": 2, "surface": 4}])"));
-    CHECK(sloped.fields.sand == level.fields.terrain);
+    CHECK(at(sloped, sloped.fields.sand, 7, 3) == 2);
+    CHECK(at(sloped, sloped.fields.sand, 8, 3) == 0);
     const Level steep = must(parse(R"("sand": [{"shape": "cone", "center": [6.5, 3.5], "side_slope": 2, "height": 4}])"));
-    CHECK(steep.fields.sand == level.fields.terrain);
+    CHECK(at(steep, steep.fields.sand, 7, 3) == 2);
+    CHECK(at(steep, steep.fields.sand, 6, 3) == at(sloped, sloped.fields.sand, 6, 3));
+    CHECK(at(steep, steep.fields.sand, 6, 3) ==
+          doctest::Approx(4 - 2 * 0.382598).epsilon(0.002)); // mean distance from its middle
 }
 
 TEST_CASE("level: ridge along a line") {
@@ -156,7 +163,8 @@ TEST_CASE("level: a dam with a flat crest across a valley") {
     const auto top = [&](int i, int j) { return at(level, level.fields.terrain, i, j) + at(level, level.fields.sand, i, j); };
     CHECK(top(4, 4) == 2.5);
     CHECK(top(5, 4) == 2.5);
-    CHECK(top(4, 5) == 2);
+    // Beside the crest the side falls from 0.75 m above the ground's mean to nothing over 0.75 of the cell.
+    CHECK(top(4, 5) == 1.75 + 0.75 * 0.75 / 2);
     CHECK(at(level, level.fields.sand, 0, 4) == 0); // the valley side is higher
     CHECK(top(0, 4) == 3.75);
 }
