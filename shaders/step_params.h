@@ -155,8 +155,8 @@ struct StepInput {
     vec4 side[4];               // west, east, south, north: discharge per width [m2/s] or level [m],
                                 // least ghost depth [m], first and last index of the open span
     // Per edit, lengths in cells. Brush and push: (x, y of the start, x, y to the end), (radius, 1/width of the falloff,
-    // 1/length^2, kind), brush (amount [m], layer, 0, 0), push (strength, velocity x, y [m/s], 0). Stamp: (x, y of the low
-    // corner, width, height), (columns, rows, page, kind), (metres per unit of the image, layer, columns and rows per cell).
+    // 1/length^2, kind), brush (amount [m], layer, parts of a cell's side at a hard rim or 0, 0), push (strength, velocity x, y [m/s],
+    // 0). Stamp: (x, y of the low corner, size), (columns, rows, page, kind), (metres per unit, layer, columns and rows per cell).
     // Balance: (x, y of the low corner, width, height), (0, 0, 0, kind), (1 to add the stretch in balance, -1 to take it, 0, 0, 0).
     vec4 edit[EDIT_VECTORS * MAX_EDITS];
     vec4 wake[MAX_WAKES];       // tiles woken in this step: first column, row, last column, row

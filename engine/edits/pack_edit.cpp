@@ -25,12 +25,18 @@ bool pack_edit(const Edit& edit, std::span<const Stamp> stamps, const Grid& grid
         to[2] = {f(edit.amount), layer, f(stamp.nx / along_x), f(stamp.ny / along_y)};
         return true;
     }
+    // A fade narrower than a cell would hit or miss middles of cells: a hard rim in its middle, by the share that it covers.
+    const double fade = edit.softness * radius;
+    const bool hard = edit.kind == EditKind::brush && fade < 1;
+    const double rim = hard ? radius - fade / 2 : radius;
     const double length2 = along_x * along_x + along_y * along_y;
     constexpr double sharp = 1e30; // no falloff: weight 1 up to the radius
-    to[1] = {f(radius), edit.softness > 0 ? f(std::min(sharp, 1 / (edit.softness * radius))) : f(sharp),
+    to[1] = {f(rim), edit.softness > 0 ? f(std::min(sharp, 1 / (edit.softness * radius))) : f(sharp),
              length2 > 0 ? f(1 / length2) : 0.0F, kind};
     if (edit.kind == EditKind::brush) {
-        to[2] = {f(edit.amount), layer, 0, 0};
+        constexpr double small = 2; // cells: below it the rim bends within a cell
+        constexpr float parts = 8;
+        to[2] = {f(edit.amount), layer, !hard ? 0.0F : rim < small ? parts : 1.0F, 0};
     } else {
         to[2] = {f(edit.strength), f(edit.velocity_x), f(edit.velocity_y), 0};
     }

@@ -60,11 +60,52 @@ template <class Real> class Definition {
         return s * s * (3 - 2 * s);
     }
 
-    Real image(const Edit& edit, int i, int j) const {
+    // Share of the cell within a hard rim (NUMERICS 2.10), lengths in cells: in squares of side h, beyond a straight edge.
+    Real share(const Edit& edit, int i, int j) const {
         const double dx = run_.scene.settings.grid.dx;
-        const Real u = static_cast<Real>(((i + 0.5) * dx - edit.x0) / (edit.x1 - edit.x0)),
-                   v = static_cast<Real>(((j + 0.5) * dx - edit.y0) / (edit.y1 - edit.y0));
-        if (u < 0 || v < 0 || u >= 1 || v >= 1) return 0;
+        const Real radius = static_cast<Real>(edit.radius / dx * (1 - edit.softness / 2));
+        const int parts = radius < 2 ? 8 : 1;
+        const Real h = Real(1) / static_cast<Real>(parts);
+        const Real lx = edit.capsule ? static_cast<Real>((edit.x1 - edit.x0) / dx) : 0,
+                   ly = edit.capsule ? static_cast<Real>((edit.y1 - edit.y0) / dx) : 0;
+        Real sum = 0;
+        for (int part = 0; part < parts * parts; ++part) {
+            const Real x = static_cast<Real>(i + (part % parts + 0.5) / parts - edit.x0 / dx),
+                       y = static_cast<Real>(j + (part / parts + 0.5) / parts - edit.y0 / dx);
+            const Real along = lx != 0 || ly != 0 ? (x * lx + y * ly) / (lx * lx + ly * ly) : Real(0);
+            const Real t = std::clamp(along, Real(0), Real(1)), px = x - t * lx, py = y - t * ly;
+            const Real distance = std::hypot(px, py);
+            const Real inside = radius - (t == along && t > 0 && t < 1 ? distance : std::sqrt(px * px + py * py + h * h / 12));
+            const Real cx = distance > 0 ? std::abs(px) / distance * h : Real(0),
+                       cy = distance > 0 ? std::abs(py) / distance * h : Real(0);
+            const auto [least, most] = std::minmax(cx, cy);
+            const Real left = (cx + cy) / 2 - std::abs(inside);
+            const Real tail = left <= 0 ? Real(0) : left < least ? left * left / (2 * cx * cy) : (left - least / 2) / most;
+            sum += inside > 0 ? 1 - tail : tail;
+        }
+        return sum * h * h;
+    }
+
+    // Mean over the cell of the image, 0 counting outside its rectangle.
+    Real stamped(const Edit& edit, int i, int j) const {
+        const double dx = run_.scene.settings.grid.dx;
+        const double west = std::max(i * dx, edit.x0), east = std::min((i + 1) * dx, edit.x1);
+        const double south = std::max(j * dx, edit.y0), north = std::min((j + 1) * dx, edit.y1);
+        if (east <= west || north <= south) return 0;
+        const auto places = [&](int pixels, double extent) {
+            return std::clamp(static_cast<int>(std::ceil(pixels * dx / extent)), 1, 8);
+        };
+        const int columns = places(stamp_.nx, edit.x1 - edit.x0), rows = places(stamp_.ny, edit.y1 - edit.y0);
+        Real sum = 0;
+        for (int q = 0; q < rows; ++q)
+            for (int p = 0; p < columns; ++p)
+                sum += image(edit, west + (p + 0.5) / columns * (east - west), south + (q + 0.5) / rows * (north - south));
+        return sum / static_cast<Real>(columns * rows) * static_cast<Real>((east - west) * (north - south) / (dx * dx));
+    }
+
+    Real image(const Edit& edit, double x, double y) const {
+        const Real u = static_cast<Real>((x - edit.x0) / (edit.x1 - edit.x0)),
+                   v = static_cast<Real>((y - edit.y0) / (edit.y1 - edit.y0));
         const auto pixel = [&](int a, int b) {
             a = std::clamp(a, 0, stamp_.nx - 1);
             b = std::clamp(b, 0, stamp_.ny - 1);
@@ -79,7 +120,10 @@ template <class Real> class Definition {
 
     void change(const Edit& edit, int i, int j, Cell<Real>& cell) const {
         const Real amount = static_cast<Real>(edit.amount), most = static_cast<Real>(run_.params.largest_height);
-        Real wanted = amount * (edit.kind == EditKind::stamp ? image(edit, i, j) : weight(edit, i + 0.5, j + 0.5));
+        const bool hard = edit.softness * edit.radius < run_.scene.settings.grid.dx;
+        Real wanted = amount * (edit.kind == EditKind::stamp ? stamped(edit, i, j)
+                                : hard                       ? share(edit, i, j)
+                                                             : weight(edit, i + 0.5, j + 0.5));
         const Real quantum = static_cast<Real>(run_.params.quantum);
         if (quantum > 0) wanted = std::round(wanted / quantum) * quantum;
         const bool terrain = edit.layer == EditLayer::terrain, sand = edit.layer == EditLayer::sand;

@@ -31,9 +31,11 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
     P.rho_s = static_cast<Real>(material.sand_density);
     P.friction = static_cast<Real>(material.friction);
     P.yield_friction = static_cast<Real>(material.yield_friction);
-    P.c0 = static_cast<Real>(material.cohesion_dry);
-    P.c1 = static_cast<Real>(material.cohesion_wet);
-    P.c2 = static_cast<Real>(material.cohesion_capillary);
+    // Of the yield surface (2.7): with tan phi = c_f its tip holds a cut of Rankine's height.
+    const Real scale = Real(4) * P.yield_friction * (P.yield_friction + std::sqrt(Real(1) + P.yield_friction * P.yield_friction));
+    P.c0 = scale * static_cast<Real>(material.cohesion_dry);
+    P.c1 = scale * static_cast<Real>(material.cohesion_wet);
+    P.c2 = scale * static_cast<Real>(material.cohesion_capillary);
     P.phi1 = static_cast<Real>(material.saturation[0]);
     P.phi2 = static_cast<Real>(material.saturation[1]);
     P.phi3 = static_cast<Real>(material.saturation[2]);
@@ -104,13 +106,12 @@ template <class Real> void Solver<Real>::set_time_step(double dt) {
         P.lambda *= factor;
         P.shear *= factor;
     }
-    const Real beta = static_cast<Real>(settings.method.bulk_viscosity);
     const Real wave = std::sqrt((P.lambda + Real(2) * P.shear) / P.rho_s); // speed of pressure waves in sand
     const Real courant = wave * P.k_sand;
     const Real room = std::max(Real(0), Real(0.2) - Real(0.4) * courant * courant);
     const Real shear = static_cast<Real>(settings.material.sand_viscosity) * P.substep / (P.dx * P.dx);
     P.shear_number = std::min(shear, room / Real(2));
-    const Real number = std::min(beta * courant, room - P.shear_number);
+    const Real number = std::min(static_cast<Real>(settings.method.bulk_viscosity) * P.substep / (P.dx * P.dx), room - P.shear_number);
     P.viscosity = number * P.rho_s * P.dx * P.dx / P.substep;
 }
 

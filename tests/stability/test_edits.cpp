@@ -55,6 +55,15 @@ std::uint32_t make_stamp(World& world, int nx, int ny) {
     return *stamp;
 }
 
+// Columns of 0 and 1 by turns.
+std::uint32_t make_stripes(World& world, int columns) {
+    std::vector<float> values;
+    for (int n = 0; n < columns; ++n) values.push_back(static_cast<float>(n % 2));
+    auto stamp = world.edits().create_stamp(columns, 1, values);
+    REQUIRE_MESSAGE(stamp, stamp.status().message);
+    return *stamp;
+}
+
 std::vector<float> read(World& world, const char* field) {
     const auto& grid = world.settings().grid;
     std::vector<float> values(static_cast<std::size_t>(grid.nx * grid.ny));
@@ -125,6 +134,41 @@ TEST_CASE("a brush changes its layer by the amount at its centre, less towards i
         CHECK(sand == doctest::Approx(layer == EditLayer::sand ? volume : 0).epsilon(0.03));
         CHECK(water == doctest::Approx(layer == EditLayer::water ? volume : 0).epsilon(0.03));
         check_books(*world);
+    }
+}
+
+TEST_CASE("a brush with a hard rim and a stamp have their volume, wherever they lie between the cells") {
+    const double pi = std::acos(-1.0);
+    const auto brought = [](const Edit& edit, int image) {
+        auto world = make_world(mixed_scene(32, 32));
+        Edit placed = edit;
+        if (image > 0) placed.stamp = make_stripes(*world, image);
+        edit_world(*world, {placed});
+        step(*world, 1);
+        check_books(*world);
+        const auto stats = stats_of(*world);
+        return static_cast<double>(stats.ledger.sand_in) * stats.quantum * 0.04;
+    };
+    for (const double x : {3.2, 3.3, 3.23, 3.37}) {
+        for (const double radius : {0.06, 0.15, 0.3, 0.41, 0.9, 1.5}) { // cells of 0.2 m
+            CAPTURE(x);
+            CAPTURE(radius);
+            const double within = radius < 0.1 ? 0.02 : 0.004;
+            CHECK(brought(brush(EditLayer::sand, x, 3.31, radius, 0.5, 0), 0) ==
+                  doctest::Approx(0.5 * pi * radius * radius).epsilon(within));
+            Edit line = brush(EditLayer::sand, x, 3.31, radius, 0.5, 0);
+            line.capsule = true;
+            line.x1 = x - 1.3;
+            line.y1 = 2.4;
+            const double length = std::hypot(1.3, 0.91);
+            CHECK(brought(line, 0) == doctest::Approx(0.5 * (pi * radius * radius + 2 * radius * length)).epsilon(2 * within));
+        }
+        // Stripes finer than the cells: their mean, and of cells at the rim what lies inside.
+        Edit stamp = brush(EditLayer::sand, x, 2.11, 0, 0.5);
+        stamp.kind = EditKind::stamp;
+        stamp.x1 = x + 2.05;
+        stamp.y1 = 4.02;
+        CHECK(brought(stamp, 40) == doctest::Approx(0.25 * 2.05 * 1.91).epsilon(0.01));
     }
 }
 

@@ -522,7 +522,7 @@ typedef enum wadi_edit_kind {
     WADI_EDIT_PUSH = 2   /* a body that drags sand and water along and feels nothing itself; moves no mass */
 } wadi_edit_kind;
 
-/** One edit. It counts for cells whose centre lies inside its shape, which may lie outside the grid in part or as a whole.
+/** One edit. A cell at a hard rim counts by the share that lies inside. The shape may lie outside the grid in part or as a whole.
  *  Positions are kept to 1/256 of a cell. */
 typedef struct wadi_edit {
     uint32_t struct_size;
