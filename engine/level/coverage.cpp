@@ -94,7 +94,7 @@ std::vector<std::size_t> cut_cells(const std::vector<const Layer*>& layers, cons
 }
 
 CellSamples::CellSamples(std::vector<const Layer*> layers, const LevelGrid& grid)
-    : layers_(std::move(layers)), frame_(grid), map_heights_(layers_.size()), noise_(layers_.size()), near_(layers_.size()),
+    : layers_(std::move(layers)), grid_(grid), map_heights_(layers_.size()), noise_(layers_.size()), near_(layers_.size()),
       inside_(layers_.size()), covers_(layers_.size()) {}
 
 /// Edges of the parts along an axis, in cells from the cell's low side.
@@ -102,7 +102,7 @@ void CellSamples::part_axis(std::size_t axis, int cell) {
     std::vector<double>& edges = edges_[axis];
     edges.clear();
     for (int n = 0; n <= PARTS; ++n) edges.push_back(static_cast<double>(n) / PARTS);
-    const double size = axis == 0 ? frame_.dx : frame_.dx / frame_.stretch_y;
+    const double size = axis == 0 ? grid_.dx : grid_.dx / grid_.stretch_y;
     for (std::size_t n = 0; n < layers_.size(); ++n) {
         const Shape& shape = layers_[n]->shape;
         if (!near_[n] || !has_edges(*layers_[n]) || shape.kind != ShapeKind::box) continue;
@@ -145,16 +145,16 @@ void CellSamples::sample_part(const Point& center, const Point& size, double sha
 void CellSamples::sample(int i, int j) {
     shares_.clear();
     relatives_.clear();
-    const Point middle = cell_center(frame_, i, j);
+    const Point middle = cell_center(grid_, i, j);
     for (std::size_t n = 0; n < layers_.size(); ++n) {
         const Layer& layer = *layers_[n];
         near_[n] =
-            !has_edges(layer) || rim_distance(layer.shape, middle[0], middle[1]) <= foot_of(layer) + half_diagonal(frame_, 1);
+            !has_edges(layer) || rim_distance(layer.shape, middle[0], middle[1]) <= foot_of(layer) + half_diagonal(grid_, 1);
         if (!layer.map && layer.shape.kind == ShapeKind::noise) noise_[n] = relative_height(layer.shape, middle[0], middle[1]);
     }
     part_axis(0, i);
     part_axis(1, j);
-    const Point unit = {frame_.dx, frame_.dx / frame_.stretch_y};
+    const Point unit = {grid_.dx, grid_.dx / grid_.stretch_y};
     for (std::size_t b = 0; b + 1 < edges_[1].size(); ++b)
         for (std::size_t a = 0; a + 1 < edges_[0].size(); ++a) {
             const double west = edges_[0][a], east = edges_[0][a + 1];

@@ -41,7 +41,7 @@ class CellSamples {
     void sample_part(const Point& center, const Point& size, double share);
 
     std::vector<const Layer*> layers_;
-    LevelGrid frame_;
+    LevelGrid grid_;
     std::vector<double> map_heights_, noise_;
     std::vector<char> near_; // layers that are not wholly outside the cell
     std::vector<double> edges_[2];

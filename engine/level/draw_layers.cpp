@@ -101,7 +101,7 @@ class Drawing {
   public:
     Drawing(const LayerLists& lists, const LevelGrid& grid, const FileReader& files, InitialFields& fields,
             std::vector<std::string>& warnings)
-        : lists_(lists), frame_(grid), files_(files), fields_(fields), warnings_(warnings),
+        : lists_(lists), grid_(grid), files_(files), fields_(fields), warnings_(warnings),
           cut_(cut_cells(pointers(lists.sand, lists.water), grid)), map_heights_(lists.sand.size() + lists.water.size()) {}
 
     Status draw() {
@@ -112,7 +112,7 @@ class Drawing {
 
   private:
     Status draw_terrain() {
-        fields_.terrain.resize(lists_.terrain.empty() ? 0 : cell_count(frame_));
+        fields_.terrain.resize(lists_.terrain.empty() ? 0 : cell_count(grid_));
         for (const Layer& layer : lists_.terrain) {
             auto changed = draw_centers(layer, LayerTarget::terrain, fields_.terrain, nullptr);
             if (!changed) return changed.status();
@@ -124,8 +124,8 @@ class Drawing {
     Status draw_sand() {
         std::vector<char> changed;
         if (Status status = draw_list(lists_.sand, LayerTarget::sand, fields_.sand, 0, changed); !status) return status;
-        CellSamples samples(pointers(lists_.sand), frame_);
-        const auto cells = cut_cells(pointers(lists_.sand), frame_);
+        CellSamples samples(pointers(lists_.sand), grid_);
+        const auto cells = cut_cells(pointers(lists_.sand), grid_);
         std::size_t at = 0; // of the cell in cut_, which holds it
         for (const std::size_t cell : cells) {
             while (cut_[at] != cell) ++at;
@@ -145,7 +145,7 @@ class Drawing {
         if (Status status = draw_list(lists_.water, LayerTarget::water, fields_.water, lists_.sand.size(), changed); !status)
             return status;
         if (lists_.water.empty()) return ok_status();
-        CellSamples samples(pointers(lists_.sand, lists_.water), frame_);
+        CellSamples samples(pointers(lists_.sand, lists_.water), grid_);
         std::vector<char> sand_changed(lists_.sand.size());
         std::vector<double> sand;
         for (std::size_t at = 0; at < cut_.size(); ++at) {
@@ -178,7 +178,7 @@ class Drawing {
     /// there.
     Status draw_list(const std::vector<Layer>& layers, LayerTarget target, std::vector<float>& field, std::size_t first,
                      std::vector<char>& changed) {
-        field.resize(layers.empty() ? 0 : cell_count(frame_));
+        field.resize(layers.empty() ? 0 : cell_count(grid_));
         for (std::size_t n = 0; n < layers.size(); ++n) {
             auto result = draw_centers(layers[n], target, field, &map_heights_[first + n]);
             if (!result) return result.status();
@@ -191,25 +191,25 @@ class Drawing {
     Result<bool> draw_centers(const Layer& layer, LayerTarget target, std::vector<float>& field, std::vector<float>* at_cut) {
         std::vector<float> heights;
         if (layer.map) {
-            auto loaded = load_heights(layer, frame_, files_, warnings_);
+            auto loaded = load_heights(layer, grid_, files_, warnings_);
             if (!loaded) return loaded.status();
             heights = std::move(*loaded);
             if (at_cut != nullptr)
                 for (const std::size_t cell : cut_) at_cut->push_back(heights[cell]);
         }
         bool changed = false;
-        const CellRange range = reach_of(layer, frame_);
+        const CellRange range = reach_of(layer, grid_);
         for (int j = range.begin_y; j < range.end_y; ++j)
             for (int i = range.begin_x; i < range.end_x; ++i) {
                 const std::size_t cell =
-                    static_cast<std::size_t>(j) * static_cast<std::size_t>(frame_.nx) + static_cast<std::size_t>(i);
+                    static_cast<std::size_t>(j) * static_cast<std::size_t>(grid_.nx) + static_cast<std::size_t>(i);
                 const double current = static_cast<double>(field[cell]);
                 if (layer.only_present && !(current > 0)) continue;
-                const Point center = cell_center(frame_, i, j);
+                const Point center = cell_center(grid_, i, j);
                 const double relative =
                     layer.map ? static_cast<double>(heights[cell]) : relative_height(layer.shape, center[0], center[1]);
                 const double next =
-                    after_layer(layer, target, frame_, current, relative, below_of(cell, target == LayerTarget::water));
+                    after_layer(layer, target, grid_, current, relative, below_of(cell, target == LayerTarget::water));
                 field[cell] = static_cast<float>(next);
                 changed = changed || field[cell] != static_cast<float>(current);
             }
@@ -219,7 +219,7 @@ class Drawing {
     void sample_cell(CellSamples& samples, std::size_t at) {
         for (std::size_t n = 0; n < samples.map_heights().size(); ++n)
             if (!map_heights_[n].empty()) samples.map_heights()[n] = static_cast<double>(map_heights_[n][at]);
-        const auto width = static_cast<std::size_t>(frame_.nx);
+        const auto width = static_cast<std::size_t>(grid_.nx);
         samples.sample(static_cast<int>(cut_[at] % width), static_cast<int>(cut_[at] / width));
     }
 
@@ -228,7 +228,7 @@ class Drawing {
                  std::size_t first, const Below& below, std::vector<char>& changed) const {
         double value = 0;
         for (std::size_t n = 0; n < layers.size(); ++n) {
-            const double next = after_layer(layers[n], target, frame_, value, samples.relative(sample, first + n), below);
+            const double next = after_layer(layers[n], target, grid_, value, samples.relative(sample, first + n), below);
             if (next != value) changed[n] = 1;
             value = next;
         }
@@ -236,7 +236,7 @@ class Drawing {
     }
 
     void store(std::vector<float>& field, std::size_t cell, double height) const {
-        field[cell] = static_cast<float>(nearest_quantum(height, frame_.quantum, Halves::away));
+        field[cell] = static_cast<float>(nearest_quantum(height, grid_.quantum, Halves::away));
     }
 
     void warn_unchanged(const std::vector<Layer>& layers, const std::vector<char>& changed) {

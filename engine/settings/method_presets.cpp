@@ -41,6 +41,7 @@ void choose_method(Settings& settings, const std::string& name) {
         chosen.rest_surface = chosen.rest_velocity = 0;
         chosen.passive_pressure = chosen.gradient_clamp = chosen.cohesion_cap = 0;
         chosen.saturation_smoothing = 0;
+        chosen.prestress = false;
     }
     if (known) {
         const Material usual = name == published ? level_ground() : Material{};

@@ -34,11 +34,11 @@ struct Material {
     double diffusion_rate = 0.01;
     double bed_shear = 0;
     double grain_size = 1e-3;
-    double bed_friction = 0;      // c of u/(1 + dt c |u|/h)
-    double slope_normal = 0;      // chi of NUMERICS 2.18
-    double internal_friction = 0; // b of NUMERICS 2.18, a share of friction
-    double sand_viscosity = 0;    // nu of NUMERICS 2.18, in the plane
-    double retention = 0;         // r of NUMERICS 2.19: W/hs that pores hold back
+    double bed_friction = 0;        // c of u/(1 + dt c |u|/h)
+    double slope_normal = 1;        // chi of NUMERICS 2.18
+    double internal_friction = 0.4; // b of NUMERICS 2.18, a share of friction
+    double sand_viscosity = 0.05;   // nu of NUMERICS 2.18, in the plane
+    double retention = 0.4925;      // r of NUMERICS 2.19: W/hs that pores hold back
     friend bool operator==(const Material&, const Material&) = default;
 };
 
@@ -76,7 +76,7 @@ struct Method {
     double gradient_clamp = 0.4; // largest |dts grad v| entry
     double cohesion_cap = 0.9;   // tension <= cohesion_cap rho_s g hs, NUMERICS 2.7
     double stress_taper = 0;
-    bool prestress = false; // NUMERICS 2.20
+    bool prestress = true; // NUMERICS 2.20
     int saturation_smoothing = 2;
     VelocityTransport velocity_transport = VelocityTransport::flux_form; // semi_lagrangian: velocity_clamp at most 1
     StrainTransport strain_transport = StrainTransport::left_stretch;

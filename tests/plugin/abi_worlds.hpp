@@ -1,5 +1,6 @@
 // Worlds for tests of the C ABI.
 #pragma once
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>

@@ -19,9 +19,10 @@ RECOMMENDED = {
     "material.internal_friction": 0.4,
     "material.sand_viscosity": 0.05,
     "material.retention": 0.4925,
+    "method.prestress": True,
 }
 # Sand that pushes as a fluid does: what most cases must be able to tell from RECOMMENDED.
-NEUTRAL = {key: 0 for key in RECOMMENDED}
+NEUTRAL = {key: type(value)() for key, value in RECOMMENDED.items()}
 
 # Sand and method of level `piles`, on which the references were made; its cohesion is for water's sake, dry sand has none.
 MATERIAL = {
