@@ -37,11 +37,12 @@ struct Marks {
     double u(char layer, int i, int j) const { return at(velocity(layer, 'x').c_str(), i, j); }
     double v(char layer, int i, int j) const { return at(velocity(layer, 'y').c_str(), i, j); }
 
+    // The west and the south face: by the size of the velocity there, a hundredth of its square below the clamp's.
     void clamp(char layer, int i, int j, double limit, Range& range) const {
-        for (const double speed : {std::abs(u(layer, i, j)), std::abs(v(layer, i, j))}) {
-            range.least += speed >= limit ? 1 : 0;
-            range.most += speed >= limit ? 1 : 0;
-        }
+        const double v_west = (v(layer, i - 1, j) + v(layer, i - 1, j + 1) + v(layer, i, j) + v(layer, i, j + 1)) / 4,
+                     u_south = (u(layer, i, j - 1) + u(layer, i + 1, j - 1) + u(layer, i, j) + u(layer, i + 1, j)) / 4;
+        range.add(std::pow(u(layer, i, j), 2) + std::pow(v_west, 2), 0.99 * limit * limit);
+        range.add(std::pow(v(layer, i, j), 2) + std::pow(u_south, 2), 0.99 * limit * limit);
     }
 
     void outflow(char layer, int i, int j, double k, Range& range) const {

@@ -15,8 +15,13 @@ template <class Real> bool blocked(Real h_left, Real h_right, Real S_left, Real 
     return false;
 }
 
-/// 2.4d.
 template <class Real> Real clamped(Real u, Real limit) { return std::clamp(u, -limit, limit); }
+
+/// 2.4d: component u of a velocity whose other component is v, shortened where it is longer than `limit`.
+template <class Real> Real shortened(Real u, Real v, Real limit) {
+    const Real size = std::sqrt(u * u + v * v);
+    return size > limit ? clamped(u * (limit / size), limit) : u;
+}
 
 /// 2.1: 0 where the slopes disagree in sign, else the one of smaller magnitude.
 template <class Real> Real minmod(Real a, Real e) {

@@ -150,7 +150,7 @@ template <class Real> void Solver<Real>::apply_drag() {
 template <class Real> void Solver<Real>::apply_friction() {
     const bool two_layers = has(EFFECT_MIXTURE);
     const bool drag = has(EFFECT_DRAG) && !has(EFFECT_EXPLICIT_DRAG);
-    const bool absent = has(EFFECT_DRAG); // mixed water that is not there stands still
+    const bool with_water = has(EFFECT_DRAG); // otherwise it is left alone, clamp and all
     Faces<Real>& partner = two_layers ? mixed_velocity : pure_velocity;
     const Faces<Real> us_old = sand_velocity;
     const Faces<Real> um_old = partner;
@@ -158,17 +158,14 @@ template <class Real> void Solver<Real>::apply_friction() {
         const std::size_t L = ax.cell(a - 1, b);
         const std::size_t R = ax.cell(a, b);
         const std::size_t f = ax.face(a, b);
-        const auto crosswise = [&](const Faces<Real>& velocity) {
-            const Field<Real>& v = velocity.across(ax);
-            return ((v[ax.cross(a - 1, b)] + v[ax.cross(a - 1, b + 1)]) + (v[ax.cross(a, b)] + v[ax.cross(a, b + 1)])) / Real(4);
-        };
+        const Real um_cross = across_face(um_old, ax, a, b);
         const Real hs_bar = mean(sand[L], sand[R]);
         const Real hm_bar = mean(mixed[L], mixed[R]);
         Real& us = sand_velocity.along(ax)[f];
         Real& um = partner.along(ax)[f];
         if (hs_bar <= P.eps / Real(2)) {
             us = Real(0);
-            um = absent && two_layers && hm_bar <= Real(0) ? Real(0) : clamped(um, P.clamp);
+            if (with_water) um = two_layers && hm_bar <= Real(0) ? Real(0) : shortened(um, um_cross, P.clamp);
             return;
         }
         // Per bed area: inertia of the partner layer and of the sand, and the drag impulse per velocity difference.
@@ -195,16 +192,17 @@ template <class Real> void Solver<Real>::apply_friction() {
             const Real extra = std::min(std::abs(withheld), uphill);
             if (p * withheld > Real(0)) p = std::copysign(std::max(std::abs(p) - extra, Real(0)), p);
         }
-        const Real p_cross = crosswise(us_old) + kappa * crosswise(um_old);
+        const Real p_cross = across_face(us_old, ax, a, b) + kappa * um_cross;
         const Real size = std::sqrt(p * p + p_cross * p_cross);
         const Real N = has(EFFECT_SLOPE_NORMAL) ? friction_limit.along(ax)[f] : level_friction(L, R);
-        us = size > Real(0) ? std::max(Real(1) - N / size, Real(0)) * p / (Real(1) + kappa) : Real(0);
-        if (absent && two_layers && hm_bar <= Real(0))
+        const Real kept = size > Real(0) ? std::max(Real(1) - N / size, Real(0)) / (Real(1) + kappa) : Real(0);
+        us = shortened(kept * p, kept * p_cross, P.clamp_sand);
+        if (!with_water) return;
+        if (two_layers && hm_bar <= Real(0)) // mixed water that is not there stands still
             um = Real(0);
         else if (drag && inertia * free + kd > Real(0))
             um = (inertia * free * um_old.along(ax)[f] + kd * us) / (inertia * free + kd);
-        us = clamped(us, P.clamp_sand);
-        um = clamped(um, P.clamp);
+        um = shortened(um, um_cross, P.clamp);
     });
 }
 

@@ -31,11 +31,12 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
     P.rho_s = static_cast<Real>(material.sand_density);
     P.friction = static_cast<Real>(material.friction);
     P.yield_friction = static_cast<Real>(material.yield_friction);
-    // Of the yield surface (2.7): with tan phi = c_f its tip holds a cut of Rankine's height.
-    const Real scale = Real(4) * P.yield_friction * (P.yield_friction + std::sqrt(Real(1) + P.yield_friction * P.yield_friction));
-    P.c0 = scale * static_cast<Real>(material.cohesion_dry);
-    P.c1 = scale * static_cast<Real>(material.cohesion_wet);
-    P.c2 = scale * static_cast<Real>(material.cohesion_capillary);
+    // 2.7: tan(45 deg + phi/2) of the yield surface's friction angle.
+    const double rankine = material.yield_friction + std::sqrt(1 + material.yield_friction * material.yield_friction);
+    const double apex = 4 * material.yield_friction * rankine;
+    P.c0 = static_cast<Real>(apex * material.cohesion_dry);
+    P.c1 = static_cast<Real>(apex * material.cohesion_wet);
+    P.c2 = static_cast<Real>(apex * material.cohesion_capillary);
     P.phi1 = static_cast<Real>(material.saturation[0]);
     P.phi2 = static_cast<Real>(material.saturation[1]);
     P.phi3 = static_cast<Real>(material.saturation[2]);

@@ -18,7 +18,7 @@ template <class Real> struct Constants {
     Real rho_w{}, rho_s{};            // [kg/m3]
     Real friction{};                  // mu of Coulomb friction
     Real yield_friction{};            // c_f
-    Real c0{}, c1{}, c2{};            // cohesion [Pa]
+    Real c0{}, c1{}, c2{};            // cohesion of the yield surface [Pa]
     Real phi1{}, phi2{}, phi3{};      // saturation
     Real exchange{};                  // c_e [kg/(m3 s)], 0 without the drag effect
     Real diffusion{};                 // min(c_d, 0.2 dx2/dt) [m2/s]
@@ -153,7 +153,8 @@ template <class Real> class Solver {
     void exchange_split(const Field<Real>& mixed_old, const Field<Real>& pure_old, const Field<Real>& mixed_new);
     Real water_gravity(Real fastest, Real deepest) const;
     Real sand_gravity(Real deepest) const;
-    void water_face(const Axis& axis, int a, int b);
+    Real across_face(const Faces<Real>& velocity, const Axis& axis, int a, int b) const; // mean of the four around
+    void water_face(const Faces<Real>& pure_old, const Faces<Real>& mixed_old, const Axis& axis, int a, int b);
     void advect_stretch();
     std::array<Real, 4> velocity_gradient(const Field<Real>& depth, int i, int j) const; // substep * (xx, xy, yx, yy)
     void stretch_by_velocity_gradient(int i, int j);

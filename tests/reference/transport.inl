@@ -15,6 +15,11 @@ template <class Real> template <class F> void Solver<Real>::for_inner_faces(F f)
     }
 }
 
+template <class Real> Real Solver<Real>::across_face(const Faces<Real>& velocity, const Axis& ax, int a, int b) const {
+    const Field<Real>& v = velocity.across(ax);
+    return ((v[ax.cross(a - 1, b)] + v[ax.cross(a - 1, b + 1)]) + (v[ax.cross(a, b)] + v[ax.cross(a, b + 1)])) / Real(4);
+}
+
 /// 2.16: depth that the donor of face (a, b) sends through it; only the pure layer reaches beyond the rim, by one cell.
 template <class Real> Real Solver<Real>::face_depth(Layer layer, const Axis& ax, int a, int b, Real u) const {
     const int down = u > Real(0) ? 1 : -1;

@@ -90,7 +90,8 @@ template <class Real> Real Solver<Real>::water_gravity(Real fastest, Real deepes
 }
 
 /// 2.4b, e, c, bed friction and d on one inner face.
-template <class Real> void Solver<Real>::water_face(const Axis& ax, int a, int b) {
+template <class Real>
+void Solver<Real>::water_face(const Faces<Real>& pure_old, const Faces<Real>& mixed_old, const Axis& ax, int a, int b) {
     const std::size_t L = ax.cell(a - 1, b);
     const std::size_t R = ax.cell(a, b);
     const std::size_t f = ax.face(a, b);
@@ -110,7 +111,7 @@ template <class Real> void Solver<Real>::water_face(const Axis& ax, int a, int b
     if (has(EFFECT_BED_FRICTION) && depth > Real(0)) uw /= Real(1) + P.dt * P.bed_friction * std::abs(uw) / depth;
     if (has(EFFECT_BED_SHEAR) && depth > Real(0) && mean(sand[L], sand[R]) > P.eps)
         uw /= Real(1) + P.dt * P.bed_shear * std::abs(uw) / depth;
-    uw = clamped(uw, P.clamp);
+    uw = shortened(uw, across_face(pure_old, ax, a, b), P.clamp);
 
     if (!has(EFFECT_MIXTURE)) return;
     Real& share = mixed_push.along(ax)[f];
@@ -120,7 +121,7 @@ template <class Real> void Solver<Real>::water_face(const Axis& ax, int a, int b
         um = Real(0);
         share = Real(0);
     }
-    um = clamped(um, P.clamp);
+    um = shortened(um, across_face(mixed_old, ax, a, b), P.clamp);
 }
 
 /// 2.3: viscosity along each axis in cells that are compressed along it.
@@ -141,6 +142,7 @@ template <class Real> void Solver<Real>::damp_shocks(const Faces<Real>& before) 
 template <class Real> void Solver<Real>::integrate_water_velocity() {
     const bool traced = has(EFFECT_SEMI_LAGRANGIAN);
     const Faces<Real> before = pure_velocity;
+    const Faces<Real> mixed_old = mixed_velocity;
     const auto advect = [&](const Field<Real>& height, const Faces<Real>& flux, Faces<Real>& velocity) {
         has(EFFECT_SECOND_ORDER_WATER) ? advect_velocity_second_order(height, flux, velocity)
                                        : advect_velocity(height, flux, velocity);
@@ -151,7 +153,7 @@ template <class Real> void Solver<Real>::integrate_water_velocity() {
         if (!traced) advect(mixed_predicted, mixed_flux, mixed_velocity);
         exchange_split(mixed_predicted, pure_predicted, mixed);
     }
-    for_inner_faces([&](const Axis& ax, int a, int b) { water_face(ax, a, b); });
+    for_inner_faces([&](const Axis& ax, int a, int b) { water_face(before, mixed_old, ax, a, b); });
 }
 
 /// 2.11: sand that pure water drags along its bed.
@@ -163,10 +165,7 @@ template <class Real> void Solver<Real>::compute_bed_load() {
         q = Real(0);
         if (water[L] - sand[L] <= P.eps || water[R] - sand[R] <= P.eps) return;
         const Real u = pure_velocity.along(ax)[ax.face(a, b)];
-        const Field<Real>& cross = pure_velocity.across(ax);
-        const Real v =
-            ((cross[ax.cross(a - 1, b)] + cross[ax.cross(a - 1, b + 1)]) + (cross[ax.cross(a, b)] + cross[ax.cross(a, b + 1)])) /
-            Real(4);
+        const Real v = across_face(pure_velocity, ax, a, b);
         const Real speed = std::sqrt(u * u + v * v);
         const Real excess = std::max(P.bed_shear * speed * speed - P.bed_threshold, Real(0));
         const Real moved = P.bed_rate * std::pow(excess, Real(1.5));
