@@ -81,7 +81,7 @@ template <class Real> class Definition {
             const auto [least, most] = std::minmax(cx, cy);
             const Real left = (cx + cy) / 2 - std::abs(inside);
             const Real tail = left <= 0 ? Real(0) : left < least ? left * left / (2 * cx * cy) : (left - least / 2) / most;
-            sum += inside > 0 ? 1 - tail : tail;
+            sum += std::floor((inside > 0 ? 1 - tail : tail) * 262144 + Real(0.5)) / 262144; // whole 2^-18
         }
         return sum * h * h;
     }
