@@ -104,7 +104,7 @@ def front_history(run, reference, reach):
 # What columns keep to where they miss limits: the push begins at the face and reaches the middle as a wave, where a wedge would slide at
 # once, so that they start late, the more so the taller they are and the finer the grid.
 FRONT_HELD = {0.5: 16, 1: 20, 2: 27}
-TOE_HELD = {2: 0.13}
+TOE_HELD = {"axi_triaxial_a2": 0.13}
 
 
 def collapsed(run, cells, a, name, depth_of, distance, weights):
@@ -113,7 +113,7 @@ def collapsed(run, cells, a, name, depth_of, distance, weights):
     depth = depth_of(hs)
     centre, end = history(name)[TIMES[-1]]
     return [
-        near("toe", toe(depth), end, 0.1, "MPM", held=TOE_HELD.get(a)),
+        near("toe", toe(depth), end, 0.1, "MPM", held=TOE_HELD.get(name)),
         near("centre", hs[distance < 0.5].mean(), centre, 0.1, "MPM"),
         at_most("elsewhere", elsewhere(depth, profile(name, len(depth)), weights), 6, "%", "than in MPM"),
         at_most("front until then", front_history(run, name, lambda field: toe(depth_of(field))), 15, "%", "MPM at 0.4, 0.8 ... s",
