@@ -12,18 +12,17 @@ class Case:
     dx: tuple
     control: dict
     quick: tuple  # of dx, those that ctest runs
-    misses: str  # why it is known to miss a limit; empty: it must not
 
 
 CASES = {}
 
 
-def case(name, dx=(0.1, 0.05), control=None, quick=(), misses=""):
+def case(name, dx=(0.1, 0.05), control=None, quick=()):
     """Registers measure(lab, dx). `control`: settings with which at least one of its rows must miss its limit; by default the neutral
-    values of all laws. A case known to miss limits says why in `misses`."""
+    values of all laws."""
     def register(measure):
         if name in CASES:
             raise ValueError(f"case {name} twice")
-        CASES[name] = Case(name, measure, tuple(dx), scene.NEUTRAL if control is None else control, tuple(quick), misses)
+        CASES[name] = Case(name, measure, tuple(dx), scene.NEUTRAL if control is None else control, tuple(quick))
         return measure
     return register

@@ -49,8 +49,8 @@ def at_most(name, measured, most, unit="", reference="", held=None):
     return Row(name, measured, most=most, unit=unit, reference=reference + (f", so far {held:g}" if held else ""), held_most=held)
 
 
-def at_least(name, measured, least, unit="", reference=""):
-    return Row(name, measured, least=least, unit=unit, reference=reference)
+def at_least(name, measured, least, unit="", reference="", held=None):
+    return Row(name, measured, least=least, unit=unit, reference=reference + (f", so far {held:g}" if held else ""), held_least=held)
 
 
 def exactly(name, measured, value, unit="", reference=""):
