@@ -147,9 +147,9 @@ Status write_region(WorldState& state, Stepper& stepper, EditLayer layer, const 
         return written.write();
     }
     if (auto status = sand ? write_sand(bands) : written.write(); !status) return status;
-    if (auto status = sand ? change_balance(state, region, Balance::add) : ok_status(); !status) return status;
     if (auto status = count_in_ledger(state, sand ? LEDGER_SAND_IN : LEDGER_WATER_IN, in); !status) return status;
-    return count_in_ledger(state, sand ? LEDGER_SAND_OUT : LEDGER_WATER_OUT, out);
+    if (auto status = count_in_ledger(state, sand ? LEDGER_SAND_OUT : LEDGER_WATER_OUT, out); !status) return status;
+    return sand ? change_balance(state, region, Balance::add) : ok_status();
 }
 
 Status trim(WorldState& state, Stepper& stepper) {

@@ -123,7 +123,7 @@ constexpr Setting rows[] = {
     {"method.stress_taper", method<&Method::stress_taper>, {0, 1e3}, "m", EFFECT_ELASTOPLASTIC,
      "stress fades in between this depth and twice it; 0 = off"},
     {"method.prestress", method<&Method::prestress>, flag, "", EFFECT_ELASTOPLASTIC,
-     "sand drawn, poured or stamped starts in balance where its cohesion can hold it", InDigest::where_set},
+     "sand drawn, poured or stamped starts in balance if cohesion holds it", InDigest::where_set},
     {"method.saturation_smoothing", method<&Method::saturation_smoothing>, {0, 2}, "cells", EFFECT_COHESION,
      "radius of the low-pass of saturation"},
     {"method.velocity_transport", method<&Method::velocity_transport>, words(velocity_transports), "", several,

@@ -546,8 +546,9 @@ WADI_API wadi_edit wadi_default_edit(void); /* a brush on terrain: radius 1, sof
 /** Queues `count` edits. Those of one step act in the order of the calls, ahead of that step; in the middle of a step that runs in
  *  parts "the next one" is the one after it. Depths change by whole quanta and every quantum is in the ledger; what finds no room
  *  below method.largest_height is refused and counted (wadi_world_stats.refused); no more is taken than there is. Sand and water
- *  keep their depth where terrain changes, added sand is unstrained. An edit that adds a material the world has not held so far
- *  promotes it when its step comes: buffers are allocated and programs recorded anew, once, and that step may wait for the device.
+ *  keep their depth where terrain changes, added sand is unstrained, or in balance with method.prestress. An edit that adds a material
+ *  the world has not held so far promotes it when its step comes: buffers are allocated and programs recorded anew, once, and that
+ *  step may wait for the device.
  *  Edits of the level itself act ahead of these and are no part of the command log.
  *  Returns at once. wadi_world_load and every other way back in time drops the edits that wait: queue those of later steps again.
  *  Errors: BAD_ARGUMENT, naming edit, field and range, or `effects` when the level forces off what an edit adds; none is queued. */
