@@ -134,12 +134,12 @@ TEST_CASE("level warnings: cohesion too weak for a wall, wet slopes") {
             "water": [{"shape": "plane", "wet": )" +
                         wet + R"(}], "material": {"cohesion_wet": )" + cohesion + R"(, "cohesion_capillary": )" + cohesion + "}");
     };
-    // 0.4 * 2000 * 9.81 * 2 = 15696 Pa
-    CHECK_MESSAGE(
-        says(wall("1e4"), "a wet sand wall of 2 m needs 15700 Pa (yield_friction sand_density g h) and the level has 10000 Pa"),
-        wall("1e4"));
-    CHECK(wall("1.57e4").empty());
-    CHECK(wall("1e4", "0.45").empty()); // soaked sand is meant to run
+    // 2000 * 9.81 * 2 / (4 * (0.4 + sqrt(1.16))) = 6642 Pa
+    CHECK_MESSAGE(says(wall("5e3"), "a wet sand wall of 2 m needs 6650 Pa (sand_density g h / (4 tan(45 deg + phi/2)), tan phi = "
+                                    "yield_friction) and the level has 5000 Pa"),
+                  wall("5e3"));
+    CHECK(wall("6.65e3").empty());
+    CHECK(wall("5e3", "0.45").empty()); // soaked sand is meant to run
     const auto slope = [](const std::string& rise, const std::string& wet) {
         return warnings(R"("sand": [{"shape": "plane", "height": 0.5, "slope_x": )" + rise +
                         R"(}], "water": [{"shape": "plane", "wet": )" + wet + R"(}], "material": {"young_modulus": 2e5})");

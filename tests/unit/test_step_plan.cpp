@@ -246,11 +246,12 @@ TEST_CASE("effects follow from the scene, with a reason, and a level may force t
     scene.fill(scene.fields.sand, [](double, double) { return 1; });
     const auto full = effects_required(scene.settings, content_of(scene.fields));
     CHECK(full->mask == (EFFECT_WATER | EFFECT_SAND | EFFECT_MIXTURE | EFFECT_DIFFUSION | EFFECT_DRAG | EFFECT_ELASTOPLASTIC |
-                         EFFECT_COHESION));
+                         EFFECT_COHESION | EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION | EFFECT_RETENTION));
     CHECK(full->reasons[0] == "the world holds water");
     scene.settings.effects = {{"mixture", Force::off}};
     CHECK(effects_required(scene.settings, content_of(scene.fields))->mask ==
-          (EFFECT_WATER | EFFECT_SAND | EFFECT_DRAG | EFFECT_ELASTOPLASTIC | EFFECT_COHESION));
+          (EFFECT_WATER | EFFECT_SAND | EFFECT_DRAG | EFFECT_ELASTOPLASTIC | EFFECT_COHESION | EFFECT_SLOPE_NORMAL |
+           EFFECT_INTERNAL_FRICTION));
     scene.settings.effects = {{"mixture", Force::off}, {"diffusion", Force::on}};
     const auto bad = effects_required(scene.settings, content_of(scene.fields));
     CHECK(bad.status().code == Code::bad_argument);
