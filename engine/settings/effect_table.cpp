@@ -26,27 +26,25 @@ consteval EffectRow row(std::uint32_t bit) {
 
 Why above_zero(const char* name, double value) { return {value > 0, name + std::string(value > 0 ? " is above 0" : " is 0")}; }
 
-Why brings_water(const Settings& s, Content content) {
-    if (content.water) return {true, "the world holds water"};
-    if (source_adds(s, SourceMaterial::water)) return {true, "a source adds water"};
-    if (ever_above_zero(s.rain)) return {true, "it rains"};
-    for (const auto& side : s.sides)
-        if (side.kind == SideKind::discharge || side.kind == SideKind::level) return {true, "water enters through a side"};
-    return {false, "no water in the world, its sources or its sides"};
-}
-
-// Without cohesion the yield surface leaves sand nothing that friction and Coulomb's wedge do not.
-Why holds_shape(const Settings& s, Content content) {
+// Without cohesion the yield surface leaves sand nothing that friction and Coulomb's wedge do not. Not by whether there is water
+// yet: sand that gets damp later would go another way after a roll-back to before.
+Why holds_shape(const Settings& s, Content) {
     const auto& m = s.material;
     if (m.young_modulus <= 0) return {false, "young_modulus is 0"};
-    if (m.cohesion_dry > 0) return {true, "young_modulus and cohesion_dry are above 0"};
-    if (m.cohesion_wet <= 0 && m.cohesion_capillary <= 0) return {false, "the sand has no cohesion"};
-    const bool wet = brings_water(s, content).on;
-    return {wet, wet ? "young_modulus is above 0 and sand can get damp" : "dry sand has no cohesion, and nothing brings water"};
+    const bool cohesive = std::max({m.cohesion_dry, m.cohesion_wet, m.cohesion_capillary}) > 0;
+    return {cohesive, cohesive ? "young_modulus is above 0" : "the sand has no cohesion"};
 }
 
 constexpr Effect effects[] = {
-    {row(EFFECT_WATER), "the level, a source, rain, a discharge or a level side brings water", brings_water},
+    {row(EFFECT_WATER), "the level, a source, rain, a discharge or a level side brings water",
+     [](const Settings& s, Content content) -> Why {
+         if (content.water) return {true, "the world holds water"};
+         if (source_adds(s, SourceMaterial::water)) return {true, "a source adds water"};
+         if (ever_above_zero(s.rain)) return {true, "it rains"};
+         for (const auto& side : s.sides)
+             if (side.kind == SideKind::discharge || side.kind == SideKind::level) return {true, "water enters through a side"};
+         return {false, "no water in the world, its sources or its sides"};
+     }},
     {row(EFFECT_SAND), "the level or a source brings sand",
      [](const Settings& s, Content content) -> Why {
          if (content.sand) return {true, "the world holds sand"};
@@ -61,7 +59,7 @@ constexpr Effect effects[] = {
      [](const Settings& s, Content) { return above_zero("diffusion_rate", s.material.diffusion_rate); }},
     {row(EFFECT_DRAG), "exchange_rate > 0",
      [](const Settings& s, Content) { return above_zero("exchange_rate", s.material.exchange_rate); }},
-    {row(EFFECT_ELASTOPLASTIC), "young_modulus > 0 and the sand has cohesion, or can get damp", holds_shape},
+    {row(EFFECT_ELASTOPLASTIC), "young_modulus > 0 and the sand has cohesion", holds_shape},
     {row(EFFECT_COHESION), "both are on",
      [](const Settings&, Content) -> Why {
          return {true, "sand can get wet"};
