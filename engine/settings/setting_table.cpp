@@ -65,7 +65,7 @@ constexpr Setting rows[] = {
     {"material.poisson_ratio", material<&Material::poisson_ratio>, {0, 0.49}, "", EFFECT_ELASTOPLASTIC,
      "how much sand widens where it is compressed"},
     {"material.yield_friction", material<&Material::yield_friction>, {0.01, 10}, "", EFFECT_ELASTOPLASTIC,
-     "c_f of the Drucker-Prager yield surface: tangent of the sand's inner angle of friction"},
+     "tangent of the inner angle of friction: c_f of the yield surface"},
     {"material.cohesion_dry", material<&Material::cohesion_dry>, {0, 1e12}, "Pa", EFFECT_COHESION, "cohesion of dry sand"},
     {"material.cohesion_wet", material<&Material::cohesion_wet>, {0, 1e12}, "Pa", EFFECT_COHESION, "cohesion at saturation phi1"},
     {"material.cohesion_capillary", material<&Material::cohesion_capillary>, {0, 1e12}, "Pa", EFFECT_COHESION,
