@@ -92,7 +92,7 @@ Verdict check_half_storage(compute::Device& device, int stage, std::uint32_t mas
             if (words[n] == expected[n]) continue;
             const double value = static_cast<double>(std::bit_cast<float>(words[n])),
                          right = static_cast<double>(std::bit_cast<float>(expected[n]));
-            if (half && repeats && std::abs(value - right) <= 0x1p-9 * std::abs(right) + 0x1p-23) continue;
+            if (half && repeats && std::abs(value - right) <= 0x1p-9 * std::abs(right) + 0x1p-18) continue;
             if (std::isnan(value) && std::isnan(right)) continue;
             return failed(std::string(binding.name) + ": word " + std::to_string(n) + " is " + std::to_string(value) +
                           ", without half storage and then rounded " + std::to_string(right));

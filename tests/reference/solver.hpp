@@ -131,6 +131,9 @@ template <class Real> class Solver {
     bool mean_corner_shear = false; // negative control of 2.7: shear at corners from mean heights
     std::int64_t refused = 0;       // cell additions that would have passed the declared largest height
 
+    /// 2.20: strain V* - 1 of sand `depth` deep with `held` of water at which it is in balance.
+    Real balance(Real depth, Real held) const;
+
   private:
     using Side = wadi::Side;
     template <class Other> friend class Solver;
@@ -159,7 +162,6 @@ template <class Real> class Solver {
     std::array<Real, 4> velocity_gradient(const Field<Real>& depth, int i, int j) const; // substep * (xx, xy, yx, yy)
     void stretch_by_velocity_gradient(int i, int j);
     Real cohesion(Real phi, Real depth) const;
-    Real balance(Real depth, Real held) const; // 2.20
     void change_strain(std::size_t cell, Real added);
     /// 2.18: C and r of a face, 1 and 1 without slope_normal; d is the rise of the bed of sand across it.
     struct Slope {
