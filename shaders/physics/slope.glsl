@@ -32,8 +32,8 @@ FN SlopeShares slope_shares(float rise, float cross_rise, float inv_dx, float ch
     bool steep = slope2 > wedge_slope2;
     float limited = steep ? wedge_slope2 : slope2;
     float weight = wdiv(1.0f, 1.0f + chi * limited);
-    float safe = steep ? slope2 : 1.0f;
-    float push = steep ? wdiv(wedge_slope, wsqrt(safe)) : 1.0f;
+    float push = 1.0f;
+    if (UNIFORM(steep)) push = steep ? divide_or_zero(wedge_slope, wsqrt(slope2)) : 1.0f;
     SlopeShares s;
     s.weight = weight + held * (1.0f - weight);
     s.push = push + held * (1.0f - push);

@@ -120,9 +120,12 @@ FN bool blocked(float height_low, float height_high, float surface_low, float su
 // Clamp of a velocity by its size, across being its other component at the face (NUMERICS 2.4d): a clamp by component would let water run
 // faster along the diagonals of the grid.
 FN float clamped_speed(float along, float across, float limit) {
-    float size2 = square(along) + square(across);
-    float shortened = along * divide_or_zero(limit, wsqrt(size2));
-    return wclamp(size2 > limit * limit ? shortened : along, -limit, limit);
+    float finite = wclamp(along, -1.0e15f, 1.0e15f); // whose square is
+    float size2 = square(finite) + square(across);
+    bool over = size2 > limit * limit;
+    float shortened = finite;
+    if (UNIFORM(over)) shortened = finite * divide_or_zero(limit, wsqrt(size2)); // hardly ever
+    return wclamp(over ? shortened : finite, -limit, limit);
 }
 
 // Rest rule (NUMERICS 2.4e): a level and slow face stands still for ever.
