@@ -104,6 +104,7 @@ struct WorldParams {
     float slope_normal;         // chi of NUMERICS 2.18
     float wedge_slope;          // s*: slope of the face behind which Coulomb's wedge pushes most
     float wedge_slope2;         // its square
+    float wedge_weight;         // C there: 1/(1 + chi s*^2)
     float cliff_share;          // 4/(c_f rho_s g): share of the cohesion that a cliff needs, per cohesion over depth [m/Pa]
     float internal_friction;    // b: friction within spreading sand, a share of mu
     float viscosity_number;     // nu dts/dx^2 of sand in its plane, at most what the explicit step bears beside bulk_viscosity

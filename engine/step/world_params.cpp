@@ -119,6 +119,7 @@ WorldParams derive_params(const Settings& s) {
     p.slope_normal = f(m.slope_normal);
     p.wedge_slope = f(std::min(wedge, steep));
     p.wedge_slope2 = f(std::min(wedge * wedge, steep * steep));
+    p.wedge_weight = f(1 / (1 + m.slope_normal * std::min(wedge * wedge, steep * steep)));
     p.internal_friction = f(m.internal_friction);
     p.retained = f(m.retention);
     p.inv_drainable = f(1 / (1 - m.retention));

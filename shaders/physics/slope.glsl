@@ -27,13 +27,16 @@ struct SlopeShares {
 };
 
 // rise along the face's axis, cross_rise across it [m]; held: cohesive share.
-FN SlopeShares slope_shares(float rise, float cross_rise, float inv_dx, float chi, float wedge_slope, float wedge_slope2, float held) {
+FN SlopeShares slope_shares(float rise, float cross_rise, float inv_dx, float chi, float wedge_slope, float wedge_slope2, float wedge_weight,
+                            float held) {
     float slope2 = square(rise * inv_dx) + square(cross_rise * inv_dx);
     bool steep = slope2 > wedge_slope2;
-    float limited = steep ? wedge_slope2 : slope2;
-    float weight = wdiv(1.0f, 1.0f + chi * limited);
-    float push = 1.0f;
-    if (UNIFORM(steep)) push = steep ? divide_or_zero(wedge_slope, wsqrt(slope2)) : 1.0f;
+    // One quotient for both: C where the wedge does not count, r where it does.
+    float root = 1.0f;
+    if (UNIFORM(steep)) root = wsqrt(slope2);
+    float quotient = wdiv(steep ? wedge_slope : 1.0f, steep ? root : 1.0f + chi * slope2);
+    float weight = steep ? wedge_weight : quotient;
+    float push = steep ? quotient : 1.0f;
     SlopeShares s;
     s.weight = weight + held * (1.0f - weight);
     s.push = push + held * (1.0f - push);
@@ -57,10 +60,12 @@ FN float balancing_tension(float height, float wet, float free, bool dragged, fl
     return 0.5f * sand_density * gravity * height * (1.0f + density_ratio * square(wet) * (leans - free));
 }
 
-// Share of the friction that thinning adds within a layer that slides at `speed` (old velocities): 0 for a block and where sand piles up.
-FN float spreading_share(float growth, float least_height, float speed, float wave_speed) {
+// What is left of a velocity after the friction within a layer that thins while it slides: all for a block, at rest and where sand
+// piles up. speed2: square of the old velocity; friction: b times what friction takes from a velocity in the substep.
+FN float left_within(float growth, float least_height, float speed2, float wave_speed2, float friction) {
     float thinning = least_height * wmax(growth, 0.0f);
-    return divide_or_zero(thinning, (speed + thinning) + 0.1f * wave_speed);
+    float speed = wsqrt(speed2 + 0.01f * wave_speed2); // no less than a tenth of that of waves
+    return wmax(0.0f, 1.0f - divide_or_zero(friction * thinning, (speed + thinning) * speed));
 }
 
 #endif

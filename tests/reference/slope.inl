@@ -59,12 +59,10 @@ template <class Real> void Solver<Real>::slow_from_within(const Faces<Real>& old
     const Real y = std::min(sand[L], sand[R]) * std::max(divergence, Real(0));
     if (y <= Real(0)) return;
     const Real v = ((v_sw + v_nw) + (v_se + v_ne)) / Real(4);
-    const Real waves = std::sqrt(P.gravity * mean(sand[L], sand[R]));
-    const Real X = y / (std::sqrt(u * u + v * v) + y + waves / Real(10));
-    const Real N = P.spread_friction * slope_at(ax, a, b).C * level_friction(L, R) * X;
-    Real& advected = sand_velocity.along(ax)[ax.face(a, b)];
-    const Real size = std::sqrt(advected * advected + v * v);
-    if (size > Real(0)) advected *= std::max(Real(1) - N / size, Real(0));
+    const Real p = std::sqrt(u * u + v * v + P.gravity * mean(sand[L], sand[R]) / Real(100));
+    if (p <= Real(0)) return;
+    const Real N = P.spread_friction * slope_at(ax, a, b).C * level_friction(L, R);
+    sand_velocity.along(ax)[ax.face(a, b)] *= std::max(Real(1) - N * y / ((p + y) * p), Real(0));
 }
 
 /// 2.18: viscosity in the plane, from the velocities before this stage; walls slip.
