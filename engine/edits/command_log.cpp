@@ -40,11 +40,15 @@ Status CommandLog::trim() {
 Status CommandLog::set_material(int key, double value) {
     if (auto status = stepper_.finish_step(); !status) return status;
     if (auto status = check_material_change("set_material", state_.settings(), key, value); !status) return status;
-    Material material = state_.settings().material;
-    const bool slack = material.young_modulus == 0;
+    const Material before = state_.settings().material;
+    Material material = before;
     set_material_value(material, key, value);
     auto status = stepper_.set_material(material);
-    if (status && slack && material.young_modulus > 0) status = put_in_balance(state_);
+    if (status && state_.steps == 0 && material != before) {
+        status = balance_anew(state_); // as a level with that value begins
+    } else if (status && before.young_modulus == 0 && material.young_modulus > 0) {
+        status = put_in_balance(state_);
+    }
     if (status) note(MaterialChange{state_.steps, key, value});
     return status;
 }

@@ -34,4 +34,13 @@ Status put_in_balance(WorldState& state) {
     return change_balance(state, {0, 0, state.layout().nx, state.layout().ny}, Balance::add);
 }
 
+Status balance_anew(WorldState& state) {
+    if (!state.settings().method.prestress) return ok_status();
+    const std::vector<float> none(state.layout().size());
+    for (const char* name : {"stretch_xx", "stretch_xy", "stretch_yy", "rotation"}) {
+        if (auto status = state.fields().write(name, 0, none); !status) return status;
+    }
+    return put_in_balance(state);
+}
+
 } // namespace wadi

@@ -12,5 +12,8 @@ enum class Balance : std::int8_t { take = -1, add = 1 };
 Status change_balance(WorldState& state, const Region& region, Balance change);
 /// Adds it everywhere.
 Status put_in_balance(WorldState& state);
+/// Leaves no other strain: of sand that has not moved yet, under another material than it was drawn with. Taking the balance of
+/// the one before would leave the rounding of 16-bit storage.
+Status balance_anew(WorldState& state);
 
 } // namespace wadi

@@ -18,18 +18,19 @@ inline std::vector<std::string> backends() { return wadi::test::abi_backends(); 
 
 constexpr uint64_t step_time = 10000000; // of the worlds here [ns]
 
-/// nx * ny cells of 0.5 m, dt [s], sand and water that meet; destroyed at the end.
+/// nx * ny cells of 0.5 m, dt [s], sand and water of that depth [m] that meet; destroyed at the end.
 struct World {
     wadi_world_id id{};
     int nx, ny;
-    explicit World(const std::string& backend, int columns = 40, int rows = 36, double dt = 0.01, int threads = 0)
+    explicit World(const std::string& backend, int columns = 40, int rows = 36, double dt = 0.01, int threads = 0,
+                   float depth = 1.5F)
         : nx(columns), ny(rows) {
         std::vector<float> terrain, sand, water;
         for (int j = 0; j < ny; ++j) {
             for (int i = 0; i < nx; ++i) {
                 terrain.push_back(0.02F * static_cast<float>(i));
                 sand.push_back(i > nx / 3 && i < nx / 2 ? 1.0F : 0.0F);
-                water.push_back(i < nx / 3 ? 1.5F : 0.0F);
+                water.push_back(i < nx / 3 ? depth : 0.0F);
             }
         }
         const std::string settings = R"({"format_version": 1, "name": "slope", "grid": {"nx": )" + std::to_string(nx) +

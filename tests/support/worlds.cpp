@@ -27,6 +27,13 @@ Scene flat_scene(int nx, int ny, double dx, double dt) {
     return scene;
 }
 
+Scene level_ground(Scene scene) {
+    auto& material = scene.settings.material;
+    material.slope_normal = material.internal_friction = material.sand_viscosity = material.retention = 0;
+    scene.settings.method.prestress = false;
+    return scene;
+}
+
 Scene mixed_scene(int nx, int ny) {
     auto scene = flat_scene(nx, ny, 0.2, 0.015);
     auto& material = scene.settings.material;

@@ -26,6 +26,10 @@ struct Scene {
 
 /// nx x ny cells of dx metres, flat ground, no sand, no water, robust method.
 Scene flat_scene(int nx, int ny, double dx, double dt);
+/// The scene with sand's laws of level ground, as method `published` has them: gravity along the horizontal, no friction or
+/// viscosity in the plane, pores that hold nothing back, sand drawn without stress. For guards and weaknesses that the laws which
+/// are on by default hide or cure.
+Scene level_ground(Scene scene);
 /// Sand, water, wet sand, a slope and a bump: everything meets. Fits any grid of at least 1 x 1.
 Scene mixed_scene(int nx, int ny);
 /// Names of all shipped levels, sorted.
