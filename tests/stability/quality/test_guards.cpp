@@ -33,7 +33,7 @@ double filled_pit(double passive_pressure, double young_modulus) {
     scene.settings.method.passive_pressure = passive_pressure;
     scene.fill(scene.fields.terrain, [](double x, double) { return std::fabs(x - 3) < 0.8 ? 0.0 : 1.0; });
     scene.fill(scene.fields.sand, [](double x, double) { return x < 2.2 ? 1.2 : 0.0; });
-    auto world = make_world(scene);
+    auto world = make_world(level_ground(scene));
     step(*world, 500);
     const auto sand = cells_of(*world, "sand_height"), ground = cells_of(*world, "terrain");
     return sum_over(sand, [&](int i, int j) { return ground.at(i, j) < 0.5 ? sand.at(i, j) : 0.0; }) * 0.1 / 6;
@@ -43,7 +43,7 @@ double filled_pit(double passive_pressure, double young_modulus) {
 Scene soaked_column(int smoothing) {
     auto scene = flat_scene(56, 56, 0.1, 0.009);
     auto& m = scene.settings.material;
-    m.cohesion_wet = m.cohesion_capillary = 1.5e4;
+    m.cohesion_wet = m.cohesion_capillary = 6.4e3;
     m.diffusion_rate = 0.002;
     scene.settings.method.saturation_smoothing = smoothing;
     const auto inside = [](double x, double y) { return std::hypot(x - 2.8, y - 2.8) < 1.7; };
@@ -89,6 +89,8 @@ TEST_CASE("gravity caps of water and of sand: smooth beyond the CFL limit; witho
     for (const double courant : {0.8, 2.0, 10.0}) {
         scene = landslide(courant);
         CHECK(worst(*make_world(scene), 100, 10, sand_checkerboard) < 1e-3);
+        scene = level_ground(scene);
+        CHECK(worst(*make_world(scene), 100, 10, sand_checkerboard) < 1e-3);
         scene.settings.method.sand_gravity_cap = 0;
         CHECK(worst(*make_world(scene), 100, 10, sand_checkerboard) > 0.1);
     }
@@ -104,14 +106,15 @@ TEST_CASE("compression cap: sand fills a pit, the weaker the more; without the c
 }
 
 TEST_CASE("low-pass of saturation: a soaked column runs out smooth; without it, it falls into ripples") {
-    const auto rough = [](int smoothing) {
-        auto world = make_world(soaked_column(smoothing));
+    const auto rough = [](const Scene& scene) {
+        auto world = make_world(scene);
         step(*world, 300);
         return roughness(cells_of(*world, "sand_height"));
     };
-    CHECK(rough(2) < 0.012);
-    CHECK(rough(1) < 0.02);
-    CHECK(rough(0) > 0.06);
+    CHECK(rough(level_ground(soaked_column(2))) < 0.012);
+    CHECK(rough(level_ground(soaked_column(1))) < 0.02);
+    CHECK(rough(level_ground(soaked_column(0))) > 0.06);
+    for (const int smoothing : {0, 2}) CHECK(rough(soaked_column(smoothing)) < 0.012); // laws by default do without
 }
 
 TEST_CASE("gradient clamp: sand that runs into sand is pressed; without it the strain turns inside out and is lost") {
