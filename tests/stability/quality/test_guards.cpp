@@ -103,7 +103,7 @@ TEST_CASE("compression cap: sand fills a pit, the weaker the more; without the c
     CHECK(normal > 0.6 * friction_only);
     CHECK(weak > 0.75 * friction_only);
     CHECK(none < 0.4 * friction_only);
-    // Gravity along slopes pushes sand over the brink with less than its weight: half as much falls in, and the cap counts less.
+    // Gravity along slopes pushes sand over the brink with less than its weight: less falls in, and the cap counts less.
     const double on_slopes = filled_pit(1, 0, false);
     CHECK(on_slopes > 0.9);
     CHECK(filled_pit(1, 1e6, false) > 0.5 * on_slopes);
@@ -119,7 +119,7 @@ TEST_CASE("low-pass of saturation: a soaked column runs out smooth; without it, 
     CHECK(rough(level_ground(soaked_column(2))) < 0.012);
     CHECK(rough(level_ground(soaked_column(1))) < 0.02);
     CHECK(rough(level_ground(soaked_column(0))) > 0.06);
-    for (const int smoothing : {0, 2}) CHECK(rough(soaked_column(smoothing)) < 0.012); // laws by default do without
+    for (const int smoothing : {0, 2}) CHECK(rough(soaked_column(smoothing)) < 0.006); // laws by default do without
 }
 
 TEST_CASE("gradient clamp: sand that runs into sand is pressed; without it the strain turns inside out and is lost") {
