@@ -30,10 +30,9 @@ SHOWN = {
     "open_sides": ("beach", (160, 128), 28, {}, "No waves come in."),
     "bed_friction": ("letters", (160, 80), 5, {"material": {"bed_friction": 0.1}}, "The wave runs further over the ground."),
     "bed_shear": ("spring", (128, 128), 8, {}, "Clear water slides over the sand: a small pit in place of a wide crater."),
-    "slope_normal": ("piles", (168, 112), 5.4, {"material": {"slope_normal": 1}}, "Dry and soaked piles run out like a fluid: wide flat fans."),
-    "internal_friction": ("piles", (168, 112), 5.4, {"material": {"slope_normal": 1, "internal_friction": 0.4, "sand_viscosity": 0.05}},
-                          "The dry pile runs further and is lower in the middle."),
-    "retention": ("piles", (168, 112), 5.4, {"material": {"retention": 0.4925}}, "Damp piles drain at their feet; the one at 0.45 breaks up into ridges."),
+    "slope_normal": ("dam_break", (96, 96), 3, {}, "Friction as on level ground: the dry column runs out further, to a flatter cone."),
+    "internal_friction": ("piles", (168, 112), 5.4, {}, "Sand that spreads does not rub within: the dry pile and the soaked ones run further."),
+    "retention": ("piles", (168, 112), 5.4, {}, "All pore water flows: damp piles drain and crumble at their feet, the one at 0.45 breaks up into rings."),
 }
 NEEDED_BY = {"water": ("mixture", "diffusion", "drag", "cohesion", "rain", "bed_friction", "bed_shear", "sources", "open_sides", "retention"),
              "sand": ("mixture", "diffusion", "drag", "elastoplastic", "cohesion", "bed_shear", "slope_normal", "internal_friction", "retention"),

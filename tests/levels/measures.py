@@ -109,6 +109,24 @@ class Run:
         sand = self.field("hs", time)
         return max((math.dist(center, (x, y)) for n, x, y in self.cells(box) if sand[n] > least), default=0.0)
 
+    def relief(self, time, width, box=None):
+        """Root mean square of what the sand's depth differs by from its mean over squares of `width` metres: battlements, ripples [m]."""
+        sand, reach, wide = self.field("hs", time), max(1, round(width / self.dx / 2)), self.nx + 1
+        sums = [0.0] * (wide * (self.ny + 1))  # of all cells to the south-west
+        for j in range(self.ny):
+            row = 0.0
+            for i in range(self.nx):
+                row += sand[j * self.nx + i]
+                sums[(j + 1) * wide + i + 1] = sums[j * wide + i + 1] + row
+        squares = []
+        for n, _, _ in self.cells(box):
+            i, j = n % self.nx, n // self.nx
+            west, east = max(i - reach, 0), min(i + reach + 1, self.nx)
+            south, north = max(j - reach, 0), min(j + reach + 1, self.ny)
+            total = sums[north * wide + east] - sums[south * wide + east] - sums[north * wide + west] + sums[south * wide + west]
+            squares.append((sand[n] - total / ((east - west) * (north - south))) ** 2)
+        return math.sqrt(math.fsum(squares) / len(squares))
+
     def moved(self, start, end, box=None):
         """Volume of sand that lies elsewhere than before: half the integral of |change| [m3]."""
         before, after = self.field("hs", start), self.field("hs", end)

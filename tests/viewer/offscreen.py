@@ -125,7 +125,7 @@ def test_qualities_and_cameras(viewer):
 def test_refusals(viewer):
     for words, says in ((["nowhere"], "nowhere"), (["piles", "--size", "9x9"], "16 ... 8192"), (["piles", "--quality", "best"], "low medium high"),
                         (["piles", "--view", "mood"], "froude"), (["piles", "--camera", "front"], "overview"), (["piles", "--camera", "0,-100,1,0.5,0.5"], "-89 ... -1"),
-                        (["piles", "--camera", "0,nan,1,0.5,0.5"], "-89 ... -1"), (["piles", "--variant", "wet"], "undamped"), (["piles", "--gpu", "40"], "--list-gpus"),
+                        (["piles", "--camera", "0,nan,1,0.5,0.5"], "-89 ... -1"), (["piles", "--variant", "wet"], "no_retention"), (["piles", "--gpu", "40"], "--list-gpus"),
                         (["piles", "--backend", "abacus"], "abacus"), (["piles", "--frames", "0"], "--frames")):
         done = viewer.run(*words, "--offscreen", code=2)
         assert says in done.stderr, f"{words}: \"{says}\" is not in: {done.stderr}"
