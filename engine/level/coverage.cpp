@@ -59,9 +59,7 @@ double covered_share(double inside, const Point& normal, const Point& size) {
 
 } // namespace
 
-Point cell_center(const LevelGrid& grid, int i, int j) {
-    return {(i + 0.5) * grid.dx, (j + 0.5) * grid.dx / grid.stretch_y};
-}
+Point cell_center(const LevelGrid& grid, int i, int j) { return {(i + 0.5) * grid.dx, (j + 0.5) * grid.dx / grid.stretch_y}; }
 
 CellRange reach_of(const Layer& layer, const LevelGrid& grid) {
     const CellRange all = {0, grid.nx, 0, grid.ny};

@@ -10,9 +10,7 @@
 namespace wadi {
 namespace {
 
-std::size_t cell_count(const LevelGrid& grid) {
-    return static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny);
-}
+std::size_t cell_count(const LevelGrid& grid) { return static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny); }
 
 double value_at(const std::vector<float>& field, std::size_t cell) {
     return field.empty() ? 0 : static_cast<double>(field[cell]);

@@ -9,9 +9,9 @@ namespace wadi {
 /// "robust", "published": as level files, --method and the plugin's override write them.
 const std::vector<std::string>& method_names();
 
-/// Sets method.name and everything that tells the presets apart, of the material the laws that the paper has not: its slopes, inner
-/// friction and retention. What a scene needs of either (substeps, largest_height, dry_threshold) stays. An unknown name sets the
-/// name alone, for validate() to refuse.
+/// Sets method.name and everything that tells the presets apart, of the material the laws that the paper has not: its slopes,
+/// inner friction and retention. What a scene needs of either (substeps, largest_height, dry_threshold) stays. An unknown name
+/// sets the name alone, for validate() to refuse.
 void choose_method(Settings& settings, const std::string& name);
 
 } // namespace wadi

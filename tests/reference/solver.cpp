@@ -112,7 +112,8 @@ template <class Real> void Solver<Real>::set_time_step(double dt) {
     const Real room = std::max(Real(0), Real(0.2) - Real(0.4) * courant * courant);
     const Real shear = static_cast<Real>(settings.material.sand_viscosity) * P.substep / (P.dx * P.dx);
     P.shear_number = std::min(shear, room / Real(2));
-    const Real number = std::min(static_cast<Real>(settings.method.bulk_viscosity) * P.substep / (P.dx * P.dx), room - P.shear_number);
+    const Real number =
+        std::min(static_cast<Real>(settings.method.bulk_viscosity) * P.substep / (P.dx * P.dx), room - P.shear_number);
     P.viscosity = number * P.rho_s * P.dx * P.dx / P.substep;
 }
 
