@@ -34,11 +34,11 @@ struct Material {
     double diffusion_rate = 0.01;
     double bed_shear = 0;
     double grain_size = 1e-3;
-    double bed_friction = 0;         // c of u/(1 + dt c |u|/h)
-    double slope_normal = 1;         // chi of NUMERICS 2.18
-    double internal_friction = 0.45; // b of NUMERICS 2.18, a share of friction
-    double sand_viscosity = 0.05;    // nu of NUMERICS 2.18, in the plane
-    double retention = 0.4925;       // r of NUMERICS 2.19: W/hs that pores hold back
+    double bed_friction = 0;        // c of u/(1 + dt c |u|/h)
+    double slope_normal = 1;        // chi of NUMERICS 2.18
+    double internal_friction = 0.4; // b of NUMERICS 2.18, a share of friction
+    double sand_viscosity = 0.05;   // nu of NUMERICS 2.18, in the plane
+    double retention = 0.4925;      // r of NUMERICS 2.19: W/hs that pores hold back
     friend bool operator==(const Material&, const Material&) = default;
 };
 

@@ -64,7 +64,7 @@ FN float balancing_tension(float height, float wet, float free, bool dragged, fl
 // piles up. speed2: square of the old velocity; friction: b times what friction takes from a velocity in the substep.
 FN float left_within(float growth, float least_height, float speed2, float wave_speed2, float friction) {
     float thinning = least_height * wmax(growth, 0.0f);
-    float speed = wsqrt(speed2 + 0.01f * wave_speed2); // no less than a tenth of that of waves
+    float speed = wsqrt(speed2 + 0.0025f * wave_speed2); // no less than a twentieth of that of waves
     return wmax(0.0f, 1.0f - divide_or_zero(friction * thinning, (speed + thinning) * speed));
 }
 

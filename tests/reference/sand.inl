@@ -165,7 +165,7 @@ template <class Real> void Solver<Real>::apply_friction() {
         Real& um = partner.along(ax)[f];
         if (hs_bar <= P.eps / Real(2)) {
             us = Real(0);
-            if (with_water) um = two_layers && hm_bar <= Real(0) ? Real(0) : shortened(um, um_cross, P.clamp);
+            if (with_water) um = two_layers && hm_bar <= Real(0) ? Real(0) : clamped(um, P.clamp);
             return;
         }
         // Per bed area: inertia of the partner layer and of the sand, and the drag impulse per velocity difference.
@@ -202,7 +202,7 @@ template <class Real> void Solver<Real>::apply_friction() {
             um = Real(0);
         else if (drag && inertia * free + kd > Real(0))
             um = (inertia * free * um_old.along(ax)[f] + kd * us) / (inertia * free + kd);
-        um = shortened(um, um_cross, P.clamp);
+        um = clamped(um, P.clamp);
     });
 }
 

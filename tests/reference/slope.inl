@@ -59,7 +59,7 @@ template <class Real> void Solver<Real>::slow_from_within(const Faces<Real>& old
     const Real y = std::min(sand[L], sand[R]) * std::max(divergence, Real(0));
     if (y <= Real(0)) return;
     const Real v = ((v_sw + v_nw) + (v_se + v_ne)) / Real(4);
-    const Real p = std::sqrt(u * u + v * v + P.gravity * mean(sand[L], sand[R]) / Real(100));
+    const Real p = std::sqrt(u * u + v * v + P.gravity * mean(sand[L], sand[R]) / Real(400));
     if (p <= Real(0)) return;
     const Real N = P.spread_friction * slope_at(ax, a, b).C * level_friction(L, R);
     sand_velocity.along(ax)[ax.face(a, b)] *= std::max(Real(1) - N * y / ((p + y) * p), Real(0));

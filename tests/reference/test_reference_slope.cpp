@@ -105,8 +105,8 @@ TEST_CASE("reference: in-plane viscosity lets shear die away by the discrete fac
                 for (int a = 0; a <= 3; ++a) block.sand_velocity.along(ax)[ax.face(a, b)] = 1 + spread * a;
             block.integrate_sand_velocity();
             const double u = block.sand_velocity.along(ax)[ax.face(1, n / 2)];
-            // u (1 - N y/((p + y) p)) with p = sqrt(u^2 + 0.01 g h), y = h div, N = mu g dts.
-            const double y = 0.5 * spread / dx, old = 1 + spread, p = std::sqrt(old * old + 0.01 * 9.81 * 0.5);
+            // u (1 - N y/((p + y) p)) with p = sqrt(u^2 + 0.0025 g h), y = h div, N = mu g dts.
+            const double y = 0.5 * spread / dx, old = 1 + spread, p = std::sqrt(old * old + 0.0025 * 9.81 * 0.5);
             CHECK(within(u, old * (1 - 0.5 * 9.81 * block.P.substep * y / ((p + y) * p)), 1e-12));
         }
     }

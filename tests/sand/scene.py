@@ -16,7 +16,7 @@ import numpy as np
 # The one place where the values stand that the cases hold the sand to.
 RECOMMENDED = {
     "material.slope_normal": 1,
-    "material.internal_friction": 0.45,
+    "material.internal_friction": 0.4,
     "material.sand_viscosity": 0.05,
     "material.retention": 0.4925,
     "method.prestress": True,
