@@ -7,27 +7,27 @@ using namespace wadi::test;
 
 namespace {
 
-constexpr int cells = 56;
-constexpr double dx = 0.1, middle = cells * dx / 2, high = 2; // [m]
+constexpr int box_cells = 56;
+constexpr double box_dx = 0.1, box_middle = box_cells * box_dx / 2, box_high = 2; // [m]
 
 /// The recommended sand on a bed that falls along x. Cohesion of c_f rho_s g h holds a wall of stiff sand; this one's stretches
 /// by a tenth, which takes as much more, and the water in it leans on it.
 Scene on_slope(double slope, bool prestress, const std::function<double(double x, double y)>& sand) {
-    auto scene = flat_scene(cells, cells, dx, 0.006);
+    auto scene = flat_scene(box_cells, box_cells, box_dx, 0.006);
     auto& m = scene.settings.material;
-    m.cohesion_dry = 1.3 * m.yield_friction * m.sand_density * scene.settings.gravity * high;
+    m.cohesion_dry = 1.3 * m.yield_friction * m.sand_density * scene.settings.gravity * box_high;
     m.slope_normal = 1;
     m.internal_friction = 0.4;
     m.sand_viscosity = 0.05;
     m.retention = 0.4925;
     scene.settings.method.prestress = prestress;
-    scene.fill(scene.fields.terrain, [&](double x, double) { return slope * (cells * dx - x); });
+    scene.fill(scene.fields.terrain, [&](double x, double) { return slope * (box_cells * box_dx - x); });
     scene.fill(scene.fields.sand, sand);
     return scene;
 }
 
-double box(double x, double y) { return std::max(std::fabs(x - middle), std::fabs(y - middle)) < 1 ? high : 0; }
-double cylinder(double x, double y) { return std::hypot(x - middle, y - middle) < 1.2 ? high : 0; }
+double box(double x, double y) { return std::max(std::fabs(x - box_middle), std::fabs(y - box_middle)) < 1 ? box_high : 0; }
+double cylinder(double x, double y) { return std::hypot(x - box_middle, y - box_middle) < 1.2 ? box_high : 0; }
 double nothing(double, double) { return 0; }
 
 /// The box with a share of its depth of water in it and cohesion at any saturation up to 0.9.
@@ -67,18 +67,19 @@ struct Change {
 };
 
 const Change changes[] = {
-    {"brush on sand", box, [](World& w) { edit_world(w, {brush(EditLayer::sand, middle, middle, 0.6, -0.4, 0.5)}); }, 0},
-    {"brush on bare ground", nothing, [](World& w) { edit_world(w, {brush(EditLayer::sand, middle, middle, 1, 1.5, 0)}); }, 0},
+    {"brush on sand", box, [](World& w) { edit_world(w, {brush(EditLayer::sand, box_middle, box_middle, 0.6, -0.4, 0.5)}); }, 0},
+    {"brush on bare ground", nothing,
+     [](World& w) { edit_world(w, {brush(EditLayer::sand, box_middle, box_middle, 1, 1.5, 0)}); }, 0},
     {"stamp", box,
      [](World& w) {
          const float image[] = {1, 1, 1, 1};
          const auto stamp = w.edits().create_stamp(2, 2, image);
          REQUIRE(stamp);
-         Edit edit = brush(EditLayer::sand, middle - 1, middle - 1, 0, -0.7);
+         Edit edit = brush(EditLayer::sand, box_middle - 1, box_middle - 1, 0, -0.7);
          edit.kind = EditKind::stamp;
          edit.stamp = *stamp;
-         edit.x1 = middle;
-         edit.y1 = middle + 0.5;
+         edit.x1 = box_middle;
+         edit.y1 = box_middle + 0.5;
          edit_world(w, {edit});
      },
      0},
@@ -95,7 +96,7 @@ Scene with_source(Scene scene, const Change& change) {
     if (change.seconds == 0) return scene;
     Source source;
     source.material = SourceMaterial::sand;
-    source.center = {middle, middle};
+    source.center = {box_middle, box_middle};
     source.radius = 0.8;
     source.rate.samples = {{0, 1.5}, {change.seconds, 1.5}, {change.seconds + 1e-3, 0}};
     scene.settings.sources = {source};
@@ -107,9 +108,9 @@ double beside_source(World& world) {
     const auto& source = world.settings().sources[0];
     const auto sand = cells_of(world, "sand_height");
     double most = 0;
-    for (int j = 0; j < cells; ++j)
-        for (int i = 0; i < cells; ++i)
-            if (std::hypot((i + 0.5) * dx - source.center[0], (j + 0.5) * dx - source.center[1]) > source.radius)
+    for (int j = 0; j < box_cells; ++j)
+        for (int i = 0; i < box_cells; ++i)
+            if (std::hypot((i + 0.5) * box_dx - source.center[0], (j + 0.5) * box_dx - source.center[1]) > source.radius)
                 most = std::max(most, sand.at(i, j));
     return most;
 }
@@ -262,8 +263,8 @@ TEST_CASE("prestress: the same bits on every backend, however strain is kept and
             scene.settings.sources[0].center[0] += 0.5;
             const auto run = [](World& world) {
                 step(world, 10);
-                edit_world(world, {brush(EditLayer::sand, middle - 0.5, middle, 0.7, 0.4),
-                                   brush(EditLayer::sand, middle, middle, 0.3, -0.3)});
+                edit_world(world, {brush(EditLayer::sand, box_middle - 0.5, box_middle, 0.7, 0.4),
+                                   brush(EditLayer::sand, box_middle, box_middle, 0.3, -0.3)});
                 step(world, 10);
             };
             on_every_backend(scene, run);
@@ -296,15 +297,15 @@ TEST_CASE("prestress: mirrored and exchanged axes give the same bits; sand witho
         });
         scene.settings.material.cohesion_dry = cohesion;
         auto world = make_world(with_source(scene, changes[4]));
-        edit_world(*world, {brush(EditLayer::sand, middle, middle, 0.7, 0.4)});
+        edit_world(*world, {brush(EditLayer::sand, box_middle, box_middle, 0.7, 0.4)});
         step(*world, 30);
         return cells_of(*world, "sand_height");
     };
     const auto as_drawn = run(false, true, 8e3), exchanged = run(true, true, 8e3);
     int different = 0;
-    for (int j = 0; j < cells; ++j)
-        for (int i = 0; i < cells; ++i)
-            different += as_drawn.at(i, j) != exchanged.at(j, i) || as_drawn.at(i, j) != as_drawn.at(i, cells - 1 - j);
+    for (int j = 0; j < box_cells; ++j)
+        for (int i = 0; i < box_cells; ++i)
+            different += as_drawn.at(i, j) != exchanged.at(j, i) || as_drawn.at(i, j) != as_drawn.at(i, box_cells - 1 - j);
     CHECK(different == 0);
     CHECK(run(false, true, 0).values == run(false, false, 0).values);
     CHECK(run(false, false, 8e3).values != as_drawn.values);
@@ -330,9 +331,9 @@ TEST_CASE("prestress follows a change of material: sand that gets its elasticity
         edit_world(*world, {brush(EditLayer::sand, 1, 1, 0.3, 0.1)});
         step(*world, 1);
         if (changed) set(*world, "cohesion_dry", cohesion);
-        edit_world(*world, {brush(EditLayer::sand, middle, middle, 1, 1.5, 0)});
+        edit_world(*world, {brush(EditLayer::sand, box_middle, box_middle, 1, 1.5, 0)});
         step(*world, 1);
-        return cells_of(*world, "stretch_xx").at(cells / 2, cells / 2);
+        return cells_of(*world, "stretch_xx").at(box_cells / 2, box_cells / 2);
     };
     CHECK(weak(true) > 0);
     CHECK(weak(true) == weak(false));
