@@ -14,7 +14,7 @@ using namespace level_text;
 namespace {
 
 constexpr double PI = std::numbers::pi;
-constexpr double STEP = 1.0 / (1 << 20); // the quantum of 16 m
+constexpr double SMALLEST = 1.0 / (1 << 20); // the quantum of 16 m
 
 /// The level of 10 m x 8 m on cells of 1/`fine` m.
 Level drawn(const std::string& layers, int fine) {
@@ -31,7 +31,7 @@ double volume(const Level& level, const std::vector<float>& field) {
 
 std::string ridge(double angle) {
     const double x = 2 * std::cos(angle), y = 2 * std::sin(angle);
-    const auto point = [](double a, double b) { return "[" + std::to_string(a) + ", " + std::to_string(b) + "]"; };
+    const auto point = [](double east, double north) { return "[" + std::to_string(east) + ", " + std::to_string(north) + "]"; };
     return R"({"shape": "ridge", "width": 2, "height": 1.5, "points": [)" + point(5.03 - x, 4.01 - y) + ", " +
            point(5.03 + x, 4.01 + y) + "]}";
 }
@@ -119,7 +119,7 @@ TEST_CASE("coverage: the rim of a wet pile is as wet as the pile, also where the
         int partly = 0;
         for (std::size_t n = 0; n < level.fields.sand.size(); ++n) {
             const double depth = static_cast<double>(level.fields.sand[n]);
-            CHECK(std::fabs(static_cast<double>(level.fields.water[n]) - 0.25 * depth) <= STEP);
+            CHECK(std::fabs(static_cast<double>(level.fields.water[n]) - 0.25 * depth) <= SMALLEST);
             partly += depth > 0 && depth < 2;
         }
         CHECK(partly > 30);
@@ -132,7 +132,7 @@ TEST_CASE("coverage: a lake stays flat to the bit over shapes that cut its cells
         "sand": [{"shape": "cylinder", "center": [5.03, 4.01], "radius": 2, "height": 0.7}],
         "water": [{"shape": "plane", "wet": 0.25}, {"shape": "plane", "surface": 2.1234567}])",
                               4);
-    const double surface = std::round(2.1234567 / STEP) * STEP;
+    const double surface = std::round(2.1234567 / SMALLEST) * SMALLEST;
     for (std::size_t n = 0; n < level.fields.water.size(); ++n) {
         const double ground = static_cast<double>(level.fields.terrain[n]);
         if (ground < 3) CHECK(ground + static_cast<double>(level.fields.water[n]) == surface);
