@@ -64,7 +64,8 @@ def heap():
     return against_reference("heap", "dry sand", "A tall block of dry sand falls onto a step", 2, 12.8, {
         "terrain": [{"shape": "box", "from": [7, 0], "to": [12.8, 6.4], "height": 0.3, "side_slope": 2}],
         "sand": [{"shape": "box", "from": [3, 2], "to": [6, 4.6], "height": 1.5}],
-        "material": {"friction": 0.5, "young_modulus": 2e5, "cohesion_wet": 0, "cohesion_capillary": 0}},
+        "material": {"friction": 0.5, "young_modulus": 2e5, "cohesion_wet": 0, "cohesion_capillary": 0, **sand_scenes.AS_EQUATIONS},
+        "method": {"prestress": False}, "effects": {"elastoplastic": "on"}},
         lambda dx: 0.08 * dx)
 
 
@@ -72,7 +73,8 @@ def wall():
     return against_reference("wall", "wet sand", "A wave meets a wall of damp sand and a dry heap", 2, 12.8, {
         "sand": [{"shape": "box", "from": [5, 1], "to": [6.2, 3.6], "height": 0.9, "side_slope": 3}, {"shape": "cone", "center": [8.5, 4.4], "radius": 1.6, "height": 0.7}],
         "water": [{"shape": "box", "from": [0, 0], "to": [3, 6.4], "height": 1}, {"shape": "box", "from": [4.6, 0.6], "to": [6.6, 4], "wet": 0.22}],
-        "material": {"friction": 0.5, "young_modulus": 1.5e5, "cohesion_wet": 3.4e3, "cohesion_capillary": 3.4e3, "cohesion_dry": 85, "exchange_rate": 2e4, "diffusion_rate": 0.01}},
+        "material": {"friction": 0.5, "young_modulus": 1.5e5, "cohesion_wet": 3.4e3, "cohesion_capillary": 3.4e3, "cohesion_dry": 85, "exchange_rate": 2e4, "diffusion_rate": 0.01, **sand_scenes.AS_EQUATIONS},
+        "method": {"prestress": False}},
         lambda dx: 0.08 * dx)
 
 

@@ -66,7 +66,7 @@ def main():
         assert error("thacker@n96,dt1,T3,robust") < 4 < error("thacker@n48,dt1,T3,robust")
         assert error("mound@n128,dt1,T3,robust") < 1.5 < error("mound@n32,dt1,T3,robust")
         assert error("drag_pair@n64,dt1,T3,robust") < 1 < error("drag_pair@n16,dt1,T3,robust")
-        assert error("column@n96,dt1,T3,robust") < 5 < error("column@n96,dt1,T3,published")
+        assert error("column@n96,dt1,T3,robust") < 8 < error("column@n96,dt1,T3,published")  # a cell is 3.4
         for scene in ("island", "heap", "wall"):
             assert error(f"{scene}@n64,dt1,T3,robust") < 2, scene
             assert error(f"{scene}@n64,dt1,T3,robust") < error(f"{scene}@n32,dt2,T3,robust"), scene

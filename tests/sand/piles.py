@@ -86,7 +86,7 @@ pile(0.45, alike=0.063, quick=(0.1,))
 pile(1, control={"dt": 0.018})
 
 
-@case("film", quick=(0.1,))
+@case("film")
 def film(lab, dx):
     """The front of the water that a soaked pile sheds is round."""
     cells, depth = grid(2 * FIELD, 2 * FIELD, dx), 0.005
