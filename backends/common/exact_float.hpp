@@ -11,8 +11,9 @@ struct Operands {
 
 inline constexpr unsigned exact_float_tries = 16384;
 
-/// Of each pair, in this order: a + b, a - b, a * b, a * b + a in two roundings, a / b, sqrt(b).
-inline constexpr unsigned exact_float_results_per_try = 6;
+/// Of each pair, in this order: a + b, a - b, a * b, a * b + a in two roundings, a / b, sqrt(b), and the lean forms of (a + 0) /
+/// b and sqrt(b).
+inline constexpr unsigned exact_float_results_per_try = 8;
 
 /// Random pairs, half of them quotients that are hard to round; the same on every machine.
 std::vector<Operands> exact_float_operands();

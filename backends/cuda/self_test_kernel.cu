@@ -11,13 +11,15 @@ __global__ void run(const Operands* operands, float* results, unsigned tries) {
     if (n >= tries) return;
     const float a = operands[n].a;
     const float b = operands[n].b;
-    float* r = results + 6 * n; // exact_float_results_per_try
+    float* r = results + 8 * n; // exact_float_results_per_try
     r[0] = a + b;
     r[1] = a - b;
     r[2] = a * b;
     r[3] = a * b + a; // differs if contracted
     r[4] = wdiv(a, b);
     r[5] = wsqrt(b);
+    r[6] = lean_quotient(a + 0.0f, b);
+    r[7] = lean_root(b);
 }
 } // namespace wadi_self_test_cuda
 

@@ -7,7 +7,7 @@ layout(local_size_x_id = 1, local_size_y_id = 2, local_size_z = 1) in;
 layout(std430, set = 0, binding = 0) readonly buffer operands_block { vec2 operands[]; }; // any sign; positive
 layout(std430, set = 0, binding = 1) writeonly buffer results_block { float results[]; };
 
-#define RESULTS 6 // exact_float_results_per_try
+#define RESULTS 8 // exact_float_results_per_try
 
 void main() {
     uint n = gl_GlobalInvocationID.x;
@@ -20,4 +20,6 @@ void main() {
     results[RESULTS * n + 3u] = a * b + a; // differs if contracted
     results[RESULTS * n + 4u] = wdiv(a, b);
     results[RESULTS * n + 5u] = wsqrt(b);
+    results[RESULTS * n + 6u] = lean_quotient(a + 0.0f, b);
+    results[RESULTS * n + 7u] = lean_root(b);
 }

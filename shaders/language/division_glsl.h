@@ -28,3 +28,19 @@ float wsqrt(float x) {
     }
     return s;
 }
+// The same bits in half of the instructions where no residual can underflow (shaders/README: ranges).
+float lean_quotient(float a, float b) {
+    if (CORRECTED_DIVISION == 0) return a / b;
+    float reciprocal = 1.0f / b;
+    reciprocal = fma(fma(-b, reciprocal, 1.0f), reciprocal, reciprocal);
+    float q = a * reciprocal;
+    q = fma(fma(-b, q, a), reciprocal, q);
+    return fma(fma(-b, q, a), reciprocal, q);
+}
+float lean_root(float x) {
+    if (CORRECTED_DIVISION == 0) return sqrt(x);
+    float inverse = inversesqrt(x);
+    float s = x * inverse;
+    s = fma(fma(-s, s, x), 0.5f * inverse, s);
+    return fma(fma(-s, s, x), 0.5f * inverse, s);
+}

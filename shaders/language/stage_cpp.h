@@ -53,6 +53,8 @@ template <class T> struct StageBuffer {
 #define UNIFORM(C) true // a branch would keep the loop over i from vectorising
 FN float wdiv(float a, float b) { return a / b; }
 FN float wsqrt(float x) { return __builtin_sqrtf(x); }
+FN float lean_quotient(float a, float b) { return a / b; }
+FN float lean_root(float x) { return __builtin_sqrtf(x); }
 FN float wabs(float x) { return __builtin_fabsf(x); }
 FN float wtrunc(float x) { return __builtin_truncf(x); }
 FN float wfloor(float x) { return __builtin_floorf(x); }

@@ -37,6 +37,8 @@ typedef unsigned int uint;
 #ifdef WADI_RELAXED_FLOAT
 FN float wdiv(float a, float b) { return a / b; }
 FN float wsqrt(float x) { return sqrtf(x); }
+FN float lean_quotient(float a, float b) { return a / b; }
+FN float lean_root(float x) { return sqrtf(x); }
 #else
 // As __fdiv_rn and __fsqrt_rn round, without their branches: a sixth of a fused stage's code. A reciprocal and a quotient, each
 // corrected by residuals from fused multiply-adds (P. Markstein 1990). The powers of two keep residuals of small operands normal; what
@@ -61,8 +63,27 @@ FN float wsqrt(float x) {
     s = fmaf(fmaf(-s, s, scaled), 0.5f * inverse, s); // once leaves about one root in five million wrong
     return x > 0.0f ? s * 1.52587891e-5f : x; // 2^-16
 }
+// The same bits in half of the instructions where no residual can underflow (shaders/README: ranges).
+FN float lean_quotient(float a, float b) {
+    float reciprocal;
+    asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(reciprocal) : "f"(b));
+    reciprocal = fmaf(fmaf(-b, reciprocal, 1.0f), reciprocal, reciprocal);
+    float q = a * reciprocal;
+    q = fmaf(fmaf(-b, q, a), reciprocal, q);
+    return fmaf(fmaf(-b, q, a), reciprocal, q);
+}
+FN float lean_root(float x) {
+    float inverse;
+    asm("rsqrt.approx.ftz.f32 %0, %1;" : "=f"(inverse) : "f"(x));
+    float s = x * inverse;
+    s = fmaf(fmaf(-s, s, x), 0.5f * inverse, s);
+    return fmaf(fmaf(-s, s, x), 0.5f * inverse, s);
+}
 #endif
 FN float wabs(float x) { return fabsf(x); }
+#define HAS_MIN_MAX // one instruction each; which of two zeros wins reaches no stored bit (shaders/README, rule 11)
+FN float wmin(float a, float b) { return fminf(a, b); }
+FN float wmax(float a, float b) { return fmaxf(a, b); }
 FN float wtrunc(float x) { return truncf(x); }
 FN float wfloor(float x) { return floorf(x); }
 FN int float_bits(float x) { return __float_as_int(x); }

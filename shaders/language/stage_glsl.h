@@ -31,6 +31,9 @@ layout(std140, set = 0, binding = 0) uniform WorldParamsBlock { WorldParams P; }
 layout(std140, set = 0, binding = 1) uniform StepInputBlock { StepInput S; };
 
 #include "division_glsl.h"
+#define HAS_MIN_MAX
+float wmin(float a, float b) { return min(a, b); }
+float wmax(float a, float b) { return max(a, b); }
 float wabs(float x) { return abs(x); }
 float wtrunc(float x) { return trunc(x); }
 float wfloor(float x) { return floor(x); }

@@ -27,13 +27,13 @@ FN void explicit_drag(REF(float) sand, REF(float) water, float impulse, float sa
 FN float stick_or_slip(float along, float across, float slip, float kappa, float limit) {
     float size = wsqrt(square(along) + square(across));
     float left = wmin(wmax(size - slip, 0.0f), limit * (1.0f + kappa));
-    return wclamp(along * divide_or_zero(left, size * (1.0f + kappa)), -limit, limit);
+    return wclamp(along * lean_divide_or_zero(left, size * (1.0f + kappa)), -limit, limit);
 }
 
 // How freely water moves through sand, 0 up to the share W/hs that pores hold back and 1 where they are full or there is no sand
 // (NUMERICS 2.19).
 FN float relative_permeability(float water, float sand, float retained, float inv_drainable) {
-    float drainable = wclamp((divide_or_zero(water, sand) - retained) * inv_drainable, 0.0f, 1.0f);
+    float drainable = wclamp((lean_divide_or_zero(water, sand) - retained) * inv_drainable, 0.0f, 1.0f);
     return water < sand ? drainable * drainable * drainable : 1.0f;
 }
 

@@ -56,7 +56,7 @@ FN float outflow(FacePair x, FacePair y) { return (wmax(-x.low, 0.0f) + wmax(x.h
 // keep the sum of the four below it however they were rounded.
 FN float outflow_scale(float height, float outflow_depth, float limiter) {
     float safe_height = height * (1.0f - 4.76837158e-7f);
-    float limited = outflow_depth > safe_height ? divide_or_zero(safe_height, outflow_depth) : 1.0f;
+    float limited = outflow_depth > safe_height ? lean_divide_or_zero(safe_height, outflow_depth) : 1.0f;
     return limiter > 0.0f ? limited : 1.0f;
 }
 

@@ -1,10 +1,12 @@
-// Scalar building blocks that mean the same in GLSL, C++ and CUDA, NaN and signed zero included.
+// Scalar building blocks that mean the same in GLSL, C++ and CUDA.
 #ifndef PHYSICS_SCALAR
 #define PHYSICS_SCALAR
 
-// The second argument wins where they compare equal or unordered, as the machines' own min and max do.
+// As x86 computes them in one instruction. Which of two zeros wins, and what becomes of NaN, is the prelude's choice.
+#ifndef HAS_MIN_MAX
 FN float wmin(float a, float b) { return b < a ? b : a; }
 FN float wmax(float a, float b) { return a < b ? b : a; }
+#endif
 FN float wclamp(float x, float low, float high) { return wmin(wmax(x, low), high); }
 
 // No denormal and no negative zero leaves a stage: some GPUs flush denormals and others keep them.
@@ -20,6 +22,12 @@ FN float square(float x) {
 FN float divide_or_zero(float a, float b) {
     float safe = b > 0.0f ? b : 1.0f;
     float q = wdiv(a, safe);
+    return b > 0.0f ? q : 0.0f;
+}
+
+// The same where a/b and its operands lie in the range of lean_quotient (shaders/README).
+FN float lean_divide_or_zero(float a, float b) {
+    float q = lean_quotient(a, b > 0.0f ? b : 1.0f);
     return b > 0.0f ? q : 0.0f;
 }
 

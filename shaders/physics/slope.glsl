@@ -3,15 +3,18 @@
 #define PHYSICS_SLOPE
 #include "../physics/velocity.glsl"
 
+// How far a cell lets the sand's surface rise from it or to it: a dry one not at all.
+FN float rise_room(float sand, float dry) { return sand > dry ? 1.0e15f : 0.0f; }
+
 // Rise of the sand's surface between two cells; 0 where the wet/dry rule blocks the face between them, so that sand along a steep
-// dry wall is not lightened by the wall's slope, and 0 where one lies outside the grid.
-FN float free_rise(float sand_low, float sand_high, float top_low, float top_high, float dry, bool inside) {
-    float none = blocked(sand_low, sand_high, top_low, top_high, dry) ? 0.0f : top_high - top_low;
-    return inside ? none : 0.0f;
+// dry wall is not lightened by the wall's slope, and 0 where one lies outside the grid. room_*: rise_room of both.
+FN float free_rise(float top_low, float top_high, float room_low, float room_high, bool inside) {
+    float rise = wmax(wmin(top_high - top_low, room_high), -room_low);
+    return inside ? rise : 0.0f;
 }
 
 // Share of the cohesion that a cliff of this height needs to push as hydrostatic sand does against its own tension.
-FN float cohesive_share_of(float cohesion, float height, float per_cohesion) { return wmin(1.0f, divide_or_zero(per_cohesion * cohesion, height)); }
+FN float cohesive_share_of(float cohesion, float height, float per_cohesion) { return wmin(1.0f, lean_divide_or_zero(per_cohesion * cohesion, height)); }
 
 // Of the deeper cell; of two that are as deep the larger one.
 FN float of_deeper(float height_low, float height_high, float low, float high) {
@@ -33,8 +36,8 @@ FN SlopeShares slope_shares(float rise, float cross_rise, float inv_dx, float ch
     bool steep = slope2 > wedge_slope2;
     // One quotient for both: C where the wedge does not count, r where it does.
     float root = 1.0f;
-    if (UNIFORM(steep)) root = wsqrt(slope2);
-    float quotient = wdiv(steep ? wedge_slope : 1.0f, steep ? root : 1.0f + chi * slope2);
+    if (UNIFORM(steep)) root = lean_root(slope2);
+    float quotient = lean_quotient(steep ? wedge_slope : 1.0f, steep ? root : 1.0f + chi * slope2);
     float weight = steep ? wedge_weight : quotient;
     float push = steep ? quotient : 1.0f;
     SlopeShares s;
@@ -64,8 +67,8 @@ FN float balancing_tension(float height, float wet, float free, bool dragged, fl
 // piles up. speed2: square of the old velocity; friction: b times what friction takes from a velocity in the substep.
 FN float left_within(float growth, float least_height, float speed2, float wave_speed2, float friction) {
     float thinning = least_height * wmax(growth, 0.0f);
-    float speed = wsqrt(speed2 + 0.0025f * wave_speed2); // no less than a twentieth of that of waves
-    return wmax(0.0f, 1.0f - divide_or_zero(friction * thinning, (speed + thinning) * speed));
+    float speed = lean_root(wmax(speed2 + 0.0025f * wave_speed2, 1.0e-20f)); // no less than a twentieth of that of waves
+    return wmax(0.0f, 1.0f - lean_divide_or_zero(friction * thinning, (speed + thinning) * speed));
 }
 
 #endif

@@ -18,7 +18,7 @@ struct Gradient {
 // 0.5 ln(1 + x) for 1 + x clamped to [e^-1, e]: the log-strain of a squared stretch, within +-0.5.
 FN float half_log(float x) {
     float y = wclamp(x, -0.632120559f, 1.71828183f);
-    float s = wdiv(y, (2.0f + y) + 2.0f * wsqrt(1.0f + y)); // (sqrt(1+y)-1)/(sqrt(1+y)+1), |s| <= 0.245
+    float s = lean_quotient(y, (2.0f + y) + 2.0f * lean_root(1.0f + y)); // (sqrt(1+y)-1)/(sqrt(1+y)+1), |s| <= 0.245
     float t = s * s;
     float series = 0.333333333f + t * (0.2f + t * (0.142857143f + t * (0.111111111f + t * (0.0909090909f + t * 0.0769230769f))));
     return 2.0f * s + 2.0f * s * t * series;
@@ -76,7 +76,7 @@ FN Stretch evolve_stretch(Stretch v, Gradient g) {
     float ax = 1.0f - 0.5f * g.xx;
     float ay = 1.0f - 0.5f * g.yy;
     float quarter = 0.25f * g.xy * g.yx;
-    float inv_det = wdiv(1.0f, ax * ay - quarter);
+    float inv_det = lean_quotient(1.0f, ax * ay - quarter);
     float mxx = (ay * g.xx + 0.5f * g.xy * g.yx) * inv_det; // M = (I - G/2)^-1 G
     float mxy = g.xy * inv_det;
     float myx = g.yx * inv_det;
@@ -89,11 +89,11 @@ FN Stretch evolve_stretch(Stretch v, Gradient g) {
     float y = eyx - exy;
     float n = wsqrt(x * x + y * y);
     float safe_n = n > 0.0f ? n : 1.0f;
-    float inv_n = wdiv(1.0f, safe_n);
+    float inv_n = lean_quotient(1.0f, safe_n);
     float sn = y * inv_n;
     float den = safe_n * (safe_n + x);
     float safe_den = x > 0.0f ? den : 1.0f;
-    float small = -wdiv(y * y, safe_den);
+    float small = -lean_quotient(y * y, safe_den);
     float turned = n > 0.0f ? x * inv_n : 1.0f;
     float cs = x > 0.0f ? 1.0f + small : turned;
     float cs_less_one = x > 0.0f ? small : cs - 1.0f;
@@ -201,7 +201,7 @@ FN void project_stretch(REF(Stretch) v, REF(Stress) stress, float c, float cap, 
     float e2 = half_log(m - r);
     bool within = both(m + r <= 1.71828183f, m - r >= -0.632120559f); // half_log clamps neither
     float tr = e1 + e2;
-    float along = divide_or_zero(0.5f * (e1 - e2), r); // half-difference per unit of (d, bxy): no angle needed
+    float along = lean_divide_or_zero(0.5f * (e1 - e2), r); // half-difference per unit of (d, bxy): no angle needed
     float dd = along * d;
     float dxy = along * bxy;
 
@@ -216,7 +216,7 @@ FN void project_stretch(REF(Stretch) v, REF(Stress) stress, float c, float cap, 
     float limit = -y * inv_two_shear;
     float size = 0.707106781f * (e1 - e2);
     bool beyond = size > limit * slack;
-    float shrink = beyond ? divide_or_zero(limit, size) : 1.0f;
+    float shrink = beyond ? lean_divide_or_zero(limit, size) : 1.0f;
     shrink = tip ? 0.0f : shrink;
     tr = tip ? c * inv_yield_slope : tr;
     dd = dd * shrink;
@@ -242,7 +242,7 @@ FN void project_stretch(REF(Stretch) v, REF(Stress) stress, float c, float cap, 
     v.xx = elastic ? before.xx : v.xx;
     v.xy = elastic ? before.xy : v.xy;
     v.yy = elastic ? before.yy : v.yy;
-    float inv_j = wdiv(1.0f, e * e);
+    float inv_j = lean_quotient(1.0f, e * e);
     float mean = bulk * tr;
     stress.xx = (mean + two_shear * dd) * inv_j;
     stress.yy = (mean - two_shear * dd) * inv_j;

@@ -85,8 +85,8 @@ FN void exchange_split(REF(float) pure, REF(float) mixed, float gained_low, floa
     // As increments: where nothing is exchanged both keep every bit, so a scene without sand has the same bits whether the
     // mixture is compiled in or not.
     float difference = pure - mixed;
-    float to_mixed_share = divide_or_zero(to_mixed * difference, mixed_total);
-    float to_pure_share = divide_or_zero(to_pure * difference, pure_total);
+    float to_mixed_share = lean_divide_or_zero(to_mixed, mixed_total) * difference;
+    float to_pure_share = lean_divide_or_zero(to_pure, pure_total) * difference;
     mixed = mixed_total > dry ? mixed + to_mixed_share : mixed;
     pure = pure_total > dry ? pure - to_pure_share : pure;
 }
@@ -96,13 +96,13 @@ FN void exchange_split(REF(float) pure, REF(float) mixed, float gained_low, floa
 FN float water_gravity(float gravity, float speed, float deepest, float k, float base, float least, float inv_k2) {
     float margin = wmax(least, base - k * speed);
     float cap = margin * margin * inv_k2; // of gravity times depth
-    float limited = divide_or_zero(cap, deepest);
+    float limited = lean_divide_or_zero(cap, deepest);
     return gravity * deepest > cap ? limited : gravity;
 }
 
 // The same for sand (NUMERICS 2.7): cap = 0.25/ks^2.
 FN float sand_gravity(float gravity, float highest, float cap) {
-    float limited = divide_or_zero(cap, highest);
+    float limited = lean_divide_or_zero(cap, highest);
     return gravity * highest > cap ? limited : gravity;
 }
 

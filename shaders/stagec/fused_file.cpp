@@ -185,6 +185,8 @@ void read_word(FusedStage& fused, const std::string& word, const Arguments& a, c
         fused.needs = bits(a[0]);
     } else if (word == "WITHOUT") {
         fused.without = bits(a[0]);
+    } else if (word == "FOUR_GROUPS_IF") {
+        for (const auto& name : effects_in(a[0])) fused.four_groups |= bits(name);
     } else if (word == "PHASE") {
         fused.phases.push_back(margins_of(a, place));
     } else if (word == "RUN" || word == "RUN_IF") {

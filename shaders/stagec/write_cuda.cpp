@@ -112,7 +112,8 @@ std::string write_cuda(const FusedStage& f, const Effects& effects, bool all_mas
       << part_functions(f, effects) << "__device__ __forceinline__ void window() {\n    PLACE_WINDOW;\n"
       << phase_loops(f) << "}\n};\n"
       << "#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ < 800\n#define GROUPS 4\n#else\n#define GROUPS " << groups << "\n#endif\n"
-      << "template <unsigned E> __global__ void __launch_bounds__(" << fused_group_x * fused_group_y << ", GROUPS)\n"
+      << "template <unsigned E> __global__ void __launch_bounds__(" << fused_group_x * fused_group_y << ", (E & " << f.four_groups
+      << "u) != 0 ? 4 : GROUPS)\n"
       << "run(const WorldParams P, const StepInput* __restrict__ input, const Slots b, const Active active) {\n"
       << "    __shared__ float windows[" << std::max<std::size_t>(1, windows.size()) << "][" << window_floats(f) << "];\n    "
       << s.struct_name << "<E> stage{P, *input";
