@@ -59,10 +59,6 @@ void WorldState::set_material(const Material& material) {
 
 void WorldState::derive() {
     params_ = derive_params(settings_);
-    if ((plan_.effects & EFFECT_COHESION) == 0) { // in_balance asks for it at any saturation
-        params_.phi1 = params_.phi3 = 2;
-        params_.slope01 = 0;
-    }
     if (plan_.active_tiles) params_.tile_rings = (plan_.reach + params_.tile_size - 1) / params_.tile_size;
     tiles_.wake_all();
 }

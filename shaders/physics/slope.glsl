@@ -53,16 +53,6 @@ FN float limited_fall(SlopeShares s, float rise, float pure_rise, float density_
     return s.weight * (s.push * (rise - density_ratio * borne) + density_ratio * (pure_rise + borne));
 }
 
-// Least share of its whole push that slope and wedge leave to a cliff of this cohesive share; level_least: C behind the steepest face.
-FN float least_cliff_push(float held, float level_least) { return held * (level_least + held * (1.0f - level_least)); }
-
-// Mean tension in a column of sand at which depth times tension takes up, face by face, what gravity pushes with (NUMERICS 2.20).
-// wet: h_m/h_s. Water that is free to move stands level and carries its share of the sand, water that pores hold back leans on it.
-FN float balancing_tension(float height, float wet, float free, bool dragged, float gravity, float sand_density, float density_ratio) {
-    float leans = dragged ? 1.0f - free : 0.0f;
-    return 0.5f * sand_density * gravity * height * (1.0f + density_ratio * square(wet) * (leans - free));
-}
-
 // What is left of a velocity after the friction within a layer that thins while it slides: all for a block, at rest and where sand
 // piles up. speed2: square of the old velocity; friction: b times what friction takes from a velocity in the substep.
 FN float left_within(float growth, float least_height, float speed2, float wave_speed2, float friction) {

@@ -174,18 +174,6 @@ FN float bounded_viscosity(float viscous, float mean, float least, float largest
     return wclamp(viscous, wmin(least - mean, 0.0f), wmax(largest - mean, 0.0f));
 }
 
-// V - I of equal tension all around: tr of (lambda + mu) tr/J = tension with J = exp(tr), by Newton's method, which from below closes
-// in from below; no further than `largest_tr`. inv_bulk: 1/(lambda + mu).
-FN float stretch_under(float tension, float inv_bulk, float largest_tr) {
-    float strain = wmin(tension * inv_bulk, 0.36f); // 1/e is the most that any tr gives
-    float tr = strain;
-    for (int n = 0; n < 4; ++n) {
-        float grown = strain * square(1.0f + exp_minus_one(0.5f * tr));
-        tr = wdiv(grown * (1.0f - tr), 1.0f - grown);
-    }
-    return exp_minus_one(0.5f * wmin(tr, largest_tr));
-}
-
 // Yield: Hencky strain of V, compression cap, Drucker-Prager cone with its tip, back to V and to the Cauchy stress.
 // c: cohesion [Pa]; cap: passive pressure K rho_s g hs [Pa].
 FN void project_stretch(REF(Stretch) v, REF(Stress) stress, float c, float cap, float bulk, float inv_bulk, float two_shear, float inv_two_shear,

@@ -1,0 +1,45 @@
+// Strain of sand that lies in balance with its own weight (NUMERICS 2.20).
+#ifndef PHYSICS_PRESTRESS
+#define PHYSICS_PRESTRESS
+#include "../physics/drag.glsl"
+#include "../physics/slope.glsl"
+#include "../physics/strain.glsl"
+
+// Least share of its whole push that slope and wedge leave to a cliff of this cohesive share; level_least: C behind the steepest face.
+FN float least_cliff_push(float held, float level_least) { return held * (level_least + held * (1.0f - level_least)); }
+
+// Mean tension in a column of sand at which depth times tension takes up, face by face, what gravity pushes with (NUMERICS 2.20).
+// wet: h_m/h_s. Water that is free to move stands level and carries its share of the sand, water that pores hold back leans on it.
+FN float balancing_tension(float height, float wet, float free, bool dragged, float gravity, float sand_density, float density_ratio) {
+    float leans = dragged ? 1.0f - free : 0.0f;
+    return 0.5f * sand_density * gravity * height * (1.0f + density_ratio * square(wet) * (leans - free));
+}
+
+// V - I of equal tension all around: tr of (lambda + mu) tr/J = tension with J = exp(tr), by Newton's method, which from below closes
+// in from below; no further than `largest_tr`. inv_bulk: 1/(lambda + mu).
+FN float stretch_under(float tension, float inv_bulk, float largest_tr) {
+    float strain = wmin(tension * inv_bulk, 0.36f); // 1/e is the most that any tr gives
+    float tr = strain;
+    for (int n = 0; n < 4; ++n) {
+        float grown = strain * square(1.0f + exp_minus_one(0.5f * tr));
+        tr = wdiv(grown * (1.0f - tr), 1.0f - grown);
+    }
+    return exp_minus_one(0.5f * wmin(tr, largest_tr));
+}
+
+// V - I of sand at rest and in balance, where its cohesion can hold it; 0 without prestress. cohesive: its cohesion follows the
+// saturation, here the cell's own.
+FN float in_balance(WorldParams world, float height, float water, bool cohesive) {
+    if (world.prestress == 0.0f) return 0.0f;
+    float saturation = cohesive ? divide_or_zero(water, water + height) : 0.0f;
+    float c = cohesion(saturation, world.cohesion0, world.cohesion1, world.phi1, world.phi2, world.phi3, world.slope01, world.slope12,
+                       world.slope23);
+    c = wmin(c, world.cohesion_cap * height);
+    float pushed = balancing_tension(height, divide_or_zero(wmin(water, height), height),
+                                     relative_permeability(water, height, world.retained, world.inv_drainable), world.drag_kd > 0.0f,
+                                     sand_gravity(world.gravity, height, world.sand_gravity_cap), world.sand_density, world.density_ratio);
+    float least = least_cliff_push(cohesive_share_of(c, height, world.cliff_share), world.wedge_weight);
+    return stretch_under(wmin(pushed * least, c * world.tip_pressure), world.inv_bulk, c * world.inv_yield_slope);
+}
+
+#endif
