@@ -1,6 +1,7 @@
 // Suite 4: what must hold in any scene after many steps.
 #include "engine/step/world_params.hpp"
 #include "tests/conformance/compare.hpp"
+#include "tests/conformance/effect_sets.hpp"
 #include "tests/conformance/half_turn.hpp"
 #include "tests/conformance/masks.hpp"
 #include "tests/conformance/symmetry.hpp"
@@ -12,15 +13,6 @@
 namespace wadi::conformance {
 
 namespace {
-
-constexpr std::uint32_t WET = EFFECT_WATER | EFFECT_SAND | EFFECT_MIXTURE | EFFECT_DIFFUSION | EFFECT_DRAG;
-constexpr std::uint32_t ELASTIC = EFFECT_ELASTOPLASTIC;
-constexpr std::uint32_t TRACED = EFFECT_SEMI_LAGRANGIAN;
-constexpr std::uint32_t POLAR = EFFECT_WHOLE_STRAIN, DIRECT = EFFECT_WHOLE_STRAIN | EFFECT_DIRECT_STRAIN;
-constexpr std::uint32_t PUBLISHED = TRACED | POLAR | EFFECT_EXPLICIT_DRAG | EFFECT_LAPLACE_DIFFUSION;
-constexpr std::uint32_t SECOND = EFFECT_SECOND_ORDER_WATER;
-constexpr std::uint32_t SLOPES = EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION;
-constexpr std::uint32_t ALL = all_effects;
 
 CaseSpec spec_of(const char* name, const char* grid, std::uint32_t effects, const std::string& scene, const std::string& method,
                  int steps) {

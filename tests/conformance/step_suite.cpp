@@ -2,6 +2,7 @@
 // in bits.
 #include "engine/world.hpp"
 #include "tests/conformance/compare.hpp"
+#include "tests/conformance/effect_sets.hpp"
 #include "tests/conformance/fields.hpp"
 #include "tests/conformance/locate.hpp"
 #include "tests/conformance/masks.hpp"
@@ -13,15 +14,6 @@
 namespace wadi::conformance {
 
 namespace {
-
-constexpr std::uint32_t WET = EFFECT_WATER | EFFECT_SAND | EFFECT_MIXTURE | EFFECT_DIFFUSION | EFFECT_DRAG;
-constexpr std::uint32_t ELASTIC = EFFECT_ELASTOPLASTIC;
-constexpr std::uint32_t TRACED = EFFECT_SEMI_LAGRANGIAN;
-constexpr std::uint32_t POLAR = EFFECT_WHOLE_STRAIN, DIRECT = EFFECT_WHOLE_STRAIN | EFFECT_DIRECT_STRAIN;
-constexpr std::uint32_t PUBLISHED = TRACED | POLAR | EFFECT_EXPLICIT_DRAG | EFFECT_LAPLACE_DIFFUSION;
-constexpr std::uint32_t SECOND = EFFECT_SECOND_ORDER_WATER, HALF = EFFECT_HALF_STORAGE;
-constexpr std::uint32_t SLOPES = EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION;
-constexpr std::uint32_t ALL = all_effects;
 
 struct Row {
     const char* grid;
