@@ -8,11 +8,12 @@
 // Least share of its whole push that slope and wedge leave to a cliff of this cohesive share; level_least: C behind the steepest face.
 FN float least_cliff_push(float held, float level_least) { return held * (level_least + held * (1.0f - level_least)); }
 
-// Mean tension in a column of sand at which depth times tension takes up, face by face, what gravity pushes with (NUMERICS 2.20).
-// wet: h_m/h_s. Water that is free to move stands level and carries its share of the sand, water that pores hold back leans on it.
+// Mean tension in a column of sand at which depth times tension takes up, face by face, what gravity pushes with. wet: h_m/h_s. Water
+// that is free to move stands level and carries its share of the sand, water that pores hold back leans on it. No tension holds down
+// what is lighter than the water around it.
 FN float balancing_tension(float height, float wet, float free, bool dragged, float gravity, float sand_density, float density_ratio) {
     float leans = dragged ? 1.0f - free : 0.0f;
-    return 0.5f * sand_density * gravity * height * (1.0f + density_ratio * square(wet) * (leans - free));
+    return 0.5f * sand_density * gravity * height * wmax(0.0f, 1.0f + density_ratio * square(wet) * (leans - free));
 }
 
 // V - I of equal tension all around: tr of (lambda + mu) tr/J = tension with J = exp(tr), by Newton's method, which from below closes

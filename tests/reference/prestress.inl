@@ -28,7 +28,8 @@ template <class Real> Real Solver<Real>::balance(Real depth, Real held) const {
     const Real drained = std::clamp((held / depth - retained) / (Real(1) - retained), Real(0), Real(1));
     const Real kr = drained * drained * drained;
     const Real leans = m.exchange_rate > 0 ? Real(1) - kr : Real(0);
-    const Real T = P.rho_s * sand_gravity(depth) * depth / Real(2) * (Real(1) + P.rho_w / P.rho_s * wet * wet * (leans - kr));
+    const Real carried = std::max(Real(1) + P.rho_w / P.rho_s * wet * wet * (leans - kr), Real(0));
+    const Real T = P.rho_s * sand_gravity(depth) * depth / Real(2) * carried;
     const Real chi = real(m.slope_normal);
     Real least(1); // C*
     if (chi > Real(0)) {
