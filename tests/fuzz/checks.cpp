@@ -137,8 +137,18 @@ std::string check_image(const Case& c, Session& session, Base& base, Image image
     return conformance::compare_images(*base.run.world, *run.world, symmetry).detail;
 }
 
+// Every third depth a quantum more, every third one less, as other rounding of fluxes leaves them.
+void nudge(reference::Solver<double>& solver) {
+    const double quantum = height_quantum(solver.settings.method);
+    for (reference::Field<double>* depth : {&solver.sand, &solver.water})
+        for (std::size_t n = 0; n < depth->size(); ++n)
+            if ((*depth)[n] > quantum) (*depth)[n] += quantum * (static_cast<double>(n % 3) - 1);
+    solver.split_water();
+}
+
 // The first steps against the second solver in double. Where that one in float differs from it much, another branch was taken
-// somewhere and the case says nothing.
+// somewhere and the case says nothing. Nor does it where a quantum more or less moves the second solver as far: what truncation
+// leaves in a drained cell may lie on either side of a dry threshold of a few quanta, and sand passes the cell or not.
 std::string check_reference(const Case& c, Session& session) {
     Run run = open(c, session);
     if (!run.good()) return run.failure;
@@ -152,26 +162,31 @@ std::string check_reference(const Case& c, Session& session) {
     reference::Solver<double> wide(s, run.world->plan().effects);
     narrow.load(c.scene.fields);
     wide.copy_from(narrow);
+    reference::Solver<double> nudged = wide;
     for (int done = 1; done <= std::min(2, c.steps); ++done) {
+        nudge(nudged);
         step(run, 1);
         narrow.step();
         wide.step();
-        for (const auto& [name, mine, theirs] :
-             {std::tuple{"sand_height", &narrow.sand, &wide.sand}, std::tuple{"water_height", &narrow.water, &wide.water}}) {
+        nudged.step();
+        for (const auto& [name, mine, theirs, other] : {std::tuple{"sand_height", &narrow.sand, &wide.sand, &nudged.sand},
+                                                        std::tuple{"water_height", &narrow.water, &wide.water, &nudged.water}}) {
             std::vector<float> got(mine->size());
             if (run.good()) run.note("read", run.world->reader().read(name, got));
             if (!run.good()) return run.failure;
-            double size = 0, spread = 0, off = 0;
+            double size = 0, spread = 0, off = 0, turned = 0;
             for (std::size_t n = 0; n < got.size(); ++n) {
                 size = std::max(size, std::fabs((*theirs)[n]));
                 spread = std::max(spread, std::fabs(static_cast<double>((*mine)[n]) - (*theirs)[n]));
                 off = std::max(off, std::fabs(static_cast<double>(got[n]) - (*theirs)[n]));
+                turned = std::max(turned, std::fabs((*other)[n] - (*theirs)[n]));
             }
             const double quantum = height_quantum(s.method) * 8 * done;
             if (!(spread < 1e-4 * size + quantum)) return {};
-            if (!(off <= 50 * spread + 1e-5 * size + 4 * quantum + 2 * s.method.dry_threshold))
-                return "after step " + std::to_string(done) + " " + name + " is off the reference by " + text(off) +
-                       " m, float is by " + text(spread);
+            if (off <= 50 * spread + 1e-5 * size + 4 * quantum + 2 * s.method.dry_threshold) continue;
+            if (turned > off / 3) return {};
+            return "after step " + std::to_string(done) + " " + name + " is off the reference by " + text(off) +
+                   " m, float is by " + text(spread);
         }
     }
     return {};
@@ -224,7 +239,7 @@ Outcome run_case(const Case& c, Devices& devices, Weaken weaken, const std::stri
     outcome.effects = base.run.world->plan().effects;
     const auto made = [&](const std::string& check, double share, auto run) {
         const bool picked = random.chance(share);
-        if (outcome.failed() || (only.empty() ? !picked : only != check)) return;
+        if (outcome.failed() || share <= 0 || (only.empty() ? !picked : only != check)) return;
         ++outcome.count[check];
         outcome.failure = run();
         if (outcome.failed()) outcome.check = check;
