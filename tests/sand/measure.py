@@ -21,6 +21,7 @@ import scene
 import table
 
 import columns  # noqa: F401, registers its cases, as do:
+import cuts  # noqa: F401
 import damp  # noqa: F401
 import dams  # noqa: F401
 import piles  # noqa: F401
