@@ -47,14 +47,16 @@ inline constexpr EffectRow choice_rows[] = {
     {EFFECT_SECOND_ORDER_WATER, "second_order_water", EFFECT_WATER,
      "heights and flux-form velocities of water move by limited slopes"},
     {EFFECT_HALF_STORAGE, "half_storage", 0, "velocities and stretch lie in memory as 16-bit floats"},
+    {EFFECT_SECOND_ORDER_SAND, "second_order_sand", EFFECT_SAND,
+     "heights and flux-form velocities of sand move by limited slopes"},
 };
 
 inline constexpr std::uint32_t all_effects = (1u << std::size(effect_rows)) - 1;
 
 /// Half storage is for worlds that trade accuracy for memory; a method that does the opposite, or the paper's own, has no kernels
 /// for it.
-inline constexpr std::uint32_t never_half =
-    EFFECT_SEMI_LAGRANGIAN | EFFECT_WHOLE_STRAIN | EFFECT_EXPLICIT_DRAG | EFFECT_LAPLACE_DIFFUSION | EFFECT_SECOND_ORDER_WATER;
+inline constexpr std::uint32_t never_half = EFFECT_SEMI_LAGRANGIAN | EFFECT_WHOLE_STRAIN | EFFECT_EXPLICIT_DRAG |
+                                            EFFECT_LAPLACE_DIFFUSION | EFFECT_SECOND_ORDER_WATER | EFFECT_SECOND_ORDER_SAND;
 
 /// The mask with all that its effects and choices need.
 constexpr std::uint32_t with_needs(std::uint32_t mask) {

@@ -217,6 +217,10 @@ void warn_sand(const Settings& s, const Survey& survey, std::vector<std::string>
                 " Pa (sand_density g h / (4 tan(45 deg + phi/2)), tan phi = yield_friction) and the level has " +
                 number_text(peak) + " Pa: it will fall; raise cohesion_wet and cohesion_capillary, or lower the wall");
     }
+    if (s.method.sand_transport_order == 2 && s.method.water_transport_order == 1 && survey.deepest_water > 0)
+        warnings.push_back(
+            "method.sand_transport_order: 2 with water_transport_order 1 moves sand and the water in it apart, and "
+            "damp sand tears into ripples; set both to 2");
     if (survey.steep_faces > 0)
         warnings.push_back("wet sand slopes up to " + number_text(std::round(survey.steepest_wet * 1000) / 1000) + " at " +
                            std::to_string(survey.steep_faces) + " faces, more than friction holds there, " +

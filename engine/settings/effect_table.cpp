@@ -113,6 +113,8 @@ constexpr Choice choices[] = {
      [](Method& m) { m.water_transport_order = 2; }},
     {row(EFFECT_HALF_STORAGE), "half_storage true", [](const Method& m) { return m.half_storage; },
      [](Method& m) { m.half_storage = true; }},
+    {row(EFFECT_SECOND_ORDER_SAND), "sand_transport_order 2", [](const Method& m) { return m.sand_transport_order == 2; },
+     [](Method& m) { m.sand_transport_order = 2; }},
 };
 
 constexpr bool has_rule(const Effect& effect) { return effect.why != nullptr; }

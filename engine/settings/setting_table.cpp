@@ -138,6 +138,8 @@ constexpr Setting rows[] = {
      "2: heights and flux-form velocities move with limited slopes"},
     {"method.half_storage", method<&Method::half_storage>, flag, "", several,
      "velocities and strain lie in memory as 16-bit floats", InDigest::where_set},
+    {"method.sand_transport_order", method<&Method::sand_transport_order>, {1, 2}, "", EFFECT_SAND,
+     "2: heights and flux-form velocities of sand move with limited slopes", InDigest::where_set},
     {"active_tiles", at<&Settings::active_tiles>, tile_sides, "cells", several,
      "side of active tiles: those at rest are left out of a step; 0 = off", InDigest::no},
     {"fused_stages", at<&Settings::fused_stages>, words(fused_stages), "", several,

@@ -76,10 +76,12 @@ Status check_method(const Method& method) {
                       " (semi_lagrangian looks one cell back)");
     const bool other = method.velocity_transport != VelocityTransport::flux_form ||
                        method.strain_transport != StrainTransport::left_stretch || method.drag_friction != DragFriction::joint ||
-                       method.diffusion != Diffusion::limited || method.water_transport_order != 1;
+                       method.diffusion != Diffusion::limited || method.water_transport_order != 1 ||
+                       method.sand_transport_order != 1;
     if (method.half_storage && other)
         return refuse("method.half_storage: true goes only with velocity_transport \"flux_form\", strain_transport "
-                      "\"left_stretch\", drag_friction \"joint\", diffusion \"limited\" and water_transport_order 1");
+                      "\"left_stretch\", drag_friction \"joint\", diffusion \"limited\", water_transport_order 1 and "
+                      "sand_transport_order 1");
     if (method.quantum < 0 && method.quantum > -1)
         return refuse("method.quantum: " + number_text(method.quantum) +
                       " is neither -1 (chosen), nor 0 (off), nor a positive height");

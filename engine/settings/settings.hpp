@@ -84,6 +84,7 @@ struct Method {
     Diffusion diffusion = Diffusion::limited;
     bool half_storage = false;     // NUMERICS 2.17
     int water_transport_order = 1; // NUMERICS 2.2, 2.3, 2.16
+    int sand_transport_order = 1;  // the same
 };
 
 /// A value over time: linear between samples, constant outside. One sample = constant.

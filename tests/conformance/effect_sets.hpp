@@ -10,7 +10,8 @@ inline constexpr std::uint32_t ELASTIC = EFFECT_ELASTOPLASTIC;
 inline constexpr std::uint32_t TRACED = EFFECT_SEMI_LAGRANGIAN;
 inline constexpr std::uint32_t POLAR = EFFECT_WHOLE_STRAIN, DIRECT = EFFECT_WHOLE_STRAIN | EFFECT_DIRECT_STRAIN;
 inline constexpr std::uint32_t PUBLISHED = TRACED | POLAR | EFFECT_EXPLICIT_DRAG | EFFECT_LAPLACE_DIFFUSION;
-inline constexpr std::uint32_t SECOND = EFFECT_SECOND_ORDER_WATER, HALF = EFFECT_HALF_STORAGE;
+inline constexpr std::uint32_t SECOND = EFFECT_SECOND_ORDER_WATER, SAND_SECOND = EFFECT_SECOND_ORDER_SAND,
+                               HALF = EFFECT_HALF_STORAGE;
 inline constexpr std::uint32_t SLOPES = EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION;
 inline constexpr std::uint32_t ALL = all_effects; // no choices of method
 

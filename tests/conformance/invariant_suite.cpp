@@ -44,6 +44,8 @@ std::vector<CaseSpec> list() {
     add("bounds", "33x17", ALL | TRACED, "random", "default", 300);
     add("bounds", "33x17", ALL | SECOND, "random", "default", 300);
     add("bounds", "33x17", ALL | SECOND, "thin_film", "default", 300);
+    add("bounds", "33x17", ALL | SAND_SECOND, "random", "default", 300);
+    add("bounds", "33x17", EFFECT_SAND | ELASTIC | SLOPES | SAND_SECOND, "cliff", "default", 300);
     add("bounds", "33x17", WET | ELASTIC | EFFECT_COHESION | SECOND, "cliff", "plain", 300);
     add("bounds", "33x17", ALL | TRACED | POLAR, "random", "default", 300);
     add("bounds", "33x17", ALL | DIRECT, "random", "default", 300);
@@ -66,6 +68,8 @@ std::vector<CaseSpec> list() {
     add("static_pile", "33x17", EFFECT_SAND | ELASTIC, "static_pile", "bare", 200);
     add("static_pile", "65x33", EFFECT_SAND | SLOPES, "static_pile", "default", 200);
     add("static_pile", "33x17", EFFECT_SAND | ELASTIC | SLOPES, "static_pile", "default", 200);
+    add("static_pile", "33x17", EFFECT_SAND | SAND_SECOND, "static_pile", "default", 200);
+    add("static_pile", "33x17", EFFECT_SAND | ELASTIC | SLOPES | SAND_SECOND, "static_pile", "default", 200);
     add("static_pile", "33x17", EFFECT_SAND | SLOPES | TRACED, "static_pile", "default", 200);
     add("static_pile", "33x17", WET | SLOPES | EFFECT_RETENTION, "static_pile", "default", 200);
     for (const char* symmetry : {"mirror_x", "mirror_y", "transpose"}) {
@@ -77,6 +81,7 @@ std::vector<CaseSpec> list() {
         add(symmetry, "33x17", ALL, "random", "default", 40);
         add(symmetry, "33x17", ALL | TRACED, "random", "default", 40);
         add(symmetry, "33x17", ALL | SECOND, "random", "default", 40);
+        add(symmetry, "33x17", ALL | SAND_SECOND, "random", "default", 40);
         add(symmetry, "33x17", ALL | POLAR, "random", "default", 40);
         add(symmetry, "33x17", ALL | DIRECT, "random", "default", 40);
         add(symmetry, "33x17", ALL | PUBLISHED, "random", "default", 40);

@@ -141,7 +141,10 @@ std::vector<CaseSpec> list() {
                 // One cell on a brush's soft rim: without a quantum nothing but that cell gives its strain a scale.
                 const bool one_value = scene == "one_wet_cell" && stages[stage].name == "apply_edits" &&
                                        (mask & EFFECT_ELASTOPLASTIC) != 0 && (method == "plain" || method == "bare");
-                add(grid, scene, rounding_only || unresolved || film || one_value ? "tapered" : method);
+                // A film is so level that what its slopes withhold of the push, 1 - C r, is rounding, unless quanta are coarse.
+                const bool level_film =
+                    scene == "thin_film" && stages[stage].name == "integrate_sand_velocity" && (mask & EFFECT_SLOPE_NORMAL) != 0;
+                add(grid, scene, level_film ? "coarse" : rounding_only || unresolved || film || one_value ? "tapered" : method);
             }
         }
         if (stages[stage].name == "apply_sources") {

@@ -237,6 +237,7 @@ Case make_case(std::uint64_t seed) {
     if (random.chance(0.4) && plain) s.method.half_storage = true;
     make_sand_laws(random, s);
     if (random.chance(0.3)) s.method.prestress = true;
+    if (random.chance(0.3) && !s.method.half_storage) s.method.sand_transport_order = 2;
     return c;
 }
 

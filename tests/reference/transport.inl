@@ -20,6 +20,10 @@ template <class Real> Real Solver<Real>::across_face(const Faces<Real>& velocity
     return ((v[ax.cross(a - 1, b)] + v[ax.cross(a - 1, b + 1)]) + (v[ax.cross(a, b)] + v[ax.cross(a, b + 1)])) / Real(4);
 }
 
+template <class Real> const Faces<Real>& Solver<Real>::velocity_of(Layer layer) const {
+    return layer == Layer::pure ? pure_velocity : layer == Layer::mixed ? mixed_velocity : sand_velocity;
+}
+
 /// 2.16: depth that the donor of face (a, b) sends through it; only the pure layer reaches beyond the rim, by one cell.
 template <class Real> Real Solver<Real>::face_depth(Layer layer, const Axis& ax, int a, int b, Real u) const {
     const int down = u > Real(0) ? 1 : -1;
@@ -30,6 +34,7 @@ template <class Real> Real Solver<Real>::face_depth(Layer layer, const Axis& ax,
     const auto at = [&](int cell) {
         if (cell >= 0 && cell < ax.along()) {
             const std::size_t c = ax.cell(cell, b);
+            if (layer == Layer::sand) return Column{sand[c], terrain[c] + sand[c]};
             return Column{layer == Layer::pure ? pure[c] : mixed[c], terrain[c] + water[c]};
         }
         const bool next = layer == Layer::pure && (cell == -1 || cell == ax.along());
@@ -41,10 +46,11 @@ template <class Real> Real Solver<Real>::face_depth(Layer layer, const Axis& ax,
     const auto rise = [](const Column& from, const Column& to) {
         return minmod(to.depth - from.depth, to.surface - from.surface);
     };
-    const Real courant = std::min(Real(1), P.k * std::abs(u));
-    const Field<Real>& velocity = (layer == Layer::pure ? pure_velocity : mixed_velocity).along(ax);
+    const Real k = layer == Layer::sand ? P.k_sand : P.k;
+    const Real courant = std::min(Real(1), k * std::abs(u));
+    const Field<Real>& velocity = velocity_of(layer).along(ax);
     const Real growth = velocity[ax.face(donor + 1, b)] - velocity[ax.face(donor, b)];
-    const Real thinned = own.depth * std::clamp(P.k * growth, Real(-1), Real(1));
+    const Real thinned = own.depth * std::clamp(k * growth, Real(-1), Real(1));
     return own.depth + ((Real(1) - courant) * minmod(rise(before, own), rise(own, after)) - thinned) / Real(2);
 }
 
@@ -53,14 +59,13 @@ template <class Real> Real Solver<Real>::raw_flux(Layer layer, const Axis& ax, i
     const bool rim = a == 0 || a == ax.along();
     if (rim && !has(EFFECT_OPEN_SIDES)) return Real(0);
     const Field<Real>& h = layer == Layer::pure ? pure : layer == Layer::mixed ? mixed : sand;
-    const Faces<Real>& velocity = layer == Layer::pure ? pure_velocity : layer == Layer::mixed ? mixed_velocity : sand_velocity;
     const std::size_t face = ax.face(a, b);
     const Real outside = layer == Layer::pure ? ghost_water.along(ax)[face] : Real(0);
     const Real h_left = a > 0 ? h[ax.cell(a - 1, b)] : outside;
     const Real h_right = a < ax.along() ? h[ax.cell(a, b)] : outside;
-    const Real u = velocity.along(ax)[face];
+    const Real u = velocity_of(layer).along(ax)[face];
     Real q = std::max(u, Real(0)) * h_left + std::min(u, Real(0)) * h_right;
-    if (layer != Layer::sand && has(EFFECT_SECOND_ORDER_WATER)) q = u * face_depth(layer, ax, a, b, u);
+    if (has(layer == Layer::sand ? EFFECT_SECOND_ORDER_SAND : EFFECT_SECOND_ORDER_WATER)) q = u * face_depth(layer, ax, a, b, u);
     if (layer == Layer::mixed && has(EFFECT_DIFFUSION)) q += diffusion_flux.along(ax)[face];
     if (layer == Layer::sand && has(EFFECT_BED_SHEAR)) q += bed_load.along(ax)[face];
     return q;
@@ -158,6 +163,13 @@ void Solver<Real>::advect_velocity_second_order(const Field<Real>& height, const
         const auto around = {u, at(-1, 0), at(1, 0), at(0, -1), at(0, 1)};
         velocity.along(ax)[ax.face(a, b)] = std::clamp(moved, std::min(around), std::max(around));
     });
+}
+
+/// A layer's momentum by the order that its effect chooses.
+template <class Real>
+void Solver<Real>::advect(std::uint32_t second_order, const Field<Real>& height, const Faces<Real>& flux,
+                          Faces<Real>& velocity) const {
+    has(second_order) ? advect_velocity_second_order(height, flux, velocity) : advect_velocity(height, flux, velocity);
 }
 
 } // namespace wadi::reference

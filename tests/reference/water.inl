@@ -143,14 +143,10 @@ template <class Real> void Solver<Real>::integrate_water_velocity() {
     const bool traced = has(EFFECT_SEMI_LAGRANGIAN);
     const Faces<Real> before = pure_velocity;
     const Faces<Real> mixed_old = mixed_velocity;
-    const auto advect = [&](const Field<Real>& height, const Faces<Real>& flux, Faces<Real>& velocity) {
-        has(EFFECT_SECOND_ORDER_WATER) ? advect_velocity_second_order(height, flux, velocity)
-                                       : advect_velocity(height, flux, velocity);
-    };
-    if (!traced) advect(pure_predicted, pure_flux, pure_velocity);
+    if (!traced) advect(EFFECT_SECOND_ORDER_WATER, pure_predicted, pure_flux, pure_velocity);
     damp_shocks(before);
     if (has(EFFECT_MIXTURE)) {
-        if (!traced) advect(mixed_predicted, mixed_flux, mixed_velocity);
+        if (!traced) advect(EFFECT_SECOND_ORDER_WATER, mixed_predicted, mixed_flux, mixed_velocity);
         exchange_split(mixed_predicted, pure_predicted, mixed);
     }
     for_inner_faces([&](const Axis& ax, int a, int b) { water_face(before, mixed_old, ax, a, b); });

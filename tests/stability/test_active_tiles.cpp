@@ -203,7 +203,8 @@ TEST_CASE("active tiles: a step carries a change no further than the plan's reac
             if (few_steps && substeps == 4) continue;
             auto scene = mixed_scene(192, 160);
             if (std::string(method) == "published") choose_method(scene.settings, method);
-            if (std::string(method) == "second order") scene.settings.method.water_transport_order = 2;
+            if (std::string(method) == "second order")
+                scene.settings.method.water_transport_order = scene.settings.method.sand_transport_order = 2;
             scene.settings.method.substeps = substeps;
             scene.settings.material.bed_shear = 0.01;
             constexpr int at_x = 85, at_y = 78;

@@ -228,7 +228,7 @@ TEST_CASE("level: settings by name") {
         "material": {"friction": 0.7, "saturation": [0.1, 0.2, 0.5], "bed_friction": 0.02},
         "method": {"name": "robust", "substeps": 2, "outflow_limiter": false, "quantum": 0, "saturation_smoothing": 1,
                    "velocity_transport": "semi_lagrangian", "strain_transport": "polar",
-                   "drag_friction": "sequence", "diffusion": "laplacian", "water_transport_order": 2},
+                   "drag_friction": "sequence", "diffusion": "laplacian", "water_transport_order": 2, "sand_transport_order": 2},
         "sides": {"east": {"kind": "level", "value": 2, "from": 1, "to": 3}, "north": {"kind": "outflow"}},
         "sources": [{"shape": "point", "center": [1, 2], "rate": -0.5, "material": "sand"},
                     {"shape": "box", "from": [1, 2], "to": [3, 4], "rate": [[0, 1], [2, 0]], "velocity": [0, -4]}],
@@ -246,6 +246,7 @@ TEST_CASE("level: settings by name") {
     CHECK(s.method.drag_friction == DragFriction::sequence);
     CHECK(s.method.diffusion == Diffusion::laplacian);
     CHECK(s.method.water_transport_order == 2);
+    CHECK(s.method.sand_transport_order == 2);
     CHECK(!s.method.half_storage);
     CHECK(must(parse(R"("method": {"half_storage": true})")).settings.method.half_storage);
     CHECK(s.sides[1].kind == SideKind::level);

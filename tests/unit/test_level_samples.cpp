@@ -74,6 +74,17 @@ void collect_properties(const Json& value, std::set<std::string>& names) {
 
 } // namespace
 
+TEST_CASE("level warnings: sand of second order in water of first") {
+    const auto ordered = [](const char* method) {
+        return says(warnings(std::string(LOW_PILE) + R"(, "method": )" + method), "method.sand_transport_order: 2 with water");
+    };
+    CHECK(ordered(R"({"sand_transport_order": 2})"));
+    CHECK_FALSE(ordered(R"({"sand_transport_order": 2, "water_transport_order": 2})"));
+    CHECK_FALSE(ordered(R"({"water_transport_order": 2})"));
+    CHECK_FALSE(
+        says(warnings(R"("sand": [{"shape": "plane", "height": 1}], "method": {"sand_transport_order": 2})"), "moves sand"));
+}
+
 TEST_CASE("level warnings: none for a small pile of damp sand") { CHECK(warnings(LOW_PILE).empty()); }
 
 TEST_CASE("level warnings: waves slower than they should be") {

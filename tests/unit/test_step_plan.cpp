@@ -217,6 +217,15 @@ TEST_CASE("choices of method are passes of their own at their place in the order
         });
     };
     CHECK(reads_terrain(second) == reads_terrain(first) + 2);
+    scene.settings.method.sand_transport_order = 2; // no sand: nothing to act on
+    CHECK(effects_required(scene.settings, content_of(scene.fields))->mask == (EFFECT_WATER | EFFECT_SECOND_ORDER_WATER));
+    scene.fill(scene.fields.sand, [](double, double) { return 1; });
+    CHECK((effects_required(scene.settings, content_of(scene.fields))->mask & EFFECT_SECOND_ORDER_SAND) != 0);
+    const auto second_sand = make_step_plan(EFFECT_SAND | EFFECT_SECOND_ORDER_SAND, 3),
+               first_sand = make_step_plan(EFFECT_SAND, 3);
+    CHECK(order(second_sand.substep_passes) == order(first_sand.substep_passes));
+    CHECK(second_sand.field_buffers() == first_sand.field_buffers());
+    CHECK(second_sand.reach > first_sand.reach);
     // The same passes and fields, velocities and stretch in half the bytes.
     constexpr std::uint32_t all = all_effects & ~(EFFECT_BED_SHEAR | sand_laws);
     const auto half = make_step_plan(all | EFFECT_HALF_STORAGE, 3), whole = make_step_plan(all, 3);
@@ -231,6 +240,7 @@ TEST_CASE("choices of method are passes of their own at their place in the order
     }
     CHECK(!is_legal(all | EFFECT_HALF_STORAGE | EFFECT_SEMI_LAGRANGIAN));
     CHECK(!is_legal(EFFECT_WATER | EFFECT_HALF_STORAGE | EFFECT_SECOND_ORDER_WATER));
+    CHECK(!is_legal(EFFECT_SAND | EFFECT_HALF_STORAGE | EFFECT_SECOND_ORDER_SAND));
     auto dry = test::flat_scene(8, 8, 1, 0.01);
     dry.fill(dry.fields.sand, [](double, double) { return 1; });
     dry.settings.method.water_transport_order = 2; // no water: nothing to act on
