@@ -9,6 +9,7 @@ CHOICES = {
     "robust": {},
     "published": {"name": "published"},
     "second_order": {"water_transport_order": 2},
+    "second_order_sand": {"water_transport_order": 2, "sand_transport_order": 2},
     "half_storage": {"half_storage": True},
     "semi_lagrangian": {"velocity_transport": "semi_lagrangian"},
     "polar": {"strain_transport": "polar"},
@@ -28,7 +29,7 @@ METHODS = [choice for choice in CHOICES if not choice.startswith("no_")]
 EFFECTS = ("elastoplastic", "cohesion", "drag", "diffusion", "mixture")
 NEEDED_BY = {"elastoplastic": "cohesion", "mixture": "diffusion"}  # what needs an effect goes with it
 CHOICES_OF = {"water": ("robust", "published", "second_order", "half_storage", "semi_lagrangian"),
-              "dry sand": ("robust", "published", "half_storage", "semi_lagrangian", "polar", "direct"),
+              "dry sand": ("robust", "published", "second_order_sand", "half_storage", "semi_lagrangian", "polar", "direct"),
               "wet sand": tuple(METHODS)}  # what a kind of scene has something of to show
 STEPS = (0.25, 0.5, 1, 2, 4)
 RATIOS = (1, 2, 3, 4, 6)

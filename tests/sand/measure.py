@@ -24,6 +24,7 @@ import columns  # noqa: F401, registers its cases, as do:
 import cuts  # noqa: F401
 import damp  # noqa: F401
 import dams  # noqa: F401
+import orders  # noqa: F401
 import piles  # noqa: F401
 import slopes  # noqa: F401
 
