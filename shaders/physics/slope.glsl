@@ -26,20 +26,23 @@ FN float of_deeper(float height_low, float height_high, float low, float high) {
 // What a slope leaves of weight and friction, and what Coulomb's wedge leaves of the push.
 struct SlopeShares {
     float weight; // C = 1/(1 + chi s^2), s no steeper than the wedge's plane
-    float push;   // r: slope of that plane over the slope where it is steeper, else 1
+    float push;   // r: less than 1 where it is steeper
 };
 
-// rise along the face's axis, cross_rise across it [m]; held: cohesive share.
-FN SlopeShares slope_shares(float rise, float cross_rise, float inv_dx, float chi, float wedge_slope, float wedge_slope2, float wedge_weight,
-                            float held) {
+// rise along the face's axis, cross_rise across it, sand's depth on the higher side [m]; held: cohesive share.
+FN SlopeShares slope_shares(float rise, float cross_rise, float depth, float inv_dx, float chi, float wedge_slope, float wedge_slope2,
+                            float wedge_weight, float held) {
     float slope2 = square(rise * inv_dx) + square(cross_rise * inv_dx);
     bool steep = slope2 > wedge_slope2;
     // One quotient for both: C where the wedge does not count, r where it does.
     float root = 1.0f;
     if (UNIFORM(steep)) root = lean_root(slope2);
-    float quotient = lean_quotient(steep ? wedge_slope : 1.0f, steep ? root : 1.0f + chi * slope2);
+    float quotient = lean_quotient(1.0f, steep ? root : 1.0f + chi * slope2);
+    float plane = wedge_slope * quotient;
+    float cliff = wmin(depth * inv_dx * quotient, 1.0f); // a step in the ground counts no more than the sand upon it
     float weight = steep ? wedge_weight : quotient;
-    float push = steep ? quotient : 1.0f;
+    // Without a part of the push that grows with the slope the thrust of a cliff within one cell would go to 0 on finer grids.
+    float push = steep ? plane + 0.1f * wmax(cliff - plane, 0.0f) : 1.0f;
     SlopeShares s;
     s.weight = weight + held * (1.0f - weight);
     s.push = push + held * (1.0f - push);

@@ -26,7 +26,12 @@ template <class Real> auto Solver<Real>::slope_at(const Axis& ax, int a, int b) 
         Real(4);
     const Real q = (d * d + e * e) / (P.dx * P.dx);
     const Real limit = P.wedge * P.wedge;
-    Slope slope{d, Real(1) / (Real(1) + P.chi * std::min(q, limit)), q > limit ? P.wedge / std::sqrt(q) : Real(1)};
+    Slope slope{d, Real(1) / (Real(1) + P.chi * std::min(q, limit)), Real(1)};
+    if (q > limit) {
+        const Real depth = d > Real(0) ? sand[R] : sand[L];
+        const Real own = std::min(depth / P.dx, std::sqrt(q));
+        slope.r = (P.wedge + Real(0.1) * std::max(own - P.wedge, Real(0))) / std::sqrt(q);
+    }
     // Cohesion that could hold a cliff of this depth pushes as it pulls; of equal depths the larger share counts.
     Real share = sand[L] > sand[R] ? cohesive_share[L] : cohesive_share[R];
     if (sand[L] == sand[R]) share = std::max(cohesive_share[L], cohesive_share[R]);

@@ -38,20 +38,30 @@ TEST_CASE("reference: a slab slides with g (S - mu)/(1 + S^2), without slope_nor
 
 TEST_CASE("reference: the push of a cliff is that of Coulomb's wedge, of damp sand that holds it the whole") {
     const double wedge = 0.5 + std::sqrt(1.25), height = 2, dx = 0.1;
-    const auto push = [&](double cohesion, std::uint32_t effects) {
+    // step: how much of the cliff is ground.
+    const auto push = [&](double cohesion, std::uint32_t effects, double step = 0) {
         Settings set = with_laws(make_settings(40, 1, dx, 0.003));
         set.method.sand_gravity_cap = 0;
         set.method.quantum = 0;
         set.material.cohesion_dry = cohesion;
         Solver<double> s(set, effects);
-        for (int i = 0; i < 20; ++i) s.sand[index(i)] = height;
+        for (int i = 0; i < 20; ++i) {
+            s.terrain[index(i)] = step;
+            s.sand[index(i)] = height - step;
+        }
         if (s.has(EFFECT_ELASTOPLASTIC)) s.project_deformation_gradient();
         s.integrate_sand_velocity();
         return s.sand_velocity.x[20] / (s.P.k_sand * 9.81 * height);
     };
-    const double limited = wedge * dx / height / (1 + wedge * wedge);
+    const auto limited_to = [&](double own) {
+        return (wedge * dx + 0.1 * std::max(own - wedge * dx, 0.0)) / height / (1 + wedge * wedge);
+    };
+    const double limited = limited_to(height);
     CHECK(within(push(0, EFFECT_SAND), 1, 1e-12));
     CHECK(within(push(0, EFFECT_SAND | EFFECT_SLOPE_NORMAL), limited, 1e-12));
+    // Of a step in the ground only the sand upon it pushes with more than the wedge.
+    CHECK(within(push(0, EFFECT_SAND | EFFECT_SLOPE_NORMAL, 1.5), limited_to(0.5), 1e-12));
+    CHECK(within(push(0, EFFECT_SAND | EFFECT_SLOPE_NORMAL, 1.9), limited_to(0), 1e-12));
     const std::uint32_t elastic = EFFECT_SAND | EFFECT_ELASTOPLASTIC | EFFECT_SLOPE_NORMAL;
     CHECK(within(push(0, elastic), limited, 1e-12));
     CHECK(within(push(1e5, elastic), 1, 1e-12));
