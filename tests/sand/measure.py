@@ -27,6 +27,7 @@ import dams  # noqa: F401
 import orders  # noqa: F401
 import piles  # noqa: F401
 import slopes  # noqa: F401
+import streams  # noqa: F401
 
 
 def setting(text):
