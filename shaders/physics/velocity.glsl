@@ -133,10 +133,4 @@ FN bool at_rest(float surface_low, float surface_high, float u, float rest_surfa
     return both(wabs(surface_high - surface_low) <= rest_surface, wabs(u) <= rest_velocity);
 }
 
-// Manning-like bed friction, implicit: u/(1 + dt c |u|/h).
-FN float bed_friction(float u, float height, float friction_dt) {
-    float rate = divide_or_zero(friction_dt * wabs(u), height);
-    return wdiv(u, 1.0f + rate);
-}
-
 #endif

@@ -23,6 +23,14 @@ template <class Real> Real shortened(Real u, Real v, Real limit) {
     return size > limit ? clamped(u * (limit / size), limit) : u;
 }
 
+/// 2.4: component u of V* behind friction V' (1 + rate |V'|) = V*, where the other component v of V' is known to be what it was,
+/// at a speed `before` of the flow.
+template <class Real> Real rubbed(Real u, Real v, Real before, Real rate) {
+    const Real driven = std::hypot(u, v * (Real(1) + rate * before)); // |V*| = |V'| + rate |V'|^2
+    const Real speed = Real(2) * driven / (Real(1) + std::sqrt(Real(1) + Real(4) * rate * driven));
+    return u / (Real(1) + rate * speed);
+}
+
 /// 2.1: 0 where the slopes disagree in sign, else the one of smaller magnitude.
 template <class Real> Real minmod(Real a, Real e) {
     if (a * e <= Real(0)) return Real(0);

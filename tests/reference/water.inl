@@ -101,17 +101,19 @@ void Solver<Real>::water_face(const Faces<Real>& pure_old, const Faces<Real>& mi
     const bool level = std::abs(rise) <= P.rest_surface;
     Real& uw = pure_velocity.along(ax)[f];
     Real& um = mixed_velocity.along(ax)[f];
+    const Real before = pure_old.along(ax)[f];
     const Real fastest = std::max(std::abs(uw), std::abs(um));
     const Real push = P.k * water_gravity(fastest, std::max(water[L], water[R])) * rise;
 
     uw -= push;
     if (level && std::abs(uw) <= P.rest_velocity) uw = Real(0);
     if (blocked(pure[L], pure[R], eta_L, eta_R, P.eps)) uw = Real(0);
+    Real grip = P.bed_friction; // 2.4: c
+    if (mean(sand[L], sand[R]) > P.eps) grip += P.bed_shear;
+    const Real across = across_face(pure_old, ax, a, b);
     const Real depth = mean(pure[L], pure[R]);
-    if (has(EFFECT_BED_FRICTION) && depth > Real(0)) uw /= Real(1) + P.dt * P.bed_friction * std::abs(uw) / depth;
-    if (has(EFFECT_BED_SHEAR) && depth > Real(0) && mean(sand[L], sand[R]) > P.eps)
-        uw /= Real(1) + P.dt * P.bed_shear * std::abs(uw) / depth;
-    uw = shortened(uw, across_face(pure_old, ax, a, b), P.clamp);
+    if (grip > Real(0) && depth > Real(0)) uw = rubbed(uw, across, std::hypot(before, across), P.dt * grip / depth);
+    uw = shortened(uw, across, P.clamp);
 
     if (!has(EFFECT_MIXTURE)) return;
     Real& share = mixed_push.along(ax)[f];

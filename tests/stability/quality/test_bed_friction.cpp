@@ -1,0 +1,120 @@
+// Friction of water on its bed (NUMERICS 2.4) against closed forms: uniform flow down planes that lie askew to the grid, at any
+// time step, and a stream that passes from slow to fast, whose depth is given and whose bed follows.
+#include "tests/stability/quality.hpp"
+#include <doctest/doctest.h>
+
+using namespace wadi;
+using namespace wadi::test;
+
+namespace {
+
+constexpr double earth = 9.81, degree = 3.14159265358979323846 / 180;
+
+struct Stream {
+    double speed = 0, direction = 0; // [m/s], [degrees] from east
+};
+
+constexpr double film_depth = 0.1, film_slope = 0.025; // [m], 1
+
+/// The middle of a film that starts at rest on a plane falling towards `angle` [degrees from east], after 40 s, before anything
+/// from the sides has come there.
+Stream stream_on_plane(const Material& material, double angle, double dt) {
+    const int n = 120;
+    auto scene = flat_scene(n, n, 2, dt);
+    scene.settings.material = material;
+    scene.settings.method.quantum = 0; // a plane of whole quanta has steps
+    const double east = std::cos(angle * degree), north = std::sin(angle * degree);
+    scene.fill(scene.fields.terrain, [&](double x, double y) { return 8 - film_slope * (x * east + y * north); });
+    scene.fill(scene.fields.water, [&](double, double) { return film_depth; });
+    auto world = make_world(scene);
+    step(*world, static_cast<int>(std::lround(40 / dt)));
+    const double u = cells_of(*world, "water_velocity_x").at(n / 2, n / 2);
+    const double v = cells_of(*world, "water_velocity_y").at(n / 2, n / 2);
+    return {std::hypot(u, v), std::atan2(v, u) / degree};
+}
+
+/// c of the stress rho_w c |u|^2 on the bed under water of this depth [m].
+double resistance(const Material& material, double) { return material.bed_friction; }
+
+constexpr double stream_length = 1000, stream_discharge = 2; // [m], [m2/s]
+
+/// Depth of the stream and its rise [1] downstream: slow, of the critical depth half way, then fast (MacDonald et al. 1997).
+std::pair<double, double> stream_depth(double x) {
+    const double critical = std::cbrt(stream_discharge * stream_discharge / earth), s = x / stream_length - 0.5;
+    const double size = s < 0 ? 1.0 / 3 : 1.0 / 6, steep = s < 0 ? 3 : 6, wave = std::tanh(steep * s);
+    return {critical * (1 - size * wave), -critical * size * steep * (1 - wave * wave) / stream_length};
+}
+
+/// Mean error of the depth, as a share of its mean, of that stream on n cells after 1500 s: its bed is what the depth calls for.
+double stream_error(const Material& material, int order, int n) {
+    const double dx = stream_length / n, dt = 0.05 * dx;
+    auto scene = flat_scene(n, 1, dx, dt);
+    scene.settings.material = material;
+    scene.settings.method.quantum = 0;
+    scene.settings.method.water_transport_order = order;
+    scene.settings.sides[SIDE_WEST] = {SideKind::discharge, 0, 1e30, {{{0, stream_discharge * dx}}}};
+    scene.settings.sides[SIDE_EAST].kind = SideKind::outflow;
+    const auto fall = [&](double x) { // of the bed [1]
+        const auto [h, rise] = stream_depth(x);
+        const double froude2 = stream_discharge * stream_discharge / (earth * h * h * h);
+        return (1 - froude2) * rise + resistance(material, h) * froude2;
+    };
+    constexpr int parts = 40;
+    double bed = 6;
+    for (int i = 0; i < n; ++i) {
+        for (int part = 0; i > 0 && part < parts; ++part) bed -= fall((i - 0.5 + (part + 0.5) / parts) * dx) * dx / parts;
+        const double h = stream_depth((i + 0.5) * dx).first;
+        scene.fields.terrain.push_back(static_cast<float>(bed));
+        scene.fields.water.push_back(static_cast<float>(h));
+        scene.fields.velocity_x.push_back(static_cast<float>(stream_discharge / h));
+    }
+    auto world = make_world(scene);
+    step(*world, static_cast<int>(std::lround(1500 / dt)));
+    const auto depth = cells_of(*world, "water_height");
+    double error = 0, mean = 0;
+    for (int i = 0; i < n; ++i) {
+        const double exact = stream_depth((i + 0.5) * dx).first;
+        error += std::abs(depth.at(i, 0) - exact);
+        mean += exact;
+    }
+    return error / mean;
+}
+
+Material chezy(double c) {
+    Material material;
+    material.bed_friction = c;
+    return material;
+}
+
+} // namespace
+
+TEST_CASE("bed friction: a stream runs down the fall line at Chezy's speed, however the plane lies to the grid") {
+    const double exact = std::sqrt(earth * film_depth * film_slope / 0.01);
+    for (const double angle : {0.0, 15.0, 30.0, 45.0, 120.0}) {
+        const auto found = stream_on_plane(chezy(0.01), angle, 0.1);
+        MESSAGE("plane at " << angle << " degrees: " << found.speed << " of " << exact << " m/s at " << found.direction);
+        CHECK(std::abs(found.speed / exact - 1) < 0.001);
+        CHECK(std::abs(found.direction - angle) < 0.05);
+    }
+    CHECK(std::abs(stream_on_plane(chezy(0.011), 45, 0.1).speed / exact - 1) > 0.04); // control
+}
+
+TEST_CASE("bed friction: uniform flow is the same at any time step") {
+    for (const double angle : {0.0, 30.0, 45.0}) {
+        const double speed = stream_on_plane(chezy(0.01), angle, 0.025).speed;
+        for (const double dt : {0.1, 0.4}) {
+            const double longer = stream_on_plane(chezy(0.01), angle, dt).speed;
+            MESSAGE("plane at " << angle << " degrees, dt " << dt << " s: " << longer << " m/s, " << speed << " at 0.025 s");
+            CHECK(std::abs(longer / speed - 1) < 0.001);
+        }
+    }
+}
+
+TEST_CASE("bed friction: a stream that turns fast keeps the depth that its bed was made for, to second order") {
+    for (const int n : {100, 200}) {
+        const double first = stream_error(chezy(0.005), 1, n), second = stream_error(chezy(0.005), 2, n);
+        MESSAGE("stream, " << n << " cells: order 1 " << 100 * first << " %, order 2 " << 100 * second << " %");
+        CHECK(second < 1e-4);
+        CHECK(second < first / 10);
+    }
+}
