@@ -53,7 +53,7 @@ std::string describe_plan(const WorldState& world) {
     int state = 0, partners = 0, state_bytes = 0, partner_bytes = 0;
     std::string state_names, scratch_names;
     for (const auto& field : plan.fields) {
-        if (field.role == FieldRole::state) {
+        if (field.role == FieldRole::state || field.role == FieldRole::fixed) {
             ++state;
             partners += field.ping_pong ? 1 : 0;
             state_bytes += field.element_bytes();

@@ -27,13 +27,14 @@ inline constexpr EffectRow effect_rows[] = {
     {EFFECT_SOURCES, "sources", 0, "points, discs and boxes that add or take water or sand"},
     {EFFECT_RAIN, "rain", EFFECT_WATER, "rain and evaporation"},
     {EFFECT_OPEN_SIDES, "open_sides", 0, "sides with discharge, level or outflow"},
-    {EFFECT_BED_FRICTION, "bed_friction", EFFECT_WATER, "Manning-like friction of pure water on its bed"},
+    {EFFECT_BED_FRICTION, "bed_friction", EFFECT_WATER, "friction of pure water on its bed"},
     {EFFECT_BED_SHEAR, "bed_shear", EFFECT_MIXTURE, "pure water drags the sand under it along: bed load"},
     {EFFECT_SLOPE_NORMAL, "slope_normal", EFFECT_SAND,
      "weight and friction of sand normal to its slope, pushes no steeper than Coulomb's wedge"},
     {EFFECT_INTERNAL_FRICTION, "internal_friction", EFFECT_SAND,
      "sand that spreads or shears in its plane is slowed from within"},
     {EFFECT_RETENTION, "retention", EFFECT_MIXTURE | EFFECT_DRAG, "pores hold back a share of the water: damp sand stays damp"},
+    {EFFECT_ROUGHNESS, "roughness", EFFECT_BED_FRICTION, "Manning's n from cell to cell"},
 };
 
 /// Choices of method: bits of the same mask above those, from `method` and never from content. Without what it needs a choice has

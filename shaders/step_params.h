@@ -79,7 +79,9 @@ struct WorldParams {
     float rest_surface;         // eta_rest [m]; negative = rule off
     float rest_velocity;        // v_rest [m/s]; negative = rule off
     float diffusion_number;     // min(c_d, 0.2 dx^2/dt) dt/dx^2
-    float bed_friction_dt;      // dt c of the Manning-like friction, c dimensionless [s]
+    float bed_friction_dt;      // dt c of Chezy's law, c dimensionless [s]
+    float manning;              // n of Manning's law [s/m^(1/3)]
+    float gravity_dt;           // dt g [m/s]
     float bed_shear;            // c of the shear stress rho_w c |u|^2 of pure water on sand
     float bed_shear_dt;         // dt c: what the water loses by it [s]
     float bed_shear_threshold;  // stress over rho_w below which sand stays [m2/s2]

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 namespace wadi {
 namespace {
@@ -43,8 +44,8 @@ Result<std::vector<float>> load_heights(const Layer& layer, const LevelGrid& gri
         return error(Code::bad_file, layer.path + ": min and max are for integer maps (PNG, r16); " + source.file +
                                          " holds heights, use scale and offset");
     if (map->integer && !source.grey_range && !source.scale_given)
-        return error(Code::bad_file, layer.path + ": " + source.file + " holds grey values; give min and max, the heights of " +
-                                         "black and white in metres");
+        return error(Code::bad_file, layer.path + ": " + source.file + " holds grey values; give min and max, what " +
+                                         "black and white stand for");
     if (map->filled > 0) warnings.push_back(filled_warning(*map, layer.path + ".file: " + source.file));
     std::vector<float> values = resample(*map, grid.nx, grid.ny);
     const double scale = source.grey_range ? source.max - source.min : source.scale;
@@ -269,6 +270,18 @@ std::string filled_warning(const Map& map, const std::string& path) {
 Status draw_layers(const LayerLists& lists, const LevelGrid& grid, const FileReader& files, InitialFields& fields,
                    std::vector<std::string>& warnings) {
     return Drawing(lists, grid, files, fields, warnings).draw();
+}
+
+Status draw_roughness(std::vector<Layer> layers, const LevelGrid& grid, const FileReader& files, std::vector<float>& roughness,
+                      std::vector<std::string>& warnings) {
+    LevelGrid unrounded = grid;
+    unrounded.quantum = 0;
+    LayerLists lists;
+    lists.terrain = std::move(layers); // drawn alike
+    InitialFields drawn;
+    Status status = draw_layers(lists, unrounded, files, drawn, warnings);
+    roughness = std::move(drawn.terrain);
+    return status;
 }
 
 void draw_velocities(const std::vector<VelocityRegion>& regions, bool of_sand, const LevelGrid& grid, std::vector<float>& x,

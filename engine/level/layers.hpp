@@ -1,4 +1,4 @@
-// The layers of a level's terrain, sand and water: maps and shapes combined in order into fields.
+// The layers of a level's terrain, sand, water and roughness: maps and shapes combined in order into fields.
 #pragma once
 #include "engine/compute/status.hpp"
 #include "engine/image/map.hpp"
@@ -25,10 +25,10 @@ struct LevelGrid {
     double quantum = 0; // fields are rounded to multiples of it, so that lakes are flat to the bit; 0 = not rounded [m]
 };
 
-enum class LayerTarget { terrain, sand, water };
+enum class LayerTarget { terrain, sand, water, roughness };
 enum class Combine { add, set, max, min, subtract };
 enum class Amount {
-    height,  // depth, or elevation of terrain [m]
+    height,  // depth, or elevation of terrain [m]; of roughness its value [s/m^(1/3)]
     surface, // absolute elevation: filled up from the ground below [m]
     wet,     // water as a share of the sand's depth
 };
@@ -80,6 +80,10 @@ struct LayerLists {
 /// no cell is worth a warning.
 Status draw_layers(const LayerLists& lists, const LevelGrid& grid, const FileReader& files, InitialFields& fields,
                    std::vector<std::string>& warnings);
+
+/// Draws the roughness that layers say at the middles of cells; empty without layers.
+Status draw_roughness(std::vector<Layer> layers, const LevelGrid& grid, const FileReader& files, std::vector<float>& roughness,
+                      std::vector<std::string>& warnings);
 
 /// Draws the velocities of water or of sand into x and y; both stay empty when no region sets any.
 void draw_velocities(const std::vector<VelocityRegion>& regions, bool of_sand, const LevelGrid& grid, std::vector<float>& x,

@@ -16,6 +16,7 @@ constexpr double DURATION_MOST = 1e9; // [s]
 
 struct Layers : LayerLists {
     std::vector<VelocityRegion> velocities;
+    std::vector<Layer> roughness;
 };
 
 void read_version(ObjectReader& root) {
@@ -45,6 +46,8 @@ Status read_root(const Json& json, const FileReader& files, Level& level, Layers
     if (const Json* list = root.find("terrain")) layers.terrain = read_layers(*list, "terrain", LayerTarget::terrain, status);
     if (const Json* list = root.find("sand")) layers.sand = read_layers(*list, "sand", LayerTarget::sand, status);
     if (const Json* list = root.find("water")) layers.water = read_layers(*list, "water", LayerTarget::water, status);
+    if (const Json* list = root.find("roughness"))
+        layers.roughness = read_layers(*list, "roughness", LayerTarget::roughness, status);
     if (const Json* list = root.find("velocities")) layers.velocities = read_velocities(*list, "velocities", status);
     root.finish();
     return status;
@@ -55,7 +58,7 @@ Status draw(const Layers& layers, const LevelGrid& grid, const FileReader& files
     if (Status status = draw_layers(layers, grid, files, fields, level.warnings); !status) return status;
     draw_velocities(layers.velocities, false, grid, fields.velocity_x, fields.velocity_y);
     draw_velocities(layers.velocities, true, grid, fields.sand_velocity_x, fields.sand_velocity_y);
-    return ok_status();
+    return draw_roughness(layers.roughness, grid, files, level.settings.roughness, level.warnings);
 }
 
 Result<Level> parse(const std::string& text, const FileReader& files, LevelOverrides overrides) {

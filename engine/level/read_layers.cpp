@@ -10,10 +10,17 @@ constexpr double SIDE_SLOPE_LEAST = 1e-3, SIDE_SLOPE_MOST = 1e3;
 constexpr std::size_t POINTS_MOST = 256;
 constexpr int OCTAVES_MOST = 12;
 const std::vector<std::string> SHAPE_NAMES = {"plane", "box", "cylinder", "cone", "ridge", "noise"};
-const std::vector<std::string> REGION_NAMES = {"plane", "box", "cylinder"};
+const std::vector<std::string> REGION_NAMES = {"plane", "box", "cylinder"}; // as SHAPE_NAMES begin
+
+/// Whether the layer lies on others.
+bool of_column(LayerTarget target) { return target == LayerTarget::sand || target == LayerTarget::water; }
 
 /// Reads exactly one of height, surface and wet, as far as the target and the shape have them.
 void read_amount(ObjectReader& reader, LayerTarget target, Layer& layer) {
+    if (target == LayerTarget::roughness) {
+        reader.required_number("manning", layer.top, 0, MANNING_MOST);
+        return;
+    }
     const bool cone = layer.shape.kind == ShapeKind::cone;
     int given = 0;
     const auto read = [&](const char* key, Amount amount, double least, double most) {
@@ -94,13 +101,13 @@ void read_noise(ObjectReader& reader, Shape& shape) {
 
 void read_shape(ObjectReader& reader, LayerTarget target, Layer& layer) {
     int kind = 0;
-    reader.choice("shape", SHAPE_NAMES, kind);
+    reader.choice("shape", target == LayerTarget::roughness ? REGION_NAMES : SHAPE_NAMES, kind);
     layer.shape.kind = static_cast<ShapeKind>(kind);
     if (reader.failed()) return;
     if (layer.shape.kind == ShapeKind::noise) return read_noise(reader, layer.shape);
     read_amount(reader, target, layer);
     read_outline(reader, layer.shape);
-    if (layer.amount == Amount::wet) return;
+    if (layer.amount == Amount::wet || target == LayerTarget::roughness) return;
     if (layer.shape.kind == ShapeKind::plane) {
         reader.number("slope_x", layer.shape.slope[0], -SIDE_SLOPE_MOST, SIDE_SLOPE_MOST);
         reader.number("slope_y", layer.shape.slope[1], -SIDE_SLOPE_MOST, SIDE_SLOPE_MOST);
@@ -132,7 +139,7 @@ void read_map_source(ObjectReader& reader, LayerTarget target, Layer& layer) {
         if (size[0] != map.size->first || size[1] != map.size->second) reader.fail("size", "must be whole numbers");
     }
     bool absolute = false;
-    if (target != LayerTarget::terrain) reader.boolean("absolute", absolute);
+    if (of_column(target)) reader.boolean("absolute", absolute);
     if (absolute) layer.amount = Amount::surface;
     layer.map = map;
 }
@@ -150,7 +157,7 @@ void read_combine(ObjectReader& reader, LayerTarget target, Layer& layer) {
         const Combine meaning[] = {Combine::set, Combine::max, Combine::min};
         layer.combine = meaning[combine];
     }
-    if (target == LayerTarget::terrain) return;
+    if (!of_column(target)) return;
     int where = 0;
     reader.choice("where", {"everywhere", "present"}, where);
     layer.only_present = where == 1;
@@ -196,7 +203,7 @@ std::vector<VelocityRegion> read_velocities(const Json& value, const std::string
         int kind = 0;
         reader.require("shape");
         reader.choice("shape", REGION_NAMES, kind);
-        region.shape.kind = static_cast<ShapeKind>(kind); // REGION_NAMES begin like SHAPE_NAMES
+        region.shape.kind = static_cast<ShapeKind>(kind);
         if (status) read_outline(reader, region.shape);
         reader.require("velocity");
         reader.pair("velocity", region.velocity, -SPEED_MOST, SPEED_MOST);

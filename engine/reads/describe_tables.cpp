@@ -115,7 +115,7 @@ bool takes_turns(std::string_view field) {
 }
 
 std::string describe_fields() {
-    const char* roles[] = {"state", "scratch", "ledger", "shapes", "tiles", "published"};
+    const char* roles[] = {"state", "scratch", "ledger", "fixed", "shapes", "tiles", "published"};
     std::string text = heading({"field", "role", "symbol", "place", "unit", "exists with", "meaning"});
     const auto table = field_table();
     for (std::size_t n = 0; n < table.size();) {

@@ -79,8 +79,12 @@ constexpr Effect effects[] = {
              std::any_of(s.sides.begin(), s.sides.end(), [](const Side& side) { return side.kind != SideKind::wall; });
          return {on, on ? "a side is open" : "all sides are walls"};
      }},
-    {row(EFFECT_BED_FRICTION), "bed_friction > 0",
-     [](const Settings& s, Content) { return above_zero("bed_friction", s.material.bed_friction); }},
+    {row(EFFECT_BED_FRICTION), "bed_friction or manning > 0, or the level has roughness",
+     [](const Settings& s, Content) -> Why {
+         if (s.material.manning > 0) return above_zero("manning", s.material.manning);
+         if (!s.roughness.empty()) return {true, "the level has roughness"};
+         return above_zero("bed_friction", s.material.bed_friction);
+     }},
     {row(EFFECT_BED_SHEAR), "bed_shear > 0",
      [](const Settings& s, Content) { return above_zero("bed_shear", s.material.bed_shear); }},
     {row(EFFECT_SLOPE_NORMAL), "slope_normal > 0",
@@ -92,6 +96,10 @@ constexpr Effect effects[] = {
      }},
     {row(EFFECT_RETENTION), "retention > 0",
      [](const Settings& s, Content) { return above_zero("retention", s.material.retention); }},
+    {row(EFFECT_ROUGHNESS), "the level has roughness",
+     [](const Settings& s, Content) -> Why {
+         return {!s.roughness.empty(), s.roughness.empty() ? "the level has none" : "the level has roughness"};
+     }},
 };
 
 constexpr Choice choices[] = {

@@ -44,6 +44,7 @@ std::uint64_t level_digest(const Settings& s) {
               edit.softness, edit.amount, edit.strength, edit.velocity_x, edit.velocity_y, time, every, until, move[0], move[1]})
             add(value);
     }
+    if (!s.roughness.empty()) sum.add(std::as_bytes(std::span(s.roughness)));
     return sum.value();
 }
 

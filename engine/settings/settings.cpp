@@ -240,6 +240,7 @@ Status validate(const InitialFields& fields, const Settings& settings) {
                                                                             {"sand_velocity_y", &fields.sand_velocity_y}};
     for (const auto& [name, field] : velocities)
         if (Status status = check_field(name, *field, grid, -SPEED_MOST, SPEED_MOST); !status) return status;
+    if (Status status = check_field("roughness", settings.roughness, grid, 0, MANNING_MOST); !status) return status;
 
     const std::size_t cells = static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny);
     for (std::size_t n = 0; n < cells; ++n) {

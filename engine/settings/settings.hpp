@@ -34,11 +34,12 @@ struct Material {
     double diffusion_rate = 0.01;
     double bed_shear = 0;
     double grain_size = 1e-3;
-    double bed_friction = 0;        // c of u/(1 + dt c |u|/h)
+    double bed_friction = 0;        // c of NUMERICS 2.4
     double slope_normal = 1;        // chi of NUMERICS 2.18
     double internal_friction = 0.4; // b of NUMERICS 2.18, a share of friction
     double sand_viscosity = 0.05;   // nu of NUMERICS 2.18, in the plane
     double retention = 0.4925;      // r of NUMERICS 2.19: W/hs that pores hold back
+    double manning = 0;             // n of NUMERICS 2.4
     friend bool operator==(const Material&, const Material&) = default;
 };
 
@@ -138,6 +139,8 @@ struct Settings {
     TimeSeries evaporation;                             // [m/s]
     std::vector<ScriptedEdit> edits;                    // at most 1000; the world queues them itself
     std::vector<std::pair<std::string, Force>> effects; // names of shaders/effect_rows.hpp
+    /// What each cell adds to material.manning, 0 ... 1 s/m^(1/3), in the order of InitialFields; empty = nothing.
+    std::vector<float> roughness;
     /// Tiles in which nothing changes any more are left out of a step. How a world is run, not what it is: every bit stays, also
     /// in snapshots and between worlds that have it and that do not.
     int active_tiles = 0;
@@ -163,7 +166,8 @@ double height_quantum(const Method& method);
 /// Checks every number; the message names the field as the level file writes it, its value and its range.
 Status validate(const Settings& settings);
 Status validate(const Material& material);
-/// Checks sizes and finiteness (the message gives the first bad cell), non-negative depths, the declared largest height.
+/// Checks sizes and finiteness (the message gives the first bad cell), non-negative depths, the declared largest height; of the
+/// settings their roughness.
 Status validate(const InitialFields& fields, const Settings& settings);
 
 } // namespace wadi

@@ -10,6 +10,20 @@ std::string scratch_label(int block) { return "scratch " + std::to_string(block)
 
 } // namespace
 
+std::vector<float> with_ghosts(const FieldLayout& layout, const std::vector<float>& cells, bool repeat_edges) {
+    std::vector<float> field(layout.size(), 0.0F);
+    if (cells.empty()) return field;
+    for (int j = -GHOST; j < layout.ny + 1 + GHOST; ++j) {
+        for (int i = -GHOST; i < layout.nx + 1 + GHOST; ++i) {
+            const int x = std::clamp(i, 0, layout.nx - 1), y = std::clamp(j, 0, layout.ny - 1);
+            if (repeat_edges || (x == i && y == j))
+                field[layout.index(i, j)] =
+                    cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(layout.nx) + static_cast<std::size_t>(x)];
+        }
+    }
+    return field;
+}
+
 FieldStore::FieldStore(WorldDevice& device, const Settings& settings)
     : device_(device), layout_{settings.grid.nx, settings.grid.ny},
       tile_columns_(settings.active_tiles > 0 ? FieldLayout::active_tiles(layout_.nx, settings.active_tiles) : 0),

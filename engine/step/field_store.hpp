@@ -6,6 +6,7 @@
 #include "engine/step/step_plan.hpp"
 #include <array>
 #include <set>
+#include <vector>
 
 namespace wadi {
 
@@ -17,6 +18,9 @@ struct KeptField {
     std::string name;
     std::uint64_t bytes = 0;
 };
+
+/// Numbers of cells, row 0 in the south, in a field's layout: ghosts hold 0 or repeat the edge's. All 0 for none.
+std::vector<float> with_ghosts(const FieldLayout& layout, const std::vector<float>& cells, bool repeat_edges);
 
 class FieldStore {
   public:

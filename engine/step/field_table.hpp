@@ -12,6 +12,7 @@ enum class FieldRole : std::uint8_t {
     state,     // lasts from step to step
     scratch,   // alive within one step
     ledger,    // counts quanta in and out
+    fixed,     // from the level, never changes
     shapes,    // of the sources
     tiles,     // active tiles; where there are two lists also as ..._water and ..._sand
     published, // in no plan: computed by a publish stage when it is read

@@ -9,20 +9,6 @@ namespace wadi {
 
 namespace {
 
-std::vector<float> with_ghosts(const FieldLayout& layout, const std::vector<float>& cells, bool repeat_edges) {
-    std::vector<float> field(layout.size(), 0.0F);
-    if (cells.empty()) return field;
-    for (int j = -GHOST; j < layout.ny + 1 + GHOST; ++j) {
-        for (int i = -GHOST; i < layout.nx + 1 + GHOST; ++i) {
-            const int x = std::clamp(i, 0, layout.nx - 1), y = std::clamp(j, 0, layout.ny - 1);
-            if (repeat_edges || (x == i && y == j))
-                field[layout.index(i, j)] =
-                    cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(layout.nx) + static_cast<std::size_t>(x)];
-        }
-    }
-    return field;
-}
-
 // Face velocities from cell-centred ones: the mean of the two cells; outer faces are walls until a side opens them.
 std::vector<float> to_faces(const FieldLayout& layout, const std::vector<float>& cells, bool along_x) {
     std::vector<float> field(layout.size(), 0.0F);

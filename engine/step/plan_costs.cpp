@@ -3,10 +3,16 @@
 
 namespace wadi {
 
+namespace {
+
+bool lasts(const PlanField& field) { return field.role == FieldRole::state || field.role == FieldRole::fixed; }
+
+} // namespace
+
 int StepPlan::field_buffers() const {
     int count = scratch_blocks;
     for (const auto& field : fields) {
-        if (field.role == FieldRole::state) count += field.ping_pong ? 2 : 1;
+        if (lasts(field)) count += field.ping_pong ? 2 : 1;
     }
     return count;
 }
@@ -14,7 +20,7 @@ int StepPlan::field_buffers() const {
 double StepPlan::bytes_per_cell() const {
     int bytes = 4 * scratch_blocks;
     for (const auto& field : fields)
-        if (field.role == FieldRole::state) bytes += field.element_bytes() * (field.ping_pong ? 2 : 1);
+        if (lasts(field)) bytes += field.element_bytes() * (field.ping_pong ? 2 : 1);
     return bytes;
 }
 
@@ -26,7 +32,7 @@ double StepPlan::traffic_per_cell() const {
         if (stage.extent != cells && stage.extent != faces && stage.extent != strips) return;
         for (std::size_t n = 0; n < pass.fields.size(); ++n) {
             const auto* field = pass.fields[n].empty() ? nullptr : find(base_name(pass.fields[n]));
-            if (field == nullptr || (field->role != FieldRole::state && field->role != FieldRole::scratch)) continue;
+            if (field == nullptr || (!lasts(*field) && field->role != FieldRole::scratch)) continue;
             moved += times * field->element_bytes() * (stage.bindings[n].access == compute::Access::inout ? 2 : 1);
         }
     };
@@ -38,7 +44,7 @@ double StepPlan::traffic_per_cell() const {
 double StepPlan::least_traffic_per_cell() const {
     double moved = 0;
     for (const auto& field : fields)
-        if (field.role == FieldRole::state) moved += field.element_bytes() * (field.name == "terrain" ? 1 : 2);
+        if (lasts(field)) moved += field.element_bytes() * (field.ping_pong ? 2 : 1);
     return moved;
 }
 

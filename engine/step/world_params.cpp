@@ -93,6 +93,8 @@ WorldParams derive_params(const Settings& s) {
     p.rest_velocity = rest ? f(w.rest_velocity) : -1.0F;
     p.diffusion_number = f(std::min(m.diffusion_rate, 0.2 * dx * dx / dt) * dt / (dx * dx));
     p.bed_friction_dt = f(dt * m.bed_friction);
+    p.manning = f(m.manning);
+    p.gravity_dt = f(dt * s.gravity);
     const double submerged = std::max(m.sand_density / m.water_density - 1, 0.05) * s.gravity; // (s - 1) g
     p.bed_shear = f(m.bed_shear);
     p.bed_shear_dt = f(dt * m.bed_shear);

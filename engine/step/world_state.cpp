@@ -46,6 +46,12 @@ Status WorldState::set_effects(const EffectChoice& effects) {
     if (auto status = check_device(effects.mask); !status) return status;
     StepPlan plan = plan_for(effects.mask);
     if (auto status = fields_.set_plan(plan); !status) return status;
+    if (plan.find("roughness") != nullptr) {
+        if (auto status = fields_.write("roughness", 0, with_ghosts(layout_, settings_.roughness, true)); !status) {
+            if (auto back = fields_.set_plan(plan_); !back) return back;
+            return status;
+        }
+    }
     plan_ = std::move(plan);
     effects_ = effects;
     derive();

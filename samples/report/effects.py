@@ -30,13 +30,15 @@ SHOWN = {
     "open_sides": ("beach", (160, 128), 28, {}, "No waves come in."),
     "bed_friction": ("letters", (160, 80), 5, {"material": {"bed_friction": 0.1}}, "The wave runs further over the ground."),
     "bed_shear": ("spring", (128, 128), 8, {}, "Clear water slides over the sand: a small pit in place of a wide crater."),
+    "roughness": ("letters", (160, 80), 5, {"roughness": [{"shape": "box", "from": [0, 0], "to": [64, 16], "manning": 0.1}]},
+                  "The wave runs over the southern half as far as over the northern one."),
     "slope_normal": ("dam_break", (96, 96), 3, {}, "Friction as on level ground: the dry column runs out further, to a flatter cone."),
     "internal_friction": ("piles", (168, 112), 5.4, {}, "Sand that spreads does not rub within: the dry pile and the soaked ones run further."),
     "retention": ("piles", (168, 112), 5.4, {}, "All pore water flows: damp piles stand in puddles of their own, the one at 0.45 sheds a ring of sand."),
 }
-NEEDED_BY = {"water": ("mixture", "diffusion", "drag", "cohesion", "rain", "bed_friction", "bed_shear", "sources", "open_sides", "retention"),
+NEEDED_BY = {"water": ("mixture", "diffusion", "drag", "cohesion", "rain", "bed_friction", "roughness", "bed_shear", "sources", "open_sides", "retention"),
              "sand": ("mixture", "diffusion", "drag", "elastoplastic", "cohesion", "bed_shear", "slope_normal", "internal_friction", "retention"),
-             "mixture": ("diffusion", "bed_shear", "retention"), "drag": ("retention",), "elastoplastic": ("cohesion",)}
+             "mixture": ("diffusion", "bed_shear", "retention"), "drag": ("retention",), "bed_friction": ("roughness",), "elastoplastic": ("cohesion",)}
 LEAST_PIXELS, LEAST_ERROR = 1.0, 0.2  # [%]: a pair differs from here on, to the eye and in its fields
 
 

@@ -92,7 +92,7 @@ const std::map<std::string, std::vector<Switch>> switches = {
     {"elastoplastic", {{"young_modulus", 2e5}}},
     {"drag", {{"exchange_rate", 1e5}}},
     {"diffusion", {{"diffusion_rate", 0.01}}},
-    {"bed_friction", {{"bed_friction", 0.02}}},
+    {"bed_friction", {{"bed_friction", 0.02}, {"manning", 0}}},
     {"bed_shear", {{"bed_shear", 0.01}}},
     {"slope_normal", {{"slope_normal", 1}}},
     {"internal_friction", {{"internal_friction", 0.4}, {"sand_viscosity", 0.05}}},

@@ -21,6 +21,7 @@ template <class Real> const Field<Real>* cell_field(const Solver<Real>& s, const
         {"saturation", &s.saturation},   {"mixed_predicted", &s.mixed_predicted},
         {"stress_xx", &s.sxx},           {"stress_xy", &s.sxy},
         {"stress_yy", &s.syy},           {"cohesive_share", &s.cohesive_share},
+        {"roughness", &s.roughness},
     };
     const auto found = fields.find(base);
     return found == fields.end() ? nullptr : found->second;

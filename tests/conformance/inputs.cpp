@@ -274,6 +274,7 @@ Result<Scene> make_scene(const std::string& grid, const std::string& name, const
     s.material.cohesion_capillary = 1e4;
     s.material.exchange_rate = 3e4;
     s.material.bed_friction = 0.01;
+    s.material.manning = 0.02;
     s.material.bed_shear = 0.05;
     s.material.slope_normal = 1;
     s.material.internal_friction = 0.4;
@@ -293,6 +294,8 @@ Result<Scene> make_scene(const std::string& grid, const std::string& name, const
         return error(Code::bad_argument, "scene=" + name + ": no such scene");
     }
     add_rim(scene);
+    for (int n = 0; (effects & EFFECT_ROUGHNESS) != 0 && n < s.grid.nx * s.grid.ny; ++n)
+        s.roughness.push_back(0.03F * (1 + band_limited(41, n % s.grid.nx, n / s.grid.nx)));
     for (const auto& effect : effect_table())
         s.effects.emplace_back(effect.name, (effects & effect.bit) != 0 ? Force::on : Force::off);
     if (auto status = validate(s); !status) return status;
@@ -307,7 +310,8 @@ Result<Scene> make_large_scene(int size, std::uint32_t effects) {
     scene->settings.grid.nx = scene->settings.grid.ny = size;
     add_rim(*scene);
     auto& f = scene->fields;
-    for (auto* field : {&f.terrain, &f.sand, &f.water, &f.velocity_x, &f.velocity_y, &f.sand_velocity_x, &f.sand_velocity_y}) {
+    for (auto* field : {&f.terrain, &f.sand, &f.water, &f.velocity_x, &f.velocity_y, &f.sand_velocity_x, &f.sand_velocity_y,
+                        &scene->settings.roughness}) {
         const std::vector<float> small = std::move(*field);
         field->clear();
         field->reserve(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));

@@ -1,4 +1,5 @@
 #include "tests/conformance/pass_runner.hpp"
+#include "engine/step/field_store.hpp"
 #include "engine/step/half.hpp"
 #include "engine/step/step_inputs.hpp"
 #include "engine/step/world_params.hpp"
@@ -75,6 +76,10 @@ Status PassRunner::open() {
         if (field.half) std::transform(values.begin(), values.end(), halves.begin(), to_half);
         const auto bytes = field.half ? std::as_bytes(std::span(halves)) : std::as_bytes(std::span(values));
         if (auto status = device_.write(buffer(field.name), 0, bytes); !status) return status;
+    }
+    if (plan_.find("roughness") != nullptr) {
+        const auto values = with_ghosts(layout(), scene_.settings.roughness, true);
+        if (auto status = device_.write(buffer("roughness"), 0, std::as_bytes(std::span(values))); !status) return status;
     }
     if (plan_.find("source_shapes") == nullptr) return ok_status();
     const auto shapes = source_shapes(scene_.settings);

@@ -59,6 +59,7 @@ Scene image_of(const Scene& scene, Symmetry symmetry) {
     if (transpose) std::swap(s.grid.nx, s.grid.ny);
     for (auto member : {&InitialFields::terrain, &InitialFields::sand, &InitialFields::water})
         image.fields.*member = image_of(scene.fields.*member, grid, symmetry, 1);
+    s.roughness = image_of(scene.settings.roughness, grid, symmetry, 1);
     const auto& f = scene.fields;
     image_vector(f.velocity_x, f.velocity_y, grid, symmetry, image.fields.velocity_x, image.fields.velocity_y);
     image_vector(f.sand_velocity_x, f.sand_velocity_y, grid, symmetry, image.fields.sand_velocity_x,

@@ -238,6 +238,8 @@ Case make_case(std::uint64_t seed) {
     make_sand_laws(random, s);
     if (random.chance(0.3)) s.method.prestress = true;
     if (random.chance(0.3) && !s.method.half_storage) s.method.sand_transport_order = 2;
+    if (random.chance(0.2)) s.material.manning = random.log(1e-3, 1);
+    if (random.chance(0.1)) s.roughness = drawn(s.grid, relief(random, s.grid, random.log(1e-3, 1)));
     return c;
 }
 

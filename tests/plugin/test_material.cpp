@@ -68,12 +68,14 @@ std::vector<unsigned char> log_of(const AbiWorld& world) {
 
 // Other values that show, effects switched on and off among them.
 const std::map<std::string, double> showing = {
-    {"water_density", 1100},     {"sand_density", 2600},   {"friction", 0.05},      {"young_modulus", 0},
-    {"poisson_ratio", 0.1},      {"yield_friction", 1.2},  {"cohesion_dry", 900},   {"cohesion_wet", 100},
-    {"cohesion_capillary", 150}, {"exchange_rate", 0},     {"diffusion_rate", 0},   {"bed_friction", 0.3},
-    {"bed_shear", 0.5},          {"grain_size", 0.1}, // needs bed_shear to show
-    {"slope_normal", 0.5},       {"internal_friction", 0}, {"sand_viscosity", 0},   {"retention", 0.1},
-    {"saturation[0]", 0.02},     {"saturation[1]", 0.3},   {"saturation[2]", 0.49},
+    {"water_density", 1100}, {"sand_density", 2600},   {"friction", 0.05},
+    {"young_modulus", 0},    {"poisson_ratio", 0.1},   {"yield_friction", 1.2},
+    {"cohesion_dry", 900},   {"cohesion_wet", 100},    {"cohesion_capillary", 150},
+    {"exchange_rate", 0},    {"diffusion_rate", 0},    {"bed_friction", 0.3},
+    {"bed_shear", 0.5},      {"grain_size", 0.1}, // needs bed_shear to show
+    {"slope_normal", 0.5},   {"internal_friction", 0}, {"sand_viscosity", 0},
+    {"retention", 0.1},      {"manning", 0.2},         {"saturation[0]", 0.02},
+    {"saturation[1]", 0.3},  {"saturation[2]", 0.49},
 };
 
 /// Another value for every number.

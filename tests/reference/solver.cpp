@@ -42,6 +42,7 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
     P.phi3 = static_cast<Real>(material.saturation[2]);
     P.exchange = has(EFFECT_DRAG) ? static_cast<Real>(material.exchange_rate) : Real(0);
     P.bed_friction = has(EFFECT_BED_FRICTION) ? static_cast<Real>(material.bed_friction) : Real(0);
+    P.manning = has(EFFECT_BED_FRICTION) ? static_cast<Real>(material.manning) : Real(0);
     P.bed_shear = has(EFFECT_BED_SHEAR) ? static_cast<Real>(material.bed_shear) : Real(0);
     const double submerged = std::max(material.sand_density / material.water_density - 1, 0.05) * world.gravity;
     P.bed_threshold = static_cast<Real>(0.047 * submerged * material.grain_size);
@@ -84,6 +85,10 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
         faces->x.assign((nx + 1) * ny, Real(0));
         faces->y.assign(nx * (ny + 1), Real(0));
     }
+    roughness.assign(nx * ny, Real(0));
+    if (has(EFFECT_ROUGHNESS))
+        std::transform(world.roughness.begin(), world.roughness.end(), roughness.begin(),
+                       [](float n) { return static_cast<Real>(n); });
     source_totals_.assign(world.sources.size(), 0.0);
 }
 

@@ -22,7 +22,8 @@ template <class Real> struct Constants {
     Real phi1{}, phi2{}, phi3{};      // saturation
     Real exchange{};                  // c_e [kg/(m3 s)], 0 without the drag effect
     Real diffusion{};                 // min(c_d, 0.2 dx2/dt) [m2/s]
-    Real bed_friction{};              // Manning-like, 0 without its effect
+    Real bed_friction{};              // c of Chezy's law, 0 without its effect
+    Real manning{};                   // n of the material [s/m^(1/3)]
     Real bed_shear{};                 // c, 0 without its effect
     Real bed_threshold{}, bed_rate{}; // [m2/s2], [s2/m]
     Real lambda{}, shear{};           // Lame constants [Pa], capped (2.7)
@@ -123,6 +124,7 @@ template <class Real> class Solver {
     Field<Real> sxx, sxy, syy;                    // Cauchy stress [Pa]
     Field<Real> cohesive_share;                   // w of 2.18, 0 without elastoplastic
     Faces<Real> friction_limit, withheld_push;    // 2.18: N, k_sand g_f (1 - C r) d [m/s]
+    Field<Real> roughness;                        // of each cell beyond P.manning [s/m^(1/3)]
     Faces<Real> ghost_water;                      // depth outside the open sides [m], on boundary faces
 
     // What sources, rain and open sides added, as sums of depths [m]: exact in double with a quantum.

@@ -112,6 +112,9 @@ void Solver<Real>::water_face(const Faces<Real>& pure_old, const Faces<Real>& mi
     if (mean(sand[L], sand[R]) > P.eps) grip += P.bed_shear;
     const Real across = across_face(pure_old, ax, a, b);
     const Real depth = mean(pure[L], pure[R]);
+    const Real n_L = P.manning + roughness[L];
+    const Real n_R = P.manning + roughness[R];
+    if (depth > Real(0)) grip += P.gravity * mean(n_L * n_L, n_R * n_R) / std::cbrt(depth);
     if (grip > Real(0) && depth > Real(0)) uw = rubbed(uw, across, std::hypot(before, across), P.dt * grip / depth);
     uw = shortened(uw, across, P.clamp);
 

@@ -16,6 +16,7 @@ Scene dry_valley(bool open) {
     auto scene = mixed_scene(28, 24);
     scene.fields.sand.clear();
     scene.fields.water.clear();
+    for (int n = 0; n < 28 * 24; ++n) scene.settings.roughness.push_back(0.002F * static_cast<float>(n % 28)); // waits for water
     if (open) scene.settings.sides[SIDE_EAST].kind = SideKind::outflow;
     return scene;
 }

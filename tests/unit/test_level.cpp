@@ -195,6 +195,26 @@ TEST_CASE("level: velocities by shape") {
     CHECK(at(level, level.fields.sand_velocity_x, 5, 4) == 0);
 }
 
+TEST_CASE("level: roughness by shapes and maps, added to that of the material and unrounded") {
+    const Level level = must(parse(R"("material": {"manning": 0.02}, "roughness": [{"shape": "plane", "manning": 0.01},
+        {"shape": "box", "from": [0, 0], "to": [5, 8], "manning": 0.05},
+        {"shape": "cylinder", "center": [5, 4], "radius": 1, "manning": 0.1, "combine": "set"}])"));
+    CHECK(at(level, level.settings.roughness, 8, 4) == doctest::Approx(0.01));
+    CHECK(at(level, level.settings.roughness, 2, 2) == doctest::Approx(0.06));
+    CHECK(at(level, level.settings.roughness, 4, 4) == doctest::Approx(0.1));
+    CHECK(must(parse(R"("material": {"manning": 0.02})")).settings.roughness.empty());
+
+    const Folder folder;
+    folder.write("grey.png", map_files::png16(2, 2, {0, 65535, 65535, 0}));
+    folder.write("n.npy", map_files::npy(map_files::dictionary("<f4", "(2, 2)"), std::vector<float>{0.03f, 0, 0.011f, 1}));
+    const auto mapped = [&](const std::string& layer) {
+        const auto text = level_text::level("\"roughness\": [" + layer + "]", R"({"nx": 2, "ny": 2, "dx": 1})");
+        return must(parse_level(text, folder.path(), {})).settings.roughness;
+    };
+    CHECK(mapped(R"({"file": "n.npy"})") == std::vector<float>{0.03f, 0, 0.011f, 1});
+    CHECK(mapped(R"({"file": "grey.png", "min": 0.25, "max": 0.5})") == std::vector<float>{0.5f, 0.25f, 0.25f, 0.5f});
+}
+
 TEST_CASE("level: maps") {
     const Folder folder;
     folder.write("grey.png", map_files::png16(2, 2, {0, 65535, 65535, 0})); // north row first

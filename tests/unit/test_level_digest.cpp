@@ -43,6 +43,16 @@ TEST_CASE("level digest: of a level that sets everything") {
     CHECK_MESSAGE(level_digest(half->settings) == 17579839823785085496u, level_digest(half->settings));
 }
 
+TEST_CASE("level digest: roughness counts, cell by cell") {
+    Settings none;
+    none.grid = {2, 1, 0.5};
+    Settings some = none, other = none;
+    some.roughness = {0.01F, 0.02F};
+    other.roughness = {0.02F, 0.01F};
+    CHECK(level_digest(some) != level_digest(none));
+    CHECK(level_digest(some) != level_digest(other));
+}
+
 TEST_CASE("level digest: every row that the digest covers changes it, no other does") {
     Settings normal;
     normal.grid = {20, 10, 0.5};

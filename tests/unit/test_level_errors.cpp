@@ -119,6 +119,13 @@ TEST_CASE("level errors: layers") {
     refuses(R"("velocities": [{"of": "water", "shape": "plane"}])", "velocities[0].velocity: missing");
     refuses(R"("velocities": [{"of": "water", "shape": "plane", "velocity": [1, 1e5]}])",
             "velocities[0].velocity[1]: 100000 is outside");
+    refuses(R"("roughness": [{"shape": "plane"}])", "roughness[0].manning: missing");
+    refuses(R"("roughness": [{"shape": "plane", "manning": 2}])", "roughness[0].manning: 2 is outside 0 ... 1");
+    refuses(R"("roughness": [{"shape": "plane", "height": 0.1, "manning": 0.1}])", "roughness[0].height: unknown key");
+    refuses(R"("roughness": [{"shape": "cone", "manning": 0.1}])", "roughness[0].shape: \"cone\" is not known");
+    refuses(R"("roughness": [{"shape": "plane", "manning": 0.1, "where": "present"}])", "roughness[0].where: unknown key");
+    refuses(R"("roughness": [{"shape": "plane", "manning": 0.1, "combine": "subtract"}])",
+            "roughness: -0.1 is outside 0 ... 1 in cell (0, 0)");
     refuses(R"("terrain": [{"shape": "plane", "height": 17}])", "terrain: 17 is outside -16 ... 16 in cell (0, 0)");
     refuses(R"("terrain": [{"shape": "plane", "height": 15}], "sand": [{"shape": "plane", "height": 2}])",
             "cell (0, 0) is 17 m high, above method.largest_height, 16 m");

@@ -575,13 +575,13 @@ typedef struct wadi_material_info {
  *  not wait. */
 WADI_API wadi_result wadi_world_get_material(wadi_world_id world, wadi_material_info* infos, uint32_t* count);
 /** Changes one of them from the next whole step on, in the level's units. Effects follow as for a level with that value: 0 in
- *  young_modulus, exchange_rate, diffusion_rate, bed_friction or bed_shear drops its effect (and the strain of the sand with
- *  elastoplastic), a value above 0 brings it, which allocates. Where effects stay, no pipeline is made: the step is recorded anew, once
- *  per change. Ahead of the first step the world becomes that of a level with the value, in every bit; later, sand keeps the strain
- *  that it has (with method.prestress, that in balance with the material it was drawn with). Waits for the device. The command log
- *  has it; snapshots and kept steps hold the values of their moment and bring them back. The level's warnings are not asked again.
- *  Errors, nothing changed: NOT_FOUND (name), BAD_ARGUMENT (out of range, NaN, saturations out of order, or a number of an effect
- *  that the level forces off: the message says which), OUT_OF_MEMORY, NOT_READY (inside a recording), DEVICE_LOST. */
+ *  young_modulus, exchange_rate, diffusion_rate, bed_friction and manning, or bed_shear drops its effect (and the strain of the sand with
+ *  elastoplastic), a value above 0 brings it, which allocates. Where effects stay, no pipeline is made: the step is recorded anew, once per
+ *  change. Ahead of the first step the world becomes that of a level with the value, in every bit; later, sand keeps the strain that it has
+ *  (with method.prestress, that in balance with the material it was drawn with). Waits for the device. The command log has it; snapshots
+ *  and kept steps hold the values of their moment and bring them back. The level's warnings are not asked again. Errors, nothing changed:
+ *  NOT_FOUND (name), BAD_ARGUMENT (out of range, NaN, saturations out of order, or a number of an effect that the level forces off: the
+ *  message says which), OUT_OF_MEMORY, NOT_READY (inside a recording), DEVICE_LOST. */
 WADI_API wadi_result wadi_world_set_material(wadi_world_id world, const char* name, double value);
 
 /** Reads a field in a region within the grid, count = nx * ny floats; waits for the steps asked for. Errors: BAD_ARGUMENT. */

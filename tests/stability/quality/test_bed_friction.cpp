@@ -34,7 +34,9 @@ Stream stream_on_plane(const Material& material, double angle, double dt) {
 }
 
 /// c of the stress rho_w c |u|^2 on the bed under water of this depth [m].
-double resistance(const Material& material, double) { return material.bed_friction; }
+double resistance(const Material& material, double depth) {
+    return material.bed_friction + earth * material.manning * material.manning / std::cbrt(depth);
+}
 
 constexpr double stream_length = 1000, stream_discharge = 2; // [m], [m2/s]
 
@@ -86,6 +88,22 @@ Material chezy(double c) {
     return material;
 }
 
+Material manning(double n) {
+    Material material;
+    material.manning = n;
+    return material;
+}
+
+/// A film at rest on a plane that falls towards 30 degrees.
+Scene film(int n) {
+    auto scene = flat_scene(n, n, 2, 0.1);
+    scene.settings.method.quantum = 0;
+    scene.fill(scene.fields.terrain,
+               [](double x, double y) { return 8 - film_slope * (x * std::cos(30 * degree) + y * std::sin(30 * degree)); });
+    scene.fill(scene.fields.water, [](double, double) { return film_depth; });
+    return scene;
+}
+
 } // namespace
 
 TEST_CASE("bed friction: a stream runs down the fall line at Chezy's speed, however the plane lies to the grid") {
@@ -111,10 +129,79 @@ TEST_CASE("bed friction: uniform flow is the same at any time step") {
 }
 
 TEST_CASE("bed friction: a stream that turns fast keeps the depth that its bed was made for, to second order") {
-    for (const int n : {100, 200}) {
-        const double first = stream_error(chezy(0.005), 1, n), second = stream_error(chezy(0.005), 2, n);
-        MESSAGE("stream, " << n << " cells: order 1 " << 100 * first << " %, order 2 " << 100 * second << " %");
-        CHECK(second < 1e-4);
-        CHECK(second < first / 10);
+    for (const auto& [law, material] : {std::pair{"Chezy", chezy(0.005)}, std::pair{"Manning", manning(0.02)}}) {
+        for (const int n : {100, 200}) {
+            const double first = stream_error(material, 1, n), second = stream_error(material, 2, n);
+            MESSAGE(std::string(law) << ", " << n << " cells: order 1 " << 100 * first << " %, order 2 " << 100 * second << " %");
+            CHECK(second < 1e-4);
+            CHECK(second < first / 10);
+        }
+    }
+}
+
+TEST_CASE("bed friction: Manning's law and Chezy's beside it, on planes at any angle and time step") {
+    for (const double n : {0.03, 0.1}) {
+        const double exact = std::cbrt(film_depth * film_depth) * std::sqrt(film_slope) / n;
+        for (const double dt : {0.025, 0.1}) {
+            const auto found = stream_on_plane(manning(n), 30, dt);
+            MESSAGE("n = " << n << ", dt " << dt << " s: " << found.speed << " of " << exact << " m/s at " << found.direction);
+            CHECK(std::abs(found.speed / exact - 1) < 0.001);
+            CHECK(std::abs(found.direction - 30) < 0.05);
+        }
+    }
+    auto both = manning(0.03);
+    both.bed_friction = 0.01;
+    const double exact = std::sqrt(earth * film_depth * film_slope / resistance(both, film_depth));
+    CHECK(std::abs(stream_on_plane(both, 45, 0.1).speed / exact - 1) < 0.001);
+    CHECK(std::abs(stream_on_plane(manning(0.03), 45, 0.1).speed / exact - 1) > 0.2); // control
+}
+
+TEST_CASE("bed friction: a channel runs at Manning's normal depth") {
+    const int n = 200;
+    const double dx = 5, dt = 0.2, discharge = 1, slope = 0.004, rough = 0.03;
+    const double normal = std::pow(discharge * rough / std::sqrt(slope), 0.6);
+    auto scene = flat_scene(n, 1, dx, dt);
+    scene.settings.material = manning(rough);
+    scene.settings.sides[SIDE_WEST] = {SideKind::discharge, 0, 1e30, {{{0, discharge * dx}}}};
+    scene.settings.sides[SIDE_EAST].kind = SideKind::outflow;
+    scene.fill(scene.fields.terrain, [&](double x, double) { return 4 - slope * x; });
+    auto world = make_world(scene); // dry
+    step(*world, static_cast<int>(std::lround(3000 / dt)));
+    const double depth = cells_of(*world, "water_height").at(n / 2, 0);
+    MESSAGE("depth " << depth << " of " << normal << " m");
+    CHECK(std::abs(depth / normal - 1) < 0.01);
+    CHECK(std::abs(depth / std::pow(discharge * 0.031 / std::sqrt(slope), 0.6) - 1) > 0.01); // control
+}
+
+TEST_CASE("bed friction: each cell's own roughness, on every backend") {
+    const int n = 120;
+    auto uniform = film(n), mapped = film(n), halves = film(n);
+    uniform.settings.material = manning(0.03F); // the same number as a float and as a double
+    mapped.settings.roughness.assign(n * n, 0.03F);
+    halves.settings.material = manning(0.03F);
+    halves.settings.roughness.resize(n * n);
+    for (int c = 0; c < n * n; ++c) halves.settings.roughness[static_cast<std::size_t>(c)] = c % n < n / 2 ? 0.02F : 0;
+    std::uint64_t hash = 0;
+    for (const auto& backend : available_backends()) {
+        CAPTURE(backend);
+        auto a = make_world(uniform, {.backend = backend}), b = make_world(mapped, {.backend = backend});
+        CHECK((a->plan().effects & EFFECT_ROUGHNESS) == 0);
+        CHECK((b->plan().effects & EFFECT_ROUGHNESS) != 0);
+        for (auto* world : {a.get(), b.get()}) step(*world, 40);
+        CHECK(hash_of(*a) == hash_of(*b));
+        auto c = make_world(halves, {.backend = backend});
+        step(*c, 40);
+        if (hash == 0) hash = hash_of(*c);
+        CHECK(hash_of(*c) == hash);
+        CHECK(hash_of(*c) != hash_of(*a));
+    }
+    auto world = make_world(halves);
+    step(*world, 250);
+    const auto u = cells_of(*world, "water_velocity_x"), v = cells_of(*world, "water_velocity_y");
+    for (const auto& [i, rough] : {std::pair{n / 4, 0.05}, std::pair{3 * n / 4, 0.03}}) {
+        const double exact = std::cbrt(film_depth * film_depth) * std::sqrt(film_slope) / rough;
+        const double speed = std::hypot(u.at(i, n / 2), v.at(i, n / 2));
+        MESSAGE("n = " << rough << ": " << speed << " of " << exact << " m/s");
+        CHECK(std::abs(speed / exact - 1) < 0.005);
     }
 }
