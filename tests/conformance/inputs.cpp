@@ -308,6 +308,7 @@ Result<Scene> make_large_scene(int size, std::uint32_t effects) {
     auto scene = make_scene("256x256", "random", "default", effects);
     if (!scene) return scene;
     scene->settings.grid.nx = scene->settings.grid.ny = size;
+    if ((effects & EFFECT_ROUGHNESS) == 0) scene->settings.material.manning = 0; // as in most levels, whose time is meant
     add_rim(*scene);
     auto& f = scene->fields;
     for (auto* field : {&f.terrain, &f.sand, &f.water, &f.velocity_x, &f.velocity_y, &f.sand_velocity_x, &f.sand_velocity_y,
