@@ -210,6 +210,7 @@ wadi_result wadi_create_world_from_arrays(const wadi_world_arrays* arrays, const
         copy(level->fields.water, arrays->water);
         copy(level->fields.velocity_x, arrays->velocity_x);
         copy(level->fields.velocity_y, arrays->velocity_y);
+        copy(level->settings.roughness, arrays->roughness);
         level->warnings = level_warnings(level->settings, level->fields);
         return host(std::move(level), options, world);
     });

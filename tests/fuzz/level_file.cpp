@@ -90,6 +90,12 @@ Json edit_of(const Edit& edit, double dt) {
     return json;
 }
 
+// By their names in a level.
+std::vector<std::pair<std::string, const std::vector<float>*>> maps_of(const Case& c) {
+    const auto& f = c.scene.fields;
+    return {{"terrain", &f.terrain}, {"sand", &f.sand}, {"water", &f.water}, {"roughness", &c.scene.settings.roughness}};
+}
+
 Json level_of(const Case& c) {
     const auto& s = c.scene.settings;
     const auto& f = c.scene.fields;
@@ -98,8 +104,8 @@ Json level_of(const Case& c) {
     json["name"] = "fuzz " + std::to_string(c.seed);
     write_rows(json, s);
     json["duration"] = c.steps * s.dt;
-    for (const auto& [name, field] : {std::pair{"terrain", &f.terrain}, {"sand", &f.sand}, {"water", &f.water}})
-        if (!field->empty()) json[name] = Json::array({{{"file", std::string(name) + ".npy"}}});
+    for (const auto& [name, field] : maps_of(c))
+        if (!field->empty()) json[name] = Json::array({{{"file", name + ".npy"}}});
     Json velocities = Json::array();
     const auto velocity = [&](const char* of, const std::vector<float>& x, const std::vector<float>& y) {
         if (!x.empty())
@@ -131,9 +137,8 @@ Json level_of(const Case& c) {
 Status write_level(const Case& c, const std::string& folder) {
     std::error_code failure;
     std::filesystem::create_directories(folder, failure);
-    const auto& f = c.scene.fields;
     bool good = !failure;
-    for (const auto& [name, field] : {std::pair{"terrain", &f.terrain}, {"sand", &f.sand}, {"water", &f.water}})
+    for (const auto& [name, field] : maps_of(c))
         if (!field->empty()) good = good && write_npy(folder + "/" + name + ".npy", *field, c.scene.settings.grid);
     std::ofstream out(folder + "/level.json");
     out << level_of(c).dump(2) << "\n";

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <doctest/doctest.h>
 #include <fstream>
+#include <limits>
 #include <string>
 #include <vector>
 #include <wadi/wadi.h>
@@ -43,6 +44,51 @@ struct Pond {
 };
 
 } // namespace
+
+TEST_CASE("roughness from arrays is that of a level, kept through a snapshot, and refused out of range") {
+    const auto made = [](const wadi_world_arrays& arrays) {
+        wadi_world_id id{};
+        const auto options = cpu_device();
+        REQUIRE_MESSAGE(wadi_create_world_from_arrays(&arrays, &options, &id) == WADI_OK, std::string(wadi_get_last_error()));
+        return id;
+    };
+    const auto hash_after = [](wadi_world_id id, uint32_t steps) {
+        uint64_t hash = 0;
+        REQUIRE(wadi_world_step(id, steps) == WADI_OK);
+        REQUIRE(wadi_world_get_hash(id, &hash) == WADI_OK);
+        return hash;
+    };
+    std::vector<float> terrain, water, rough(16 * 12, 0.25F);
+    auto arrays = pond(terrain, water);
+    const wadi_world_id smooth = made(arrays);
+    std::string text = POND;
+    text.insert(text.size() - 1, R"(, "roughness": [{"shape": "plane", "manning": 0.25}])");
+    arrays.settings_json = text.c_str();
+    const wadi_world_id drawn = made(arrays);
+    arrays.settings_json = POND;
+    arrays.roughness = rough.data();
+    const wadi_world_id given = made(arrays), later = made(arrays);
+    const uint64_t hash = hash_after(given, 30);
+    CHECK(hash_after(drawn, 30) == hash);
+    CHECK(hash_after(smooth, 30) != hash);
+
+    size_t size = 0;
+    REQUIRE(wadi_world_save(given, nullptr, &size) == WADI_OK);
+    std::vector<unsigned char> saved(size);
+    REQUIRE(wadi_world_save(given, saved.data(), &size) == WADI_OK);
+    CHECK(wadi_world_load(smooth, saved.data(), size) != WADI_OK); // another level
+    REQUIRE_MESSAGE(wadi_world_load(later, saved.data(), size) == WADI_OK, std::string(wadi_get_last_error()));
+    CHECK(hash_after(later, 20) == hash_after(given, 20));
+
+    for (const float wrong : {-0.01F, 1.5F, std::numeric_limits<float>::quiet_NaN()}) {
+        rough[17] = wrong;
+        wadi_world_id none{};
+        const auto options = cpu_device();
+        CHECK(wadi_create_world_from_arrays(&arrays, &options, &none) == WADI_ERROR_BAD_ARGUMENT);
+        CHECK(std::string(wadi_get_last_error()).find("in cell (1, 1)") != std::string::npos);
+    }
+    for (const wadi_world_id id : {smooth, drawn, given, later}) wadi_destroy_world(id);
+}
 
 TEST_CASE("a world from arrays steps, reads back and keeps its ledger") {
     const Pond world;

@@ -123,8 +123,8 @@ WADI_API wadi_result wadi_list_accuracy_presets(wadi_accuracy_preset* presets, u
 WADI_API wadi_result wadi_create_world_from_level(const char* path, const wadi_level_overrides* overrides,
                                                   const wadi_device_options* options, wadi_world_id* world);
 
-/** A world from arrays: settings as the text of a level file without its "terrain", "sand", "water" and "velocity"
- *  entries, and fields of nx * ny floats. NULL = zero everywhere. */
+/** A world from arrays: settings as the text of a level file without its "terrain", "sand", "water", "velocities"
+ *  and "roughness" entries, and fields of nx * ny floats. NULL = zero everywhere. */
 typedef struct wadi_world_arrays {
     uint32_t struct_size;
     const char* settings_json; /* must not be NULL */
@@ -134,6 +134,7 @@ typedef struct wadi_world_arrays {
     const float* water;        /* depth [m] */
     const float* velocity_x;   /* water, at cell centres [m/s] */
     const float* velocity_y;
+    const float* roughness;    /* what cells add to material.manning, 0 ... 1 [s/m^(1/3)] */
 } wadi_world_arrays;
 WADI_API wadi_world_arrays wadi_default_world_arrays(void);
 WADI_API wadi_result wadi_create_world_from_arrays(const wadi_world_arrays* arrays, const wadi_device_options* options,
