@@ -16,16 +16,21 @@ struct Stream {
 
 constexpr double film_depth = 0.1, film_slope = 0.025; // [m], 1
 
+/// Whether the film runs on the ground, or on a bed of sand whose pores are full.
+enum class Bed { ground, sand };
+
 /// The middle of a film that starts at rest on a plane falling towards `angle` [degrees from east], after 40 s, before anything
 /// from the sides has come there.
-Stream stream_on_plane(const Material& material, double angle, double dt) {
+Stream stream_on_plane(const Material& material, double angle, double dt, Bed bed = Bed::ground) {
     const int n = 120;
     auto scene = flat_scene(n, n, 2, dt);
     scene.settings.material = material;
     scene.settings.method.quantum = 0; // a plane of whole quanta has steps
     const double east = std::cos(angle * degree), north = std::sin(angle * degree);
     scene.fill(scene.fields.terrain, [&](double x, double y) { return 8 - film_slope * (x * east + y * north); });
-    scene.fill(scene.fields.water, [&](double, double) { return film_depth; });
+    const double sand = bed == Bed::sand ? 0.05 : 0;
+    scene.fill(scene.fields.sand, [&](double, double) { return sand; });
+    scene.fill(scene.fields.water, [&](double, double) { return film_depth + sand; });
     auto world = make_world(scene);
     step(*world, static_cast<int>(std::lround(40 / dt)));
     const double u = cells_of(*world, "water_velocity_x").at(n / 2, n / 2);
@@ -154,6 +159,23 @@ TEST_CASE("bed friction: Manning's law and Chezy's beside it, on planes at any a
     const double exact = std::sqrt(earth * film_depth * film_slope / resistance(both, film_depth));
     CHECK(std::abs(stream_on_plane(both, 45, 0.1).speed / exact - 1) < 0.001);
     CHECK(std::abs(stream_on_plane(manning(0.03), 45, 0.1).speed / exact - 1) > 0.2); // control
+}
+
+TEST_CASE("bed friction: bed shear slows water over sand at rest as friction does, at any angle and time step, and adds to it") {
+    Material material;
+    material.grain_size = 1; // nothing moves it
+    for (const double friction : {0.0, 0.005}) {
+        material.bed_friction = friction;
+        material.bed_shear = 0.01;
+        const double exact = std::sqrt(earth * film_depth * film_slope / (friction + material.bed_shear));
+        for (const double angle : {0.0, 15.0, 45.0}) {
+            const auto found = stream_on_plane(material, angle, angle > 0 ? 0.1 : 0.2, Bed::sand);
+            MESSAGE("sand at " << angle << " degrees: " << found.speed << " of " << exact << " m/s at " << found.direction);
+            CHECK(std::abs(found.speed / exact - 1) < 0.002);
+            CHECK(std::abs(found.direction - angle) < 0.05);
+        }
+        CHECK(stream_on_plane(material, 45, 0.1, Bed::ground).speed > 1.05 * exact); // control: no sand, no stress of bed load
+    }
 }
 
 TEST_CASE("bed friction: a channel runs at Manning's normal depth") {
