@@ -76,7 +76,6 @@ Result<Level> build(const std::string& map_path, const LevelOverrides& overrides
     const double reach = std::max(static_cast<double>(*high), -static_cast<double>(*low));
     settings.method.largest_height = std::exp2(std::ceil(std::log2(std::max(reach * HEADROOM, reach + LEAST_HEADROOM))));
     const double quantum = height_quantum(settings.method);
-    settings.method.rest_surface = std::max(settings.method.rest_surface, 2 * quantum);
     settings.method.dry_threshold = std::max(settings.method.dry_threshold, quantum);
     for (Side& side : settings.sides) side.kind = SideKind::outflow;
 

@@ -296,11 +296,6 @@ std::vector<std::string> level_warnings(const Settings& settings, const InitialF
         warnings.push_back("method.largest_height: the highest column is " + meters(survey.highest_column) + " of " +
                            meters(method.largest_height) + "; what would rise above is refused, use " +
                            number_text(std::exp2(std::ceil(std::log2(survey.highest_column / NEARLY_FULL)))) + " or more");
-    const double quantum = height_quantum(method);
-    if (method.rest_surface > 0 && quantum > method.rest_surface)
-        warnings.push_back("method.rest_surface: " + number_text(method.rest_surface) + " m is finer than the height quantum, " +
-                           number_text(quantum) + " m, of largest_height " + meters(method.largest_height) +
-                           ": still water may not come to rest; use " + at_least(2 * quantum) + " or more");
     return warnings;
 }
 

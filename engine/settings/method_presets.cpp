@@ -38,7 +38,7 @@ void choose_method(Settings& settings, const std::string& name) {
         // outflow limiter, without which the paper's mass claim does not hold.
         chosen.quantum = 0;
         chosen.gravity_cap = chosen.gravity_cap_least = chosen.sand_gravity_cap = chosen.elastic_cap = 0;
-        chosen.rest_surface = chosen.rest_velocity = 0;
+        chosen.rest_rule = false;
         chosen.passive_pressure = chosen.gradient_clamp = chosen.cohesion_cap = 0;
         chosen.saturation_smoothing = 0;
         chosen.prestress = false;

@@ -71,8 +71,7 @@ struct Method {
     double elastic_cap = 0.2;       // lambda + 2 mu <= elastic_cap rho_s dx^2/dts^2
     double shock_viscosity = 0;     // c1 of NUMERICS 2.3
     double bulk_viscosity = 0;      // NUMERICS 2.7
-    double rest_surface = 1e-5;     // NUMERICS 2.4e
-    double rest_velocity = 1e-3;
+    bool rest_rule = true;          // NUMERICS 2.4e
     double passive_pressure = 1; // K of the compression cap, NUMERICS 2.7
     double gradient_clamp = 0.4; // largest |dts grad v| entry
     double cohesion_cap = 0.9;   // tension <= cohesion_cap rho_s g hs, NUMERICS 2.7

@@ -88,9 +88,9 @@ WorldParams derive_params(const Settings& s) {
     p.gravity_cap_base = w.gravity_cap > 0 ? f(w.gravity_cap) : gravity_cap_off;
     p.gravity_cap_floor = f(w.gravity_cap_least);
     p.inv_k2 = f(1 / (k * k));
-    const bool rest = w.rest_surface > 0 || w.rest_velocity > 0;
-    p.rest_surface = rest ? f(w.rest_surface) : -1.0F;
-    p.rest_velocity = rest ? f(w.rest_velocity) : -1.0F;
+    const double rest_surface = 2 * ledger_quantum(w);
+    p.rest_surface = w.rest_rule ? f(rest_surface) : -1.0F;
+    p.rest_velocity = w.rest_rule ? f(k * s.gravity * rest_surface) : -1.0F;
     p.diffusion_number = f(std::min(m.diffusion_rate, 0.2 * dx * dx / dt) * dt / (dx * dx));
     p.bed_friction_dt = f(dt * m.bed_friction);
     p.manning = f(m.manning);

@@ -20,7 +20,7 @@ CHOICES = {
     "no_quantum": {"quantum": 0},
     "no_gravity_caps": {"gravity_cap": 0, "gravity_cap_least": 0, "sand_gravity_cap": 0},
     "no_elastic_cap": {"elastic_cap": 0},
-    "no_rest_rule": {"rest_surface": 0, "rest_velocity": 0},
+    "no_rest_rule": {"rest_rule": False},
     "no_passive_pressure": {"passive_pressure": 0},
     "no_smoothing": {"saturation_smoothing": 0},
 }

@@ -155,8 +155,8 @@ bool set_method(Method& method, const std::string& name) {
         method.quantum = 0;
     } else if (name == "bare") { // every guard off
         method.quantum = method.gravity_cap = method.gravity_cap_least = method.sand_gravity_cap = method.elastic_cap = 0;
-        method.rest_surface = method.rest_velocity = method.passive_pressure = method.gradient_clamp = method.cohesion_cap = 0;
-        method.outflow_limiter = false;
+        method.passive_pressure = method.gradient_clamp = method.cohesion_cap = 0;
+        method.outflow_limiter = method.rest_rule = false;
     } else if (name == "tapered") {
         method.stress_taper = 0.15;
         method.saturation_smoothing = 0;

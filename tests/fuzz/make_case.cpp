@@ -117,7 +117,7 @@ void make_method(Random& random, Settings& s) {
     for (double* guard :
          {&m.gravity_cap, &m.sand_gravity_cap, &m.elastic_cap, &m.passive_pressure, &m.gradient_clamp, &m.cohesion_cap})
         rarely_off(*guard);
-    if (random.chance(0.1)) m.rest_surface = m.rest_velocity = 0;
+    if (random.chance(0.1)) m.rest_rule = false;
     if (random.chance(0.3)) m.shock_viscosity = random.real(0, 1);
     if (random.chance(0.3)) m.bulk_viscosity = random.real(0, 1);
     if (random.chance(0.1)) m.stress_taper = random.log(1e-4, 1);

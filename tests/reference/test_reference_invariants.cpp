@@ -125,8 +125,7 @@ TEST_CASE("reference: without quantum and rest rule a lake over dunes keeps roun
           doctest::test_suite("long")) {
     Settings set = make_settings(48, 40, 0.1, 0.01);
     set.method.quantum = 0;
-    set.method.rest_surface = 0;
-    set.method.rest_velocity = 0;
+    set.method.rest_rule = false;
     for (const bool steep : {false, true}) {
         Solver<double> s(set, WET_SAND | ELASTIC);
         fill(s, s.sand, [&](double x, double y) {

@@ -28,8 +28,7 @@ inline Settings convergence_settings(int nx, int ny, double dx) {
     s.method.velocity_clamp = 0.5;
     s.method.gravity_cap = 0;
     s.method.sand_gravity_cap = 0;
-    s.method.rest_surface = 0;
-    s.method.rest_velocity = 0;
+    s.method.rest_rule = false;
     return s;
 }
 

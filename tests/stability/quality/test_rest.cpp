@@ -9,7 +9,8 @@ namespace {
 Scene lake() {
     auto scene = flat_scene(24, 20, 0.25, 0.02);
     auto& method = scene.settings.method;
-    method.quantum = method.rest_surface = method.rest_velocity = 0;
+    method.quantum = 0;
+    method.rest_rule = false;
     scene.settings.material.friction = 0.9;
     const auto bed = [](double x, double y) { return 0.1 * std::sin(1.3 * x) * std::cos(0.9 * y) + 0.2; };
     const auto dune = [](double x, double y) { return 0.3 * std::exp(-((x - 3) * (x - 3) + (y - 2.5) * (y - 2.5))); };
@@ -47,7 +48,8 @@ TEST_CASE("10 000 steps without quantum and rest rule: a pile within its slope k
     const auto displaced = [](double slope, int steps) {
         auto scene = flat_scene(24, 24, 0.1, 0.009);
         auto& method = scene.settings.method;
-        method.quantum = method.rest_surface = method.rest_velocity = 0;
+        method.quantum = 0;
+        method.rest_rule = false;
         scene.fill(scene.fields.sand,
                    [&](double x, double y) { return std::max(0.0, 0.5 - slope * std::hypot(x - 1.2, y - 1.2)); });
         auto world = make_world(scene);

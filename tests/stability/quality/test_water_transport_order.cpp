@@ -114,7 +114,7 @@ TEST_CASE("order of transport: a velocity stays between those of its face and th
         scene.fill(scene.fields.velocity_y, [&](double x, double y) { return 2.5 * jagged(x, y, 2); });
         scene.settings.gravity = 0;
         auto& method = scene.settings.method;
-        method.rest_surface = method.rest_velocity = 0;
+        method.rest_rule = false;
         method.velocity_clamp = 10;
         method.water_transport_order = 2;
         auto world = make_world(scene);
