@@ -114,7 +114,7 @@ constexpr Setting rows[] = {
     {"method.bulk_viscosity", method<&Method::bulk_viscosity>, {0, 1e3}, "m2/s", EFFECT_ELASTOPLASTIC,
      "damps waves of stress in sand; 0 = off"},
     {"method.rest_rule", method<&Method::rest_rule>, flag, "", EFFECT_WATER,
-     "water that is level within two height quanta, and as slow as one push of them, stands"},
+     "water level within two height quanta, and as slow as one push of them, stands"},
     {"method.passive_pressure", method<&Method::passive_pressure>, {0, 1e6}, "", EFFECT_ELASTOPLASTIC,
      "compression that sand bears, in units of its weight; 0 = off"},
     {"method.gradient_clamp", method<&Method::gradient_clamp>, {0, 1e6}, "", EFFECT_ELASTOPLASTIC,
