@@ -71,6 +71,23 @@ Failure parse_dump(const std::string& text, std::vector<DumpRequest>& dumps) {
     return {};
 }
 
+/// "x,y", or "x0,y0,x1,y1" for a section.
+Failure parse_points(const std::string& option, const std::string& text, std::size_t numbers,
+                     std::vector<PointRequest>& requests) {
+    const std::vector<std::string> parts = split(text);
+    std::array<double, 4> at = {};
+    bool good = parts.size() == numbers;
+    for (std::size_t n = 0; n < numbers && good; ++n) {
+        const char* const end = parts[n].data() + parts[n].size();
+        const auto parsed = std::from_chars(parts[n].data(), end, at[n]);
+        good = parsed.ec == std::errc{} && parsed.ptr == end && std::isfinite(at[n]);
+    }
+    if (!good) return {EXIT_BAD_INPUT, option + " " + text + ": want " + (numbers == 2 ? "x,y" : "x0,y0,x1,y1") + " in metres"};
+    const std::size_t last = numbers - 2;
+    requests.push_back({option + " " + text, {at[0], at[1]}, {at[last], at[last + 1]}});
+    return {};
+}
+
 int print_backends() {
     char notes[2048] = "";
     std::uint32_t count = 0;
@@ -120,7 +137,7 @@ int fail(const std::string& message) {
 int main_checked(int argc, char** argv) {
     Options options;
     std::string level, terrain, size, table;
-    std::vector<std::string> dumps;
+    std::vector<std::string> dumps, gauges, sections;
     bool list_backends = false, only_list_levels = false, no_frames = false;
 
     CLI::App app("Records a Wadi level: shaded PNG frames, a contact sheet, fields as NPY, and a table of figures.",
@@ -155,6 +172,10 @@ int main_checked(int argc, char** argv) {
     app.add_option("--out", options.out, "folder for frames and fields; default: out/LEVEL");
     app.add_option("--dump", dumps, "FIELDS@TIMES, e.g. hs,W,us@1.5,3: writes FIELD_TIME.npy; repeatable")
         ->allow_extra_args(false);
+    app.add_option("--gauge", gauges, "x,y [m]: the state at this point at every frame's time, to gauges.csv; repeatable")
+        ->allow_extra_args(false);
+    app.add_option("--section", sections, "x0,y0,x1,y1 [m]: the state along this line likewise, to sections.csv; repeatable")
+        ->allow_extra_args(false);
     app.add_option("--summary", options.summary, "writes the figures as JSON to this file");
     app.add_flag("--mp4", options.mp4, "also write the frames as recording.mp4 (H.264); needs the ffmpeg program");
     app.add_option("--fps", options.frames_per_second, "frames per second of the MP4")
@@ -183,6 +204,12 @@ int main_checked(int argc, char** argv) {
     }
     for (const std::string& dump : dumps) {
         if (Failure failure = parse_dump(dump, options.dumps)) return fail(failure.message);
+    }
+    for (const std::string& gauge : gauges) {
+        if (Failure failure = parse_points("--gauge", gauge, 2, options.gauges)) return fail(failure.message);
+    }
+    for (const std::string& section : sections) {
+        if (Failure failure = parse_points("--section", section, 4, options.sections)) return fail(failure.message);
     }
     if (!terrain.empty()) {
         options.level_name = std::filesystem::path(terrain).stem().string();

@@ -1,5 +1,6 @@
 // What the command line asks for.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -22,6 +23,12 @@ struct DumpRequest {
     std::string field_name;
     std::string time_text; // as the user wrote it; part of the file's name
     double time = 0;       // [s]
+};
+
+/// A gauge (`from` is `to`) or a section.
+struct PointRequest {
+    std::string option;                               // as the user wrote it, for messages
+    std::array<double, 2> from = {0, 0}, to = {0, 0}; // [m]
 };
 
 struct Options {
@@ -51,6 +58,7 @@ struct Options {
     bool profile = false;
     bool print_plan = false;
     std::vector<DumpRequest> dumps;
+    std::vector<PointRequest> gauges, sections;
     std::string out;
     std::string summary; // file, empty = none
 };

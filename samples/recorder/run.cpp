@@ -2,6 +2,7 @@
 #include "files.hpp"
 #include "frame.hpp"
 #include "platform.hpp"
+#include "points.hpp"
 #include "progress.hpp"
 #include "report.hpp"
 #include "video.hpp"
@@ -38,6 +39,7 @@ class Recording {
 
   private:
     Failure plan();
+    Failure plan_points();
     Failure prepare_folder();
     Failure record();
     Failure advance(std::uint64_t target);
@@ -58,6 +60,7 @@ class Recording {
     Scaling scaling_;
     std::optional<Look> look_;
     std::optional<ContactSheet> sheet_;
+    std::vector<PointTable> tables_; // gauges and sections, where asked for
     std::optional<Progress> progress_;
     Caption caption_;
     double metres_per_pixel_ = 0;
@@ -89,6 +92,17 @@ Failure Recording::plan() {
     return {};
 }
 
+Failure Recording::plan_points() {
+    PointTable gauges(out_ / "gauges.csv", "gauge"), sections(out_ / "sections.csv", "section");
+    for (auto* const part : {&gauges, &sections}) {
+        std::uint32_t number = 0;
+        for (const PointRequest& request : part == &gauges ? options_.gauges : options_.sections)
+            if (Failure failure = part->add(world_.info(), number++, request)) return failure;
+        if (!part->empty()) tables_.push_back(std::move(*part));
+    }
+    return {};
+}
+
 /// Creates the folder and removes the frames of an earlier recording, so that nobody mixes the two.
 Failure Recording::prepare_folder() {
     std::error_code error;
@@ -96,7 +110,7 @@ Failure Recording::prepare_folder() {
     if (!fs::is_directory(summary_folder, error)) { // said now, not after a long run
         return {EXIT_BAD_INPUT, "--summary " + options_.summary + ": no folder " + summary_folder.string()};
     }
-    if (!options_.frames && options_.dumps.empty()) return {};
+    if (!options_.frames && options_.dumps.empty() && tables_.empty()) return {};
     fs::create_directories(out_, error);
     if (error) return {EXIT_BAD_INPUT, "cannot create the folder " + out_.string() + ": " + error.message()};
     if (!options_.frames) return {};
@@ -133,6 +147,9 @@ Failure Recording::sample_frame(bool last) {
     wadi_world_stats stats;
     if (Failure failure = world_.read_stats(stats)) return failure;
     report_.sample(stats);
+    for (PointTable& table : tables_) {
+        if (Failure failure = table.sample(world_, time_)) return failure;
+    }
     if (!options_.frames) return {};
     MapFields fields;
     if (Failure failure = world_.read_map(scaling_.reduce, fields)) return failure;
@@ -186,6 +203,9 @@ Failure Recording::record() {
 
 /// What is written at the end of every recording, whole or not.
 Failure Recording::finish() {
+    for (PointTable& table : tables_) {
+        if (Failure failure = table.close()) return failure;
+    }
     if (sheet_ && !sheet_->empty()) {
         const Image sheet = sheet_->compose(*look_, caption_, metres_per_pixel_);
         const std::string error = write_file(out_ / "contact_sheet.png", encode_png(sheet));
@@ -216,7 +236,11 @@ int Recording::run() {
     caption_ = {options_.level_name, info.nx, info.ny, info.dx, scaling_.enlarge_x == scaling_.enlarge_y};
     metres_per_pixel_ = info.dx * scaling_.reduce / scaling_.enlarge_x;
     if (Failure failure = plan()) return complain(failure);
+    if (Failure failure = plan_points()) return complain(failure);
     if (Failure failure = prepare_folder()) return complain(failure);
+    for (PointTable& table : tables_) {
+        if (Failure failure = table.open()) return complain(failure);
+    }
 
     report_.level = options_.level_name;
     report_.info = info;

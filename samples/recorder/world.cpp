@@ -1,4 +1,5 @@
 #include "world.hpp"
+#include <algorithm>
 #include <cstdio>
 
 namespace recorder {
@@ -80,6 +81,24 @@ Failure World::read_map(int factor, MapFields& fields) {
     if (Failure failure = read_field(WADI_FIELD_WATER_DEPTH, full.water)) return failure;
     if (Failure failure = read_field(WADI_FIELD_SATURATION, full.saturation)) return failure;
     fields = factor == 1 ? std::move(full) : reduced(full, factor);
+    return {};
+}
+
+Failure World::read_points(const std::vector<float>& xy, std::vector<wadi_query_result>& results) {
+    constexpr std::size_t MOST = 65536; // points of one query
+    results.resize(xy.size() / 2);
+    for (std::size_t done = 0; done < results.size(); done += MOST) {
+        const auto count = static_cast<std::uint32_t>(std::min(MOST, results.size() - done));
+        std::uint64_t ticket = 0;
+        if (wadi_world_query(id_, &xy[2 * done], count, &ticket) != WADI_OK) return fault("asking for the state at points");
+        wadi_result got = WADI_NOT_READY;
+        while (got == WADI_NOT_READY) {
+            double time = 0;
+            if (Failure failure = wait(time)) return failure; // a query never does
+            got = wadi_world_get_query(id_, ticket, &results[done], count, nullptr, nullptr);
+        }
+        if (got != WADI_OK) return fault("reading the state at points");
+    }
     return {};
 }
 

@@ -21,13 +21,14 @@ class World {
     const std::vector<std::string>& warnings() const { return warnings_; }
 
     Failure step(std::uint32_t steps);
-    /// Waits for all steps so far.
     /// Waits for the steps asked for; the simulated time [s].
     Failure wait(double& time);
     Failure read_stats(wadi_world_stats& stats);
     Failure read_field(wadi_field field, std::vector<float>& values);
     /// The four fields of a picture, reduced by `factor`.
     Failure read_map(int factor, MapFields& fields);
+    /// The state at points, x and y of each [m], after the steps so far.
+    Failure read_points(const std::vector<float>& xy, std::vector<wadi_query_result>& results);
     Failure read_timings(std::vector<wadi_stage_timing>& timings);
     std::string describe_plan() const;
 

@@ -2,7 +2,9 @@
 """Runs wadi-recorder through its success and error cases. Usage: recorder_cli.py RECORDER [--backend NAME]"""
 
 import argparse
+import csv
 import json
+import math
 import os
 import shutil
 import signal
@@ -106,6 +108,11 @@ def test_refusals(recorder):
     recorder.refuse(LEVEL, "--dump", "hs@now", says=["now"])
     recorder.refuse(LEVEL, "--dump", "hs@-1", says=["-1"])
     recorder.refuse(LEVEL, "--seconds", "0.1", "--dump", "hs@5", says=["hs@5", "--seconds"])
+    recorder.refuse(LEVEL, "--gauge", "5", says=["--gauge 5", "x,y"])
+    recorder.refuse(LEVEL, "--gauge", "5,nan", says=["--gauge 5,nan", "x,y"])
+    recorder.refuse(LEVEL, "--section", "5,6", says=["--section 5,6", "x0,y0,x1,y1"])
+    recorder.refuse(LEVEL, "--size", "40x12", "--gauge", "5,29", says=["--gauge 5,29", "28.8"])
+    recorder.refuse(LEVEL, "--size", "40x12", "--section", "5,5,97,5", says=["--section 5,5,97,5", "96"])
     (recorder.folder / "a_file").write_text("not a folder\n", encoding="utf-8")
     recorder.refuse(LEVEL, "--seconds", "0.1", "--out", "a_file/out", says=["a_file/out"])
     recorder.refuse(LEVEL, "--seconds", "0.1", "--summary", "nowhere/summary.json", says=["nowhere"])
@@ -145,6 +152,69 @@ def test_dumps(recorder):
         assert all(value == value for value in values), name
         assert name in done.stdout, f"{name} is not announced"
     assert max(read_npy(folder / "W_0.5.npy")[2]) > 0
+
+
+def read_table(path):
+    with path.open(encoding="utf-8", newline="") as file:
+        return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(file)]
+
+
+def test_points(recorder):
+    """Gauges and sections against dumped fields, interpolated here."""
+    dx = 96 / 40
+    asked = [(15.5 * dx, 4.5 * dx), (17.3, 11.1)]
+    line = (5.0, 3.0, 60.0, 20.0)
+    names = ("H", "hs", "W", "uw", "vw")
+    arguments = [f"--gauge={x},{y}" for x, y in asked] + ["--section", "5,3,60,20", "--section", "1,1,1,9", "--gauge=96,28.8"]
+    recorder.record("--seconds", "1", "--every", "0.5", "--no-frames", "--dump", ",".join(names) + "@0.5,1", "--out", "points", *arguments)
+    folder = recorder.folder / "points"
+    assert not list(folder.glob("*.part"))
+    gauges, sections = read_table(folder / "gauges.csv"), read_table(folder / "sections.csv")
+    assert [(row["time"], row["gauge"]) for row in gauges] == [(t, n) for t in (0, 0.5, 1) for n in range(3)], gauges
+    assert (gauges[-1]["x"], gauges[-1]["y"]) == (96, 28.8)
+    along = [row for row in sections if row["time"] == 1 and row["section"] == 0]
+    ends = along[0], along[-1]
+    assert tuple(end[key] for end in ends for key in "xy") == line, ends
+    length = math.hypot(line[2] - line[0], line[3] - line[1])
+    assert math.isclose(ends[1]["distance"], length, rel_tol=1e-8) and len(along) == math.ceil(length / dx) + 1, len(along)
+
+    moving = 0
+    for row in gauges + sections:
+        if row["time"] == 0:
+            continue
+        fields = {name: read_npy(folder / f"{name}_{row['time']:g}.npy") for name in names}
+
+        def between(value, x, y):
+            """Bilinear between places x, y of an array; beyond the outermost centres it repeats them."""
+            x, y = max(x, 0), max(y, 0)
+            i, j = min(int(x), 39), min(int(y), 11)
+            a, b = x - i, y - j
+            return ((value(i, j) * (1 - a) + value(i + 1, j) * a) * (1 - b)
+                    + (value(i, j + 1) * (1 - a) + value(i + 1, j + 1) * a) * b)
+
+        def at(name, i, j):
+            return fields[name][2][min(j, 11) * 40 + min(i, 39)]
+
+        def face(name, i, j, beside):
+            """From cell centres, which hold the mean of their two faces, and the wall in the west or south, where it is 0."""
+            if beside == 0:
+                return 0
+            before = face(name, i, j, beside - 1)
+            return 2 * (at(name, beside - 1, j) if name == "uw" else at(name, i, beside - 1)) - before
+
+        x, y = row["x"] / dx, row["y"] / dx
+        want = {
+            "terrain": between(lambda i, j: at("H", i, j), x - 0.5, y - 0.5),
+            "sand_depth": between(lambda i, j: at("hs", i, j), x - 0.5, y - 0.5),
+            "water_depth": between(lambda i, j: max(at("W", i, j) - at("hs", i, j), 0), x - 0.5, y - 0.5),
+            "surface": between(lambda i, j: at("H", i, j) + max(at("W", i, j), at("hs", i, j)), x - 0.5, y - 0.5),
+            "velocity_x": between(lambda i, j: face("uw", i, j, i), x, y - 0.5),
+            "velocity_y": between(lambda i, j: face("vw", i, j, j), x - 0.5, y),
+        }
+        for key, value in want.items():
+            assert abs(row[key] - value) < 1e-4, (row, key, value)
+        moving += row["water_depth"] > 0.1 and abs(row["velocity_x"]) > 0.1
+    assert moving > 5, f"{moving} points with water that moves: the case shows nothing"
 
 
 def test_summary(recorder):
@@ -251,7 +321,7 @@ def main():
     parser.add_argument("recorder")
     parser.add_argument("--backend", default="cpu")
     options = parser.parse_args()
-    tests = [test_frames, test_dumps, test_summary]
+    tests = [test_frames, test_dumps, test_points, test_summary]
     if options.backend == "cpu":  # what meets no device
         tests += [test_lists, test_plan, test_refusals, test_default_folder, test_video_refusals, test_video]
     if os.name == "posix":
