@@ -103,16 +103,16 @@ Failure Recording::plan_points() {
     return {};
 }
 
-/// Creates the folder and removes the frames of an earlier recording, so that nobody mixes the two.
+/// Creates the folders and removes the frames of an earlier recording, so that nobody mixes the two.
 Failure Recording::prepare_folder() {
+    std::vector<fs::path> folders;
+    if (const fs::path folder = fs::path(options_.summary).parent_path(); !folder.empty()) folders.push_back(folder);
+    if (options_.frames || !options_.dumps.empty() || !tables_.empty()) folders.push_back(out_);
     std::error_code error;
-    const fs::path summary_folder = fs::absolute(options_.summary.empty() ? "." : options_.summary, error).parent_path();
-    if (!fs::is_directory(summary_folder, error)) { // said now, not after a long run
-        return {EXIT_BAD_INPUT, "--summary " + options_.summary + ": no folder " + summary_folder.string()};
+    for (const fs::path& folder : folders) {
+        fs::create_directories(folder, error);
+        if (error) return {EXIT_BAD_INPUT, "cannot create the folder " + folder.string() + ": " + error.message()};
     }
-    if (!options_.frames && options_.dumps.empty() && tables_.empty()) return {};
-    fs::create_directories(out_, error);
-    if (error) return {EXIT_BAD_INPUT, "cannot create the folder " + out_.string() + ": " + error.message()};
     if (!options_.frames) return {};
     int removed = 0;
     for (const fs::directory_entry& entry : fs::directory_iterator(out_, error)) {

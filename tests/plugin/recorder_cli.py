@@ -115,7 +115,7 @@ def test_refusals(recorder):
     recorder.refuse(LEVEL, "--size", "40x12", "--section", "5,5,97,5", says=["--section 5,5,97,5", "96"])
     (recorder.folder / "a_file").write_text("not a folder\n", encoding="utf-8")
     recorder.refuse(LEVEL, "--seconds", "0.1", "--out", "a_file/out", says=["a_file/out"])
-    recorder.refuse(LEVEL, "--seconds", "0.1", "--summary", "nowhere/summary.json", says=["nowhere"])
+    recorder.refuse(LEVEL, "--seconds", "0.1", "--summary", "a_file/in/summary.json", says=["a_file/in"])
     (recorder.folder / "broken.json").write_text("{ \"name\": ", encoding="utf-8")
     recorder.refuse("broken.json", says=["broken.json"])
 
@@ -235,6 +235,8 @@ def test_summary(recorder):
     assert first["extremes"]["smallest_height_m"] >= 0
     assert first["stages"] == []
     assert not (recorder.folder / "out").exists(), "--no-frames without dumps creates no folder"
+    recorder.record("--seconds", "0", "--no-frames", "--summary", "made/for/it.json")
+    assert (recorder.folder / "made" / "for" / "it.json").exists()
 
     profiled = summary("--profile")
     assert profiled["hash"] == first["hash"], "profiling changes the result"
