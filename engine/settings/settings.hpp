@@ -72,9 +72,9 @@ struct Method {
     double shock_viscosity = 0;     // c1 of NUMERICS 2.3
     double bulk_viscosity = 0;      // NUMERICS 2.7
     bool rest_rule = true;          // NUMERICS 2.4e
-    double passive_pressure = 1; // K of the compression cap, NUMERICS 2.7
-    double gradient_clamp = 0.4; // largest |dts grad v| entry
-    double cohesion_cap = 0.9;   // tension <= cohesion_cap rho_s g hs, NUMERICS 2.7
+    double passive_pressure = 1;    // K of the compression cap, NUMERICS 2.7
+    double gradient_clamp = 0.4;    // largest |dts grad v| entry
+    double cohesion_cap = 0.9;      // tension <= cohesion_cap rho_s g hs, NUMERICS 2.7
     double stress_taper = 0;
     bool prestress = true; // NUMERICS 2.20
     int saturation_smoothing = 2;
