@@ -90,7 +90,7 @@ WorldParams derive_params(const Settings& s) {
     p.inv_k2 = f(1 / (k * k));
     const double rest_surface = 2 * ledger_quantum(w);
     p.rest_surface = w.rest_rule ? f(rest_surface) : -1.0F;
-    p.rest_velocity = w.rest_rule ? f(k * s.gravity * rest_surface) : -1.0F;
+    p.rest_velocity = w.rest_rule ? f(1.5 * k * s.gravity * rest_surface) : -1.0F; // rounding of the push does not decide
     p.diffusion_number = f(std::min(m.diffusion_rate, 0.2 * dx * dx / dt) * dt / (dx * dx));
     p.bed_friction_dt = f(dt * m.bed_friction);
     p.manning = f(m.manning);

@@ -313,6 +313,7 @@ Result<Scene> make_large_scene(int size, std::uint32_t effects) {
     auto& f = scene->fields;
     for (auto* field : {&f.terrain, &f.sand, &f.water, &f.velocity_x, &f.velocity_y, &f.sand_velocity_x, &f.sand_velocity_y,
                         &scene->settings.roughness}) {
+        if (field->empty()) continue;
         const std::vector<float> small = std::move(*field);
         field->clear();
         field->reserve(static_cast<std::size_t>(size) * static_cast<std::size_t>(size));

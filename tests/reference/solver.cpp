@@ -56,11 +56,11 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
     P.gravity_cap_least = static_cast<Real>(method.gravity_cap_least);
     P.sand_gravity_cap = static_cast<Real>(method.sand_gravity_cap);
     P.rest_surface = P.rest_velocity = Real(-1);
-    if (method.rest_rule) { // two quanta, and the speed that one step's push of them gives; without a quantum those of the float
+    if (method.rest_rule) { // two quanta, and the speed that one step's push of three gives; without a quantum those of the float
                             // grid
         const double grain = quantum > 0 ? quantum : std::exp2(std::ceil(std::log2(method.largest_height)) - 24);
         P.rest_surface = static_cast<Real>(2 * grain);
-        P.rest_velocity = static_cast<Real>(world.dt / world.grid.dx * world.gravity * 2 * grain);
+        P.rest_velocity = static_cast<Real>(world.dt / world.grid.dx * world.gravity * 3 * grain);
     }
     P.passive_pressure = static_cast<Real>(method.passive_pressure);
     P.gradient_clamp = static_cast<Real>(method.gradient_clamp);
