@@ -57,7 +57,7 @@ std::vector<float> exact_float_results(const std::vector<Operands>& operands) {
     results.reserve(operands.size() * exact_float_results_per_try);
     for (const auto& [a, b] : operands) {
         const float product = a * b;
-        results.insert(results.end(), {a + b, a - b, product, product + a, a / b, std::sqrt(b), (a + 0.0f) / b, std::sqrt(b)});
+        results.insert(results.end(), {a + b, a - b, product, product + a, a / b, std::sqrt(b), std::fabs(a) / b, std::sqrt(b)});
     }
     return results;
 }

@@ -11,7 +11,7 @@ struct Operands {
 
 inline constexpr unsigned exact_float_tries = 16384;
 
-/// Of each pair, in this order: a + b, a - b, a * b, a * b + a in two roundings, a / b, sqrt(b), and the lean forms of (a + 0) /
+/// Of each pair, in this order: a + b, a - b, a * b, a * b + a in two roundings, a / b, sqrt(b), and the lean forms of |a| /
 /// b and sqrt(b).
 inline constexpr unsigned exact_float_results_per_try = 8;
 

@@ -18,7 +18,7 @@ __global__ void run(const Operands* operands, float* results, unsigned tries) {
     r[3] = a * b + a; // differs if contracted
     r[4] = wdiv(a, b);
     r[5] = wsqrt(b);
-    r[6] = lean_quotient(a + 0.0f, b);
+    r[6] = lean_quotient(wabs(a), b);
     r[7] = lean_root(b);
 }
 } // namespace wadi_self_test_cuda

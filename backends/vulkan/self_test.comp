@@ -20,6 +20,6 @@ void main() {
     results[RESULTS * n + 3u] = a * b + a; // differs if contracted
     results[RESULTS * n + 4u] = wdiv(a, b);
     results[RESULTS * n + 5u] = wsqrt(b);
-    results[RESULTS * n + 6u] = lean_quotient(a + 0.0f, b);
+    results[RESULTS * n + 6u] = lean_quotient(abs(a), b);
     results[RESULTS * n + 7u] = lean_root(b);
 }
