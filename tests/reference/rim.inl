@@ -100,12 +100,33 @@ template <class Real> bool Solver<Real>::in_span(const Side& side, int b) const 
     return centre >= side.from && centre <= side.to;
 }
 
-/// Outflow: the outer face takes the next face's outward velocity, `fastest` at most; a domain one cell wide has no inner face.
+/// Outflow of sand and of the water inside it: the outer face takes the next face's outward velocity, `fastest` at most; a domain
+/// one cell wide has no inner face.
 template <class Real> void Solver<Real>::leave(Faces<Real>& velocity, const Axis& ax, bool far_end, int b, Real fastest) const {
     const Real outward = far_end ? Real(1) : Real(-1);
     Field<Real>& u = velocity.along(ax);
     const Real next = ax.along() > 1 ? u[ax.face(far_end ? ax.along() - 1 : 1, b)] : Real(0);
     u[ax.face(far_end ? ax.along() : 0, b)] = outward * std::clamp(outward * next, Real(0), fastest);
+}
+
+/// Outflow of pure water: u - 2 sqrt(g h) is the same at the outer face, with the depth of the last cell, as at the next face
+/// inside.
+template <class Real> void Solver<Real>::radiate(const Axis& ax, bool far_end, int b) {
+    if (ax.along() < 2) return;
+    const std::size_t N = ax.cell(far_end ? ax.along() - 1 : 0, b);
+    const std::size_t M = ax.cell(far_end ? ax.along() - 2 : 1, b);
+    const Real outward = far_end ? Real(1) : Real(-1);
+    Field<Real>& velocity = pure_velocity.along(ax);
+    const Real next = outward * velocity[ax.face(far_end ? ax.along() - 1 : 1, b)];
+    const Real g = water_gravity(std::abs(next), std::max(water[N], water[M]));
+    const Real fall = (terrain[N] + water[N]) - (terrain[M] + water[M]);
+    const bool rests = std::abs(fall) <= P.rest_surface && std::abs(next) <= P.rest_velocity;
+    const Real rise = rests ? Real(0) : minmod(water[N] - water[M], fall);
+    const Real c_N = std::sqrt(g * water[N]);
+    const Real c_M = std::sqrt(g * std::max(water[N] - rise, Real(0)));
+    const Real subcritical = c_N > Real(0) ? std::clamp(Real(2) * (Real(1) - std::abs(next) / c_N), Real(0), Real(1)) : Real(1);
+    const Real u = next + subcritical * Real(2) * (c_N - c_M);
+    velocity[ax.face(far_end ? ax.along() : 0, b)] = outward * std::clamp(u, Real(0), P.clamp);
 }
 
 /// The water's velocities and outer depths of one side's faces. Positive `outward` points out of the domain.
@@ -134,7 +155,7 @@ template <class Real> void Solver<Real>::update_side(const Side& side, const Axi
             level_face(ax, a, b, static_cast<Real>(value));
             if (has(EFFECT_MIXTURE)) leave(mixed_velocity, ax, far_end, b, P.clamp);
         } else {
-            leave(pure_velocity, ax, far_end, b, P.clamp);
+            radiate(ax, far_end, b);
             if (has(EFFECT_MIXTURE)) leave(mixed_velocity, ax, far_end, b, P.clamp);
         }
     }

@@ -187,6 +187,7 @@ template <class Real> class Solver {
     template <class F> void for_sides(F f);
     bool in_span(const Side& side, int b) const;
     void leave(Faces<Real>& velocity, const Axis& axis, bool far_end, int b, Real fastest) const;
+    void radiate(const Axis& axis, bool far_end, int b);
     void update_side(const Side& side, const Axis& axis, bool far_end);
     void level_face(const Axis& axis, int a, int b, Real level);
 
