@@ -28,16 +28,17 @@ void StepInputs::set_sides(StepInput& input, double time) const {
         const double dx = settings_.grid.dx;
         const int first = static_cast<int>(std::clamp(std::ceil(side.from / dx - 0.5), 0.0, double(cells)));
         const int last = static_cast<int>(std::clamp(std::floor(side.to / dx - 0.5), -1.0, double(cells - 1)));
-        double value = side.value.at(time), least_depth = 0;
+        double value = side.value.at(time), depth = 0;
         if (side.kind == SideKind::discharge) {
             value = last >= first ? std::max(0.0, value) / ((last - first + 1) * dx) : 0.0;
             // Deep enough that the flow into a dry cell is critical and within the velocity clamp.
-            least_depth =
-                std::max(std::cbrt(value * value / std::max(1e-9, settings_.gravity)),
-                         settings_.method.half_storage ? value / static_cast<double>(velocity_limit(settings_.method, k))
-                                                       : value * k / settings_.method.velocity_clamp);
+            depth = std::max(std::cbrt(value * value / std::max(1e-9, settings_.gravity)),
+                             settings_.method.half_storage ? value / static_cast<double>(velocity_limit(settings_.method, k))
+                                                           : value * k / settings_.method.velocity_clamp);
+        } else if (side.kind == SideKind::level) {
+            depth = value - side.value.at(time - settings_.dt); // its rise: the wave that comes in
         }
-        input.side[n] = {static_cast<float>(value), static_cast<float>(least_depth), static_cast<float>(first),
+        input.side[n] = {static_cast<float>(value), static_cast<float>(depth), static_cast<float>(first),
                          static_cast<float>(last)};
     }
 }

@@ -77,21 +77,47 @@ template <class Real> void Solver<Real>::apply_rain() {
     }
 }
 
-/// A face beside a reservoir whose surface stands at `level`: 2.4b to d with the reservoir as neighbour.
-template <class Real> void Solver<Real>::level_face(const Axis& ax, int a, int b, Real level) {
+/// A face beside a reservoir whose surface stands at `level`, and stood at `level_before` a step ago. Waves run out through it,
+/// d/dt (u - sqrt(g/h) eta) being what the level does; where one depth is under half of the other the reservoir is a neighbour as
+/// any cell is.
+template <class Real> void Solver<Real>::level_face(const Axis& ax, int a, int b, Real level, Real level_before) {
     const bool far_end = a != 0;
+    const Real outward = far_end ? Real(1) : Real(-1);
+    const int cells = ax.along();
     const std::size_t f = ax.face(a, b);
-    const std::size_t inner = ax.cell(far_end ? a - 1 : 0, b);
-    const Real ghost = std::max(level - terrain[inner], Real(0));
+    const std::size_t N = ax.cell(far_end ? cells - 1 : 0, b);
+    const std::size_t M = ax.cell(far_end ? std::max(cells - 2, 0) : std::min(1, cells - 1), b);
+    const Real ghost = std::max(level - terrain[N], Real(0));
     ghost_water.along(ax)[f] = ghost;
-    const Real eta_in = terrain[inner] + water[inner];
-    const Real eta_out = terrain[inner] + ghost;
-    const Real rise = far_end ? eta_out - eta_in : eta_in - eta_out;
-    Real& u = pure_velocity.along(ax)[f];
-    u -= P.k * water_gravity(std::abs(u), std::max(water[inner], ghost)) * rise;
-    if (std::abs(rise) <= P.rest_surface && std::abs(u) <= P.rest_velocity) u = Real(0);
-    if (blocked(pure[inner], ghost, eta_in, eta_out, P.eps)) u = Real(0);
-    u = clamped(u, P.clamp);
+    const Real eta_in = terrain[N] + water[N];
+    const Real eta_out = terrain[N] + ghost;
+    Real& velocity = pure_velocity.along(ax)[f];
+    const Real next = outward * pure_velocity.along(ax)[ax.face(far_end ? cells - 1 : 1, b)];
+    const Real own = step_index > 0 || cells == 1 ? outward * velocity : next;
+    const Real deeper = std::max(water[N], ghost);
+    const Real g = water_gravity(std::abs(own), deeper);
+    const Real held = own + P.k * g * (eta_in - eta_out);
+    Real u = held;
+    const Real alike =
+        deeper > Real(0) ? std::clamp(std::min(water[N], ghost) / deeper * Real(4) - Real(2), Real(0), Real(1)) : Real(0);
+    if (cells > 1 && alike > Real(0)) {
+        const Real h = pure[N];
+        const Real c = std::sqrt(g * h);
+        const auto upwind = [&](Real speed, Real behind, Real ahead) { return P.k * speed * (speed > Real(0) ? behind : ahead); };
+        const Field<Real>& v = pure_velocity.across(ax);
+        const int inner = far_end ? cells - 1 : 0;
+        Real low{}, high{};
+        if (b > 0) low = upwind(v[ax.cross(inner, b)], pure[ax.cell(inner, b - 1)], h);
+        if (b + 1 < ax.across()) high = upwind(v[ax.cross(inner, b + 1)], h, pure[ax.cell(inner, b + 1)]);
+        const Real enters = (upwind(next, pure[M], h) - upwind(own, h, ghost)) + (low - high);
+        const Real risen = ghost - std::max(level_before - terrain[N], Real(0));
+        const Real pull = P.k * g * (eta_in - eta_out) / (Real(4) * Real(cells));
+        const Real incoming = pull + (h > Real(0) ? c / h : Real(0)) * (enters - Real(2) * risen);
+        u += alike * (own + incoming / (Real(1) + P.k * std::max(c + own, Real(0))) - held);
+    }
+    if (std::abs(eta_in - eta_out) <= P.rest_surface && std::abs(u) <= P.rest_velocity) u = Real(0);
+    if (blocked(pure[N], ghost, eta_in, eta_out, P.eps)) u = Real(0);
+    velocity = clamped(outward * u, P.clamp);
 }
 
 /// Whether face b of a side lies between its ends.
@@ -152,7 +178,7 @@ template <class Real> void Solver<Real>::update_side(const Side& side, const Axi
             ghost_water.along(ax)[f] = depth;
             if (depth > Real(0)) pure_velocity.along(ax)[f] = -outward * q / depth;
         } else if (side.kind == SideKind::level) {
-            level_face(ax, a, b, static_cast<Real>(value));
+            level_face(ax, a, b, static_cast<Real>(value), static_cast<Real>(sample(side.value, time() - settings.dt)));
             if (has(EFFECT_MIXTURE)) leave(mixed_velocity, ax, far_end, b, P.clamp);
         } else {
             radiate(ax, far_end, b);

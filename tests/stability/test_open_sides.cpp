@@ -1,5 +1,6 @@
 // Open sides of water against the same channel that goes on.
 #include "tests/stability/quality.hpp"
+#include <numbers>
 
 using namespace wadi;
 using namespace wadi::test;
@@ -84,4 +85,41 @@ TEST_CASE("an outflow side leaves fast streams, even slopes and lakes over rough
         step(world, 100);
         CHECK(hash_of(world) == before);
     });
+}
+
+TEST_CASE("a level side lets waves out, holds its level in the long run and sends in the wave that its level says") {
+    for (const double froude : {0.0, 0.3, 0.6}) CHECK(comes_back(froude, {SideKind::level, 0, 1e30, {{{0, 1}}}}) < 0.05);
+    // A basin 0.1 m below the level beside it, and a stream that began with that depth but not with that speed.
+    for (const double discharge : {0.0, 0.5}) {
+        auto scene = flat_scene(100, 1, 0.1, 0.01);
+        scene.settings.method.rest_velocity = 0;     // the rule would stop the last millimetres
+        scene.settings.material.bed_friction = 0.01; // the stream's surface falls towards its end
+        scene.fill(scene.fields.water, [](double, double) { return 0.9; });
+        scene.settings.sides[SIDE_EAST] = {SideKind::level, 0, 1e30, {{{0, 1}}}};
+        if (discharge > 0) scene.settings.sides[SIDE_WEST] = {SideKind::discharge, 0, 1e30, {{{0, discharge * 0.1}}}};
+        auto world = make_world(scene);
+        step(*world, 500);
+        const double early = std::abs(cells_of(*world, "water_height").at(99, 0) - 1);
+        step(*world, 11500);
+        const double late = std::abs(cells_of(*world, "water_height").at(99, 0) - 1);
+        MESSAGE("off its level after 5 s: " << early << ", after 120 s: " << late);
+        CHECK(late < 2e-4);
+    }
+    // A wave of 2 cm and 10 m, for as long as it does not reach the far end.
+    auto sea = flat_scene(1000, 1, 0.1, 0.01);
+    sea.fill(sea.fields.water, [](double, double) { return 1; });
+    const double period = 10 / std::sqrt(9.81);
+    auto& side = sea.settings.sides[SIDE_WEST] = {SideKind::level, 0, 1e30, {}};
+    for (int n = 0; n <= 1000; ++n)
+        side.value.samples.push_back({n * 0.03, 1 + 0.02 * std::sin(2 * std::numbers::pi * n * 0.03 / period)});
+    auto world = make_world(sea);
+    step(*world, 2500);
+    const auto h = cells_of(*world, "water_height");
+    double high = 0, low = 2;
+    for (int i = 100; i < 400; ++i) high = std::max(high, double(h.at(i, 0))), low = std::min(low, double(h.at(i, 0)));
+    MESSAGE("wave from " << low - 1 << " to " << high - 1);
+    CHECK(high - 1 > 0.018);
+    CHECK(high - 1 < 0.021);
+    CHECK(low - 1 < -0.018);
+    CHECK(low - 1 > -0.021);
 }
