@@ -7,7 +7,7 @@
 namespace wadi {
 
 StepInputs::StepInputs(const Settings& settings)
-    : settings_(settings), quantum_(height_quantum(settings.method)), totals_(settings.sources.size() + 2) {}
+    : settings_(settings), quantum_(height_quantum(settings.method)), totals_(settings.sources.size() + 6) {}
 
 float StepInputs::advance(Total& total, double rate) const {
     const double depth = rate * settings_.dt;
@@ -19,7 +19,7 @@ float StepInputs::advance(Total& total, double rate) const {
     return static_cast<float>(difference * quantum_);
 }
 
-void StepInputs::set_sides(StepInput& input, double time) const {
+void StepInputs::set_sides(StepInput& input, double time) {
     const double k = settings_.dt / settings_.grid.dx;
     for (std::size_t n = 0; n < 4; ++n) {
         const auto& side = settings_.sides[n];
@@ -31,10 +31,14 @@ void StepInputs::set_sides(StepInput& input, double time) const {
         double value = side.value.at(time), depth = 0;
         if (side.kind == SideKind::discharge) {
             value = last >= first ? std::max(0.0, value) / ((last - first + 1) * dx) : 0.0;
+            const double critical = std::cbrt(value * value / std::max(1e-9, settings_.gravity));
+            const double moved = advance(totals_[settings_.sources.size() + 2 + n], value / dx);
+            // Half a quantum more than is meant: the flux is cut to whole quanta after rounding.
+            value = moved > 0 ? (moved + quantum_ / 2) / k : 0;
             // Deep enough that the flow into a dry cell is critical and within the velocity clamp.
-            depth = std::max(std::cbrt(value * value / std::max(1e-9, settings_.gravity)),
-                             settings_.method.half_storage ? value / static_cast<double>(velocity_limit(settings_.method, k))
-                                                           : value * k / settings_.method.velocity_clamp);
+            depth = std::max(critical, settings_.method.half_storage
+                                           ? value / static_cast<double>(velocity_limit(settings_.method, k))
+                                           : value * k / settings_.method.velocity_clamp);
         } else if (side.kind == SideKind::level) {
             depth = value - side.value.at(time - settings_.dt); // its rise: the wave that comes in
         }

@@ -14,7 +14,7 @@ class StepInputs {
     struct Total {
         double metres = 0, quanta = 0;
     };
-    /// Of every source, then rain, then evaporation.
+    /// Of every source, then rain, evaporation and, where they are discharges, the sides.
     using Totals = std::vector<Total>;
 
     explicit StepInputs(const Settings& settings);
@@ -27,7 +27,7 @@ class StepInputs {
 
   private:
     float advance(Total& total, double rate) const;
-    void set_sides(StepInput& input, double time) const;
+    void set_sides(StepInput& input, double time);
 
     const Settings settings_;
     const double quantum_;

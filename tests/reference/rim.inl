@@ -162,6 +162,13 @@ template <class Real> void Solver<Real>::update_side(const Side& side, const Axi
     int open_faces = 0;
     for (int b = 0; b < ax.across(); ++b) open_faces += in_span(side, b) ? 1 : 0;
     const double value = sample(side.value, time());
+    Real given(0); // by a discharge in this step [m2/s], with half a quantum that the flux loses
+    if (side.kind == SideKind::discharge && open_faces > 0) {
+        const std::size_t n = static_cast<std::size_t>((ax.is_y ? SideName::south : SideName::west)) + (far_end ? 1 : 0);
+        const double k = settings.dt / settings.grid.dx;
+        const double depth = quanta(side_totals_[n], value / (open_faces * settings.grid.dx) * k);
+        given = static_cast<Real>(depth > 0 ? (depth + static_cast<double>(P.quantum) / 2) / k : 0);
+    }
 
     for (int b = 0; b < ax.across(); ++b) {
         const std::size_t f = ax.face(a, b);
@@ -172,11 +179,11 @@ template <class Real> void Solver<Real>::update_side(const Side& side, const Axi
         ghost_water.along(ax)[f] = Real(0);
         if (!open) continue;
         if (side.kind == SideKind::discharge) {
-            const Real q = static_cast<Real>(value) / (Real(open_faces) * P.dx);
+            const Real q = static_cast<Real>(value) / (Real(open_faces) * P.dx); // as wanted; what moves is of whole quanta
             const Real critical = P.gravity > Real(0) ? std::cbrt(q * q / P.gravity) : Real(0);
-            const Real depth = std::max(std::max(water[inner], critical), std::abs(q) * P.k / P.alpha);
+            const Real depth = std::max(std::max(water[inner], critical), given * P.k / P.alpha);
             ghost_water.along(ax)[f] = depth;
-            if (depth > Real(0)) pure_velocity.along(ax)[f] = -outward * q / depth;
+            if (depth > Real(0)) pure_velocity.along(ax)[f] = -outward * given / depth;
         } else if (side.kind == SideKind::level) {
             level_face(ax, a, b, static_cast<Real>(value), static_cast<Real>(sample(side.value, time() - settings.dt)));
             if (has(EFFECT_MIXTURE)) leave(mixed_velocity, ax, far_end, b, P.clamp);

@@ -207,6 +207,7 @@ template <class Real> template <class Other> void Solver<Real>::copy_from(const 
     source_totals_ = other.source_totals_;
     rain_total_ = other.rain_total_;
     evaporation_total_ = other.evaporation_total_;
+    side_totals_ = other.side_totals_;
 }
 
 template <class Real> void Solver<Real>::step() {

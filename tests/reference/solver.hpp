@@ -194,6 +194,7 @@ template <class Real> class Solver {
     std::vector<double> source_totals_; // depth given so far, before rounding to quanta [m]
     double rain_total_ = 0;
     double evaporation_total_ = 0;
+    std::array<double, 4> side_totals_{}; // of discharges
 };
 
 /// Linear between samples, constant outside; 0 without samples.

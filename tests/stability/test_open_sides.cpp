@@ -123,3 +123,22 @@ TEST_CASE("a level side lets waves out, holds its level in the long run and send
     CHECK(low - 1 < -0.018);
     CHECK(low - 1 > -0.021);
 }
+
+TEST_CASE("a discharge arrives on time to one quantum a face however small it is, and so does rain") {
+    for (const double discharge : {0.0005, 0.02, 3.0}) {
+        auto scene = flat_scene(20, 20, 1, 0.01);
+        scene.settings.sides[SIDE_WEST] = {SideKind::discharge, 0, 1e30, {{{0, discharge}}}};
+        on_every_backend(scene, [&](World& world) {
+            step(world, 500);
+            const double wanted = discharge * 5, got = total(cells_of(world, "water_height"));
+            const double quantum = height_quantum(world.settings().method);
+            MESSAGE("discharge " << discharge << ": " << got << " m3 of " << wanted);
+            CHECK(std::abs(got - wanted) <= 20 * quantum * 1.01);
+        });
+    }
+    auto scene = flat_scene(20, 20, 1, 0.01);
+    scene.settings.rain = {{{0, 1e-7}}};
+    auto world = make_world(scene);
+    step(*world, 5000);
+    CHECK(std::abs(total(cells_of(*world, "water_height")) - 400 * 5e-6) <= 400 * height_quantum(scene.settings.method));
+}
