@@ -156,7 +156,8 @@ struct StepInput {
     float interpolation;        // of published outputs: 0 = previous, 1 = current
     vec4 source[MAX_SOURCES];   // depth added (negative: removed) [m], face velocity x, y [m/s], 1 if velocity is set
     vec4 side[4];               // west, east, south, north: discharge per width [m2/s] or level [m],
-                                // least ghost depth or the level's rise since the last step [m], first and last index of the open span
+                                // least ghost depth (negative: the ghost depth) or the level's rise since the last step [m],
+                                // first and last index of the open span
     // Per edit, lengths in cells. Brush and push: (x, y of the start, x, y to the end), (radius, 1/width of the falloff,
     // 1/length^2, kind), brush (amount [m], layer, parts of a cell's side at a hard rim or 0, 0), push (strength, velocity x, y [m/s],
     // 0). Stamp: (x, y of the low corner, size), (columns, rows, page, kind), (metres per unit, layer, columns and rows per cell).

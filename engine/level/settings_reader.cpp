@@ -77,6 +77,7 @@ void read_sides(const Json& value, const FileReader& files, std::array<Side, 4>&
         side.kind = static_cast<SideKind>(kind);
         side_reader.number("from", side.from, 0, ANY_NUMBER);
         side_reader.number("to", side.to, 0, ANY_NUMBER);
+        side_reader.number("depth", side.depth, 0, ANY_NUMBER);
         if (const Json* series = side_reader.find("value")) side.value = read_series(*series, path + ".value", files, status);
         side_reader.finish();
     }

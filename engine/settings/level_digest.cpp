@@ -28,6 +28,7 @@ std::uint64_t level_digest(const Settings& s) {
         add(side.from);
         add(side.to);
         series(side.value);
+        if (side.depth > 0) add(side.depth);
     }
     for (const auto& source : s.sources) {
         for (const double value :

@@ -110,6 +110,9 @@ Status check_side(const Settings& settings, std::size_t index) {
     if (has_value == side.value.samples.empty())
         return refuse(
             path + ".value: " + (has_value ? "missing; discharge in m3/s or level in m" : "only discharge and level have one"));
+    const double deepest = side.kind == SideKind::discharge ? settings.method.largest_height : 0;
+    if (!(side.depth >= 0 && side.depth <= deepest))
+        return refuse(outside_text(path + ".depth", side.depth, 0, deepest) + (deepest > 0 ? "" : "; only a discharge has one"));
     if (side.kind == SideKind::discharge) return check_series(path + ".value", side.value, 0, DISCHARGE_MOST);
     return check_series(path + ".value", side.value, -LEVEL_MOST, LEVEL_MOST);
 }

@@ -101,7 +101,8 @@ struct Side {
     SideKind kind = SideKind::wall;
     double from = 0;  // [m] from the side's south or west end
     double to = 1e30; // [m]
-    TimeSeries value; // discharge [m3/s] into the domain, or free surface [m]
+    TimeSeries value; // discharge [m3/s] into the domain, or free surface outside [m]
+    double depth = 0; // of a discharge while it is less than its critical depth [m]; 0: critical or what stands inside
 };
 
 enum class SourceShape : std::uint8_t { point, disc, box };

@@ -35,10 +35,13 @@ void StepInputs::set_sides(StepInput& input, double time) {
             const double moved = advance(totals_[settings_.sources.size() + 2 + n], value / dx);
             // Half a quantum more than is meant: the flux is cut to whole quanta after rounding.
             value = moved > 0 ? (moved + quantum_ / 2) / k : 0;
-            // Deep enough that the flow into a dry cell is critical and within the velocity clamp.
-            depth = std::max(critical, settings_.method.half_storage
-                                           ? value / static_cast<double>(velocity_limit(settings_.method, k))
-                                           : value * k / settings_.method.velocity_clamp);
+            const double fastest = settings_.method.half_storage
+                                       ? value / static_cast<double>(velocity_limit(settings_.method, k))
+                                       : value * k / settings_.method.velocity_clamp;
+            // Deep enough that the flow into a dry cell is critical and within the velocity clamp; as deep as given where that is
+            // less than critical, whatever the cell holds.
+            const bool shooting = side.depth > 0 && side.depth < critical;
+            depth = shooting ? -std::max(side.depth, fastest) : std::max(critical, fastest);
         } else if (side.kind == SideKind::level) {
             depth = value - side.value.at(time - settings_.dt); // its rise: the wave that comes in
         }

@@ -120,6 +120,40 @@ template <class Real> void Solver<Real>::level_face(const Axis& ax, int a, int b
     velocity = clamped(outward * u, P.clamp);
 }
 
+/// The water inside the sand of the cell beside such a reservoir (2.4b, e, c, d) with the drag of sand at rest, implicit over the
+/// step. The part that comes in where no pure water stands over the sand outside is brought by the pure layer, which alone has
+/// depth there.
+template <class Real> void Solver<Real>::seep(const Axis& ax, int a, int b, Real level) {
+    const bool far_end = a != 0;
+    const Real outward = far_end ? Real(1) : Real(-1);
+    const std::size_t f = ax.face(a, b);
+    const std::size_t N = ax.cell(far_end ? a - 1 : 0, b);
+    const Real outside = std::max(level - terrain[N], Real(0));
+    const Real rise = (terrain[N] + water[N]) - (terrain[N] + outside);
+    Real& um = mixed_velocity.along(ax)[f];
+    const Real own = outward * um;
+    const Real pushed = own + P.k * water_gravity(std::abs(own), std::max(water[N], outside)) * rise;
+    Real free(1);
+    if (has(EFFECT_RETENTION)) {
+        const auto through = [&](Real depth) {
+            if (depth >= sand[N]) return Real(1);
+            const Real drains = std::clamp((depth / sand[N] - P.retained) / (Real(1) - P.retained), Real(0), Real(1));
+            return drains * drains * drains;
+        };
+        free = pushed > Real(0)   ? through(water[N])
+               : pushed < Real(0) ? through(outside)
+                                  : std::max(through(water[N]), through(outside));
+    }
+    Real u = Real(0);
+    if (free > Real(0)) u = pushed / (Real(1) + P.dt * P.exchange / (P.rho_w * free));
+    if (std::abs(rise) <= P.rest_surface && std::abs(own) <= P.rest_velocity) u = Real(0);
+    if (blocked(mixed[N], std::min(outside, sand[N]), terrain[N] + water[N], terrain[N] + outside, P.eps)) u = Real(0);
+    um = clamped(outward * u, P.clamp);
+    if (outside - sand[N] > P.eps || sand[N] <= P.eps) return;
+    Real& uw = pure_velocity.along(ax)[f];
+    uw = outward * (std::max(outward * uw, Real(0)) + std::min(outward * um, Real(0)));
+}
+
 /// Whether face b of a side lies between its ends.
 template <class Real> bool Solver<Real>::in_span(const Side& side, int b) const {
     const double centre = (b + 0.5) * settings.grid.dx;
@@ -175,18 +209,20 @@ template <class Real> void Solver<Real>::update_side(const Side& side, const Axi
         const std::size_t inner = ax.cell(far_end ? a - 1 : 0, b);
         const bool open = side.kind != SideKind::wall && in_span(side, b);
         if (!open || side.kind != SideKind::level) pure_velocity.along(ax)[f] = Real(0);
-        mixed_velocity.along(ax)[f] = Real(0);
+        if (!open || side.kind != SideKind::level) mixed_velocity.along(ax)[f] = Real(0);
         ghost_water.along(ax)[f] = Real(0);
         if (!open) continue;
         if (side.kind == SideKind::discharge) {
             const Real q = static_cast<Real>(value) / (Real(open_faces) * P.dx); // as wanted; what moves is of whole quanta
             const Real critical = P.gravity > Real(0) ? std::cbrt(q * q / P.gravity) : Real(0);
-            const Real depth = std::max(std::max(water[inner], critical), given * P.k / P.alpha);
+            const Real fastest = given * P.k / P.alpha;
+            const bool shooting = side.depth > 0 && static_cast<Real>(side.depth) < critical;
+            const Real depth = std::max(shooting ? static_cast<Real>(side.depth) : std::max(water[inner], critical), fastest);
             ghost_water.along(ax)[f] = depth;
             if (depth > Real(0)) pure_velocity.along(ax)[f] = -outward * given / depth;
         } else if (side.kind == SideKind::level) {
             level_face(ax, a, b, static_cast<Real>(value), static_cast<Real>(sample(side.value, time() - settings.dt)));
-            if (has(EFFECT_MIXTURE)) leave(mixed_velocity, ax, far_end, b, P.clamp);
+            if (has(EFFECT_MIXTURE)) seep(ax, a, b, static_cast<Real>(value));
         } else {
             radiate(ax, far_end, b);
             if (has(EFFECT_MIXTURE)) leave(mixed_velocity, ax, far_end, b, P.clamp);

@@ -188,6 +188,7 @@ template <class Real> class Solver {
     bool in_span(const Side& side, int b) const;
     void leave(Faces<Real>& velocity, const Axis& axis, bool far_end, int b, Real fastest) const;
     void radiate(const Axis& axis, bool far_end, int b);
+    void seep(const Axis& axis, int a, int b, Real level);
     void update_side(const Side& side, const Axis& axis, bool far_end);
     void level_face(const Axis& axis, int a, int b, Real level, Real level_before);
 

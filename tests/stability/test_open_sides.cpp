@@ -142,3 +142,53 @@ TEST_CASE("a discharge arrives on time to one quantum a face however small it is
     step(*world, 5000);
     CHECK(std::abs(total(cells_of(*world, "water_height")) - 400 * 5e-6) <= 400 * height_quantum(scene.settings.method));
 }
+
+TEST_CASE("a discharge with a depth below critical comes in that deep and fast; without it, critical") {
+    const auto middle = [](double depth) {
+        auto scene = flat_scene(100, 1, 0.1, 0.005);
+        scene.settings.sides[SIDE_WEST] = {SideKind::discharge, 0, 1e30, {{{0, 0.9 * 0.1}}}, depth};
+        scene.settings.sides[SIDE_EAST].kind = SideKind::outflow;
+        auto world = make_world(scene);
+        step(*world, 3000);
+        const auto h = cells_of(*world, "water_height");
+        MESSAGE("depth " << depth << ": " << h.at(2, 0) << ", " << h.at(50, 0));
+        return h.at(50, 0);
+    };
+    CHECK(std::abs(middle(0.25) - 0.25) < 0.005); // 3.6 m/s, Froude 2.3
+    CHECK(middle(0) > 0.35);                      // critical: 0.435
+}
+
+TEST_CASE("level sides hold the ground water of the sand beside them: Dupuit's parabola and flow") {
+    for (const double exchange : {1e4, 1e5}) {
+        const int cells = 50;
+        const double dx = 0.2, high = 1.2, low = 0.6;
+        auto scene = flat_scene(cells, 1, dx, 0.01);
+        scene.settings.material.exchange_rate = exchange;
+        scene.settings.material.retention = 0;
+        scene.settings.material.diffusion_rate = 0; // would add to the flow
+        scene.settings.material.young_modulus = 0;
+        scene.settings.material.friction = 2;
+        scene.settings.method.rest_velocity = 0;
+        scene.settings.method.rest_surface = 0;
+        const double length = (cells + 1) * dx; // between the middles of the ghosts
+        const auto table = [&](double x) { return std::sqrt(high * high + (low * low - high * high) * (x + dx / 2) / length); };
+        scene.fill(scene.fields.sand, [](double, double) { return 1.5; });
+        scene.fill(scene.fields.water, [&](double, double) { return 0.9; });
+        scene.settings.sides[SIDE_WEST] = {SideKind::level, 0, 1e30, {{{0, high}}}};
+        scene.settings.sides[SIDE_EAST] = {SideKind::level, 0, 1e30, {{{0, low}}}};
+        auto world = make_world(scene);
+        const int steps = exchange > 5e4 ? 100000 : 20000;
+        step(*world, steps);
+        const auto before = stats_of(*world);
+        step(*world, steps / 10);
+        const auto after = stats_of(*world);
+        const auto h = cells_of(*world, "water_height");
+        double off = 0;
+        for (int i = 0; i < cells; ++i) off = std::max(off, std::abs(h.at(i, 0) - table((i + 0.5) * dx)));
+        const double out = double(after.ledger.water_out - before.ledger.water_out) * after.quantum * dx / (steps / 10 * 0.01);
+        const double flow = 1000 * 9.81 / exchange * (high * high - low * low) / (2 * length); // m2/s
+        MESSAGE("exchange " << exchange << ": off the parabola by " << off << " m, flow " << out << " m2/s, Dupuit's " << flow);
+        CHECK(std::abs(out / flow - 1) < 0.03);
+        CHECK(off < 0.03 * (high - low));
+    }
+}

@@ -172,6 +172,8 @@ TEST_CASE("level errors: sides, sources, series") {
     refuses(R"("sides": {"west": {"kind": "level"}})", "sides.west.value: missing");
     refuses(R"("sides": {"west": {"kind": "outflow", "value": 1}})", "only discharge and level have one");
     refuses(R"("sides": {"west": {"kind": "outflow", "from": 8}})", "sides.west.from: 8 is outside 0 ... 8");
+    refuses(R"("sides": {"west": {"kind": "outflow", "depth": 1}})", "only a discharge has one");
+    refuses(R"("sides": {"west": {"kind": "discharge", "value": 1, "depth": 17}})", "sides.west.depth: 17 is outside 0 ... 16");
     refuses(R"("sides": {"west": {"kind": "level", "value": []}})", "sides.west.value: an empty list");
     refuses(R"("sides": {"west": {"kind": "level", "value": [[0, 1], [0, 2]]}})",
             "sides.west.value[1]: the time 0 s does not come after 0 s");
