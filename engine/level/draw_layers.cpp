@@ -3,6 +3,7 @@
 #include "engine/level/layers.hpp"
 #include "engine/settings/messages.hpp"
 #include "engine/settings/quanta.hpp"
+#include "engine/settings/setting_table.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -33,30 +34,30 @@ double combined(double current, double value, Combine combine) {
     return current;
 }
 
-Result<std::vector<float>> load_heights(const Layer& layer, const LevelGrid& grid, const FileReader& files,
-                                        std::vector<std::string>& warnings) {
-    const MapSource& source = *layer.map;
+/// The values of a map at the middles of cells, within +-`most`; `what` they are, in messages about the layer at `path`.
+Result<std::vector<float>> load_map(const MapSource& source, const std::string& path, const char* what, double most,
+                                    const LevelGrid& grid, const FileReader& files, std::vector<std::string>& warnings) {
     auto map = read_map(source.file, source.size, files);
     if (!map) // a bad argument of ours is a bad field of the level's author
         return error(map.status().code == Code::bad_argument ? Code::bad_file : map.status().code,
-                     layer.path + ".file: " + map.status().message);
+                     path + ".file: " + map.status().message);
     if (source.grey_range && !map->integer)
-        return error(Code::bad_file, layer.path + ": min and max are for integer maps (PNG, r16); " + source.file +
-                                         " holds heights, use scale and offset");
+        return error(Code::bad_file, path + ": min and max are for integer maps (PNG, r16); " + source.file +
+                                         " holds numbers as they are, use scale and offset");
     if (map->integer && !source.grey_range && !source.scale_given)
-        return error(Code::bad_file, layer.path + ": " + source.file + " holds grey values; give min and max, what " +
-                                         "black and white stand for");
-    if (map->filled > 0) warnings.push_back(filled_warning(*map, layer.path + ".file: " + source.file));
+        return error(Code::bad_file,
+                     path + ": " + source.file + " holds grey values; give min and max, what black and white stand for");
+    if (map->filled > 0) warnings.push_back(filled_warning(*map, path + ".file: " + source.file));
     std::vector<float> values = resample(*map, grid.nx, grid.ny);
     const double scale = source.grey_range ? source.max - source.min : source.scale;
     const double offset = source.grey_range ? source.min : source.offset;
     for (std::size_t cell = 0; cell < values.size(); ++cell) {
-        const double height = static_cast<double>(values[cell]) * scale + offset;
-        if (!(std::fabs(height) <= HEIGHT_MOST))
-            return error(Code::bad_file, outside_text(layer.path + ": height", height, -HEIGHT_MOST, HEIGHT_MOST) + " in cell (" +
+        const double value = static_cast<double>(values[cell]) * scale + offset;
+        if (!(std::fabs(value) <= most))
+            return error(Code::bad_file, outside_text(path + ": " + what, value, -most, most) + " in cell (" +
                                              std::to_string(cell % static_cast<std::size_t>(grid.nx)) + ", " +
                                              std::to_string(cell / static_cast<std::size_t>(grid.nx)) + ")");
-        values[cell] = static_cast<float>(height);
+        values[cell] = static_cast<float>(value);
     }
     return values;
 }
@@ -190,7 +191,7 @@ class Drawing {
     Result<bool> draw_centers(const Layer& layer, LayerTarget target, std::vector<float>& field, std::vector<float>* at_cut) {
         std::vector<float> heights;
         if (layer.map) {
-            auto loaded = load_heights(layer, grid_, files_, warnings_);
+            auto loaded = load_map(*layer.map, layer.path, "height", HEIGHT_MOST, grid_, files_, warnings_);
             if (!loaded) return loaded.status();
             heights = std::move(*loaded);
             if (at_cut != nullptr)
@@ -284,22 +285,38 @@ Status draw_roughness(std::vector<Layer> layers, const LevelGrid& grid, const Fi
     return status;
 }
 
-void draw_velocities(const std::vector<VelocityRegion>& regions, bool of_sand, const LevelGrid& grid, std::vector<float>& x,
-                     std::vector<float>& y) {
-    for (const VelocityRegion& region : regions) {
-        if (region.of_sand != of_sand) continue;
+Status draw_velocities(const std::vector<VelocityLayer>& layers, bool of_sand, const LevelGrid& grid, const FileReader& files,
+                       std::vector<float>& x, std::vector<float>& y, std::vector<std::string>& warnings) {
+    for (const VelocityLayer& layer : layers) {
+        if (layer.of_sand != of_sand) continue;
         x.resize(cell_count(grid), 0.0f);
         y.resize(cell_count(grid), 0.0f);
+        bool changed = false;
+        const auto set = [&changed](float& velocity, float to) {
+            changed = changed || velocity != to;
+            velocity = to;
+        };
+        if (layer.map) {
+            auto values = load_map(*layer.map, layer.path, "velocity", SPEED_MOST, grid, files, warnings);
+            if (!values) return values.status();
+            std::vector<float>& along = layer.map_along_y ? y : x;
+            for (std::size_t cell = 0; cell < along.size(); ++cell) set(along[cell], (*values)[cell]);
+        }
         std::size_t cell = 0;
-        for (int j = 0; j < grid.ny; ++j)
+        for (int j = 0; j < grid.ny && !layer.map; ++j)
             for (int i = 0; i < grid.nx; ++i, ++cell) {
                 const Point center = cell_center(grid, i, j);
-                const double relative = relative_height(region.shape, center[0], center[1]);
-                if (std::isinf(relative)) continue;
-                x[cell] = static_cast<float>(region.velocity[0]);
-                y[cell] = static_cast<float>(region.velocity[1]);
+                if (std::isinf(relative_height(layer.shape, center[0], center[1]))) continue;
+                set(x[cell], static_cast<float>(layer.velocity[0]));
+                set(y[cell], static_cast<float>(layer.velocity[1]));
             }
+        const bool meant_as_nothing = !layer.map && layer.velocity == Point{0, 0};
+        if (!changed && !meant_as_nothing)
+            warnings.push_back(layer.path +
+                               ": changes no cell; it lies outside the grid or between cell centres, or says what is "
+                               "there already");
     }
+    return ok_status();
 }
 
 } // namespace wadi

@@ -57,16 +57,18 @@ struct Layer {
 /// Advice for a map with cells of no known height, Map::filled.
 std::string filled_warning(const Map& map, const std::string& path);
 
-/// A region that starts with a velocity.
-struct VelocityRegion {
-    std::string path;
+/// Where water or sand starts with a velocity: a shape has both components, a map one.
+struct VelocityLayer {
+    std::string path; // velocities[2]
     bool of_sand = false;
+    std::optional<MapSource> map; // otherwise the shape counts
+    bool map_along_y = false;
     Shape shape;
-    Point velocity = {0, 0}; // [m/s]
+    Point velocity = {0, 0}; // of a shape [m/s]
 };
 
 std::vector<Layer> read_layers(const Json& value, const std::string& path, LayerTarget target, Status& status);
-std::vector<VelocityRegion> read_velocities(const Json& value, const std::string& path, Status& status);
+std::vector<VelocityLayer> read_velocities(const Json& value, const std::string& path, Status& status);
 
 /// The layers of a level by what they make.
 struct LayerLists {
@@ -85,8 +87,9 @@ Status draw_layers(const LayerLists& lists, const LevelGrid& grid, const FileRea
 Status draw_roughness(std::vector<Layer> layers, const LevelGrid& grid, const FileReader& files, std::vector<float>& roughness,
                       std::vector<std::string>& warnings);
 
-/// Draws the velocities of water or of sand into x and y; both stay empty when no region sets any.
-void draw_velocities(const std::vector<VelocityRegion>& regions, bool of_sand, const LevelGrid& grid, std::vector<float>& x,
-                     std::vector<float>& y);
+/// Draws the velocities of water or of sand at the middles of cells into x and y; both stay empty when no layer sets any. A
+/// layer that changes no cell is worth a warning.
+Status draw_velocities(const std::vector<VelocityLayer>& layers, bool of_sand, const LevelGrid& grid, const FileReader& files,
+                       std::vector<float>& x, std::vector<float>& y, std::vector<std::string>& warnings);
 
 } // namespace wadi

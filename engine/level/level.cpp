@@ -15,7 +15,7 @@ constexpr std::uint64_t LEVEL_BYTES_MOST = 16u << 20;
 constexpr double DURATION_MOST = 1e9; // [s]
 
 struct Layers : LayerLists {
-    std::vector<VelocityRegion> velocities;
+    std::vector<VelocityLayer> velocities;
     std::vector<Layer> roughness;
 };
 
@@ -56,8 +56,11 @@ Status read_root(const Json& json, const FileReader& files, Level& level, Layers
 Status draw(const Layers& layers, const LevelGrid& grid, const FileReader& files, Level& level) {
     InitialFields& fields = level.fields;
     if (Status status = draw_layers(layers, grid, files, fields, level.warnings); !status) return status;
-    draw_velocities(layers.velocities, false, grid, fields.velocity_x, fields.velocity_y);
-    draw_velocities(layers.velocities, true, grid, fields.sand_velocity_x, fields.sand_velocity_y);
+    const auto draw_of = [&](bool sand, std::vector<float>& x, std::vector<float>& y) {
+        return draw_velocities(layers.velocities, sand, grid, files, x, y, level.warnings);
+    };
+    if (Status status = draw_of(false, fields.velocity_x, fields.velocity_y); !status) return status;
+    if (Status status = draw_of(true, fields.sand_velocity_x, fields.sand_velocity_y); !status) return status;
     return draw_roughness(layers.roughness, grid, files, level.settings.roughness, level.warnings);
 }
 

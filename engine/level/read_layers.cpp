@@ -116,7 +116,7 @@ void read_shape(ObjectReader& reader, LayerTarget target, Layer& layer) {
     }
 }
 
-void read_map_source(ObjectReader& reader, LayerTarget target, Layer& layer) {
+MapSource read_map_source(ObjectReader& reader) {
     MapSource map;
     reader.string("file", map.file);
     if (map.file.empty()) reader.fail("file", "must name a map");
@@ -138,10 +138,14 @@ void read_map_source(ObjectReader& reader, LayerTarget target, Layer& layer) {
         map.size = {static_cast<int>(size[0]), static_cast<int>(size[1])};
         if (size[0] != map.size->first || size[1] != map.size->second) reader.fail("size", "must be whole numbers");
     }
+    return map;
+}
+
+void read_map_layer(ObjectReader& reader, LayerTarget target, Layer& layer) {
+    layer.map = read_map_source(reader);
     bool absolute = false;
     if (of_column(target)) reader.boolean("absolute", absolute);
     if (absolute) layer.amount = Amount::surface;
-    layer.map = map;
 }
 
 void read_combine(ObjectReader& reader, LayerTarget target, Layer& layer) {
@@ -163,6 +167,13 @@ void read_combine(ObjectReader& reader, LayerTarget target, Layer& layer) {
     layer.only_present = where == 1;
 }
 
+/// Whether a layer is a map; fails unless it is either that or a shape.
+bool is_map(ObjectReader& reader, const Json& layer) {
+    const bool has_file = layer.contains("file");
+    if (has_file == layer.contains("shape")) reader.fail("", "needs either a \"shape\" or the \"file\" of a map");
+    return has_file;
+}
+
 } // namespace
 
 std::vector<Layer> read_layers(const Json& value, const std::string& path, LayerTarget target, Status& status) {
@@ -173,13 +184,10 @@ std::vector<Layer> read_layers(const Json& value, const std::string& path, Layer
         layer.path = path + "[" + std::to_string(n) + "]";
         ObjectReader reader(*elements[n], layer.path, status);
         if (!status) break;
-        const bool has_file = elements[n]->contains("file");
-        if (has_file == elements[n]->contains("shape")) {
-            reader.fail("", "needs either a \"shape\" or the \"file\" of a map");
-            break;
-        }
+        const bool has_file = is_map(reader, *elements[n]);
+        if (!status) break;
         if (has_file)
-            read_map_source(reader, target, layer);
+            read_map_layer(reader, target, layer);
         else
             read_shape(reader, target, layer);
         if (status) read_combine(reader, target, layer);
@@ -189,28 +197,38 @@ std::vector<Layer> read_layers(const Json& value, const std::string& path, Layer
     return layers;
 }
 
-std::vector<VelocityRegion> read_velocities(const Json& value, const std::string& path, Status& status) {
-    std::vector<VelocityRegion> regions;
+std::vector<VelocityLayer> read_velocities(const Json& value, const std::string& path, Status& status) {
+    std::vector<VelocityLayer> layers;
     const auto elements = read_array(value, path, LAYERS_MOST, status);
     for (std::size_t n = 0; n < elements.size() && status; ++n) {
-        VelocityRegion region;
-        region.path = path + "[" + std::to_string(n) + "]";
-        ObjectReader reader(*elements[n], region.path, status);
+        VelocityLayer layer;
+        layer.path = path + "[" + std::to_string(n) + "]";
+        ObjectReader reader(*elements[n], layer.path, status);
+        if (!status) break;
         int of = 0;
         reader.require("of");
         reader.choice("of", {"water", "sand"}, of);
-        region.of_sand = of == 1;
-        int kind = 0;
-        reader.require("shape");
-        reader.choice("shape", REGION_NAMES, kind);
-        region.shape.kind = static_cast<ShapeKind>(kind);
-        if (status) read_outline(reader, region.shape);
-        reader.require("velocity");
-        reader.pair("velocity", region.velocity, -SPEED_MOST, SPEED_MOST);
+        layer.of_sand = of == 1;
+        const bool has_file = is_map(reader, *elements[n]);
+        if (!status) break;
+        if (has_file) {
+            int component = 0;
+            reader.require("component");
+            reader.choice("component", {"x", "y"}, component);
+            layer.map_along_y = component == 1;
+            layer.map = read_map_source(reader);
+        } else {
+            int kind = 0;
+            reader.choice("shape", REGION_NAMES, kind);
+            layer.shape.kind = static_cast<ShapeKind>(kind); // REGION_NAMES begin like SHAPE_NAMES
+            if (status) read_outline(reader, layer.shape);
+            reader.require("velocity");
+            reader.pair("velocity", layer.velocity, -SPEED_MOST, SPEED_MOST);
+        }
         reader.finish();
-        regions.push_back(std::move(region));
+        layers.push_back(std::move(layer));
     }
-    return regions;
+    return layers;
 }
 
 } // namespace wadi

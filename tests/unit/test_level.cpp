@@ -215,6 +215,36 @@ TEST_CASE("level: roughness by shapes and maps, added to that of the material an
     CHECK(mapped(R"({"file": "grey.png", "min": 0.25, "max": 0.5})") == std::vector<float>{0.5f, 0.25f, 0.25f, 0.5f});
 }
 
+TEST_CASE("level: velocities from maps, each of one component") {
+    Folder folder;
+    std::vector<double> wave;
+    for (int n = 0; n < 80; ++n) wave.push_back(0.25 * n);
+    folder.write("wave.npy", map_files::npy(map_files::dictionary("<f8", "(8, 10)"), wave));
+    const std::string maps = R"("velocities": [
+        {"of": "water", "shape": "plane", "velocity": [7, 8]},
+        {"of": "water", "component": "x", "file": "wave.npy"},
+        {"of": "sand", "component": "y", "file": "wave.npy", "scale": -2, "offset": 1},
+        {"of": "water", "shape": "box", "from": [0, 0], "to": [1, 1], "velocity": [-1, -1]}])";
+    const Level level = must(parse(maps, folder.path()));
+    CHECK(at(level, level.fields.velocity_x, 3, 2) == 0.25 * 23);
+    CHECK(at(level, level.fields.velocity_y, 3, 2) == 8); // the map is of x alone
+    CHECK(at(level, level.fields.velocity_x, 0, 0) == -1);
+    CHECK(at(level, level.fields.sand_velocity_x, 9, 7) == 0);
+    CHECK(at(level, level.fields.sand_velocity_y, 9, 7) == 1 - 2 * 0.25 * 79);
+    CHECK(level.warnings.empty());
+
+    LevelOverrides half;
+    half.size = {5, 4};
+    const Level coarse = must(parse(maps, folder.path(), half));
+    CHECK(at(coarse, coarse.fields.velocity_x, 1, 1) == 0.25 * (22 + 23 + 32 + 33) / 4);
+
+    folder.write("fast.npy", map_files::npy(map_files::dictionary("<f8", "(1, 1)"), std::vector<double>{10001}));
+    CHECK(says(message(parse(R"("velocities": [{"of": "water", "component": "x", "file": "fast.npy"}])", folder.path())),
+               "velocities[0]: velocity: 10001 is outside -10000 ... 10000 in cell (0, 0)"));
+    CHECK(says(message(parse(R"("velocities": [{"of": "water", "file": "wave.npy"}])", folder.path())),
+               "velocities[0].component: missing"));
+}
+
 TEST_CASE("level: maps") {
     const Folder folder;
     folder.write("grey.png", map_files::png16(2, 2, {0, 65535, 65535, 0})); // north row first

@@ -181,6 +181,13 @@ TEST_CASE("level warnings: a layer that changes nothing") {
     CHECK(says(warnings(R"("terrain": [{"shape": "plane", "height": 3}], "water": [{"shape": "plane", "surface": 2}])"),
                "water[0]: changes no cell"));
     CHECK(warnings(R"("terrain": [{"shape": "plane", "height": 0}])").empty());
+    const auto velocity = [](const std::string& from_to, const std::string& of_it) {
+        return warnings(R"("velocities": [{"of": "water", "shape": "box", )" + from_to + R"(, "velocity": )" + of_it + "}]");
+    };
+    // Round faces, whose velocity it is meant to be, but round no cell centre.
+    CHECK(says(velocity(R"("from": [0.26, 0], "to": [0.34, 8])", "[1, 0]"), "velocities[0]: changes no cell"));
+    CHECK(velocity(R"("from": [0.26, 0], "to": [0.36, 8])", "[1, 0]").empty());
+    CHECK(velocity(R"("from": [0.26, 0], "to": [0.36, 8])", "[0, 0]").empty());
 }
 
 TEST_CASE("shipped levels load without a warning, dam_break with the three its README explains") {
