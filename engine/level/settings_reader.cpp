@@ -110,7 +110,9 @@ Source read_source(const Json& value, const std::string& path, const FileReader&
         reader.require("radius");
         reader.number("radius", source.radius, 0, ANY_NUMBER);
     }
-    if (const Json* rate = reader.require("rate")) source.rate = read_series(*rate, path + ".rate", files, status);
+    if (const Json* rate = reader.find("rate")) source.rate = read_series(*rate, path + ".rate", files, status);
+    if (const Json* discharge = reader.find("discharge"))
+        source.discharge = read_series(*discharge, path + ".discharge", files, status);
     source.set_velocity = reader.find("velocity") != nullptr;
     reader.pair("velocity", source.velocity, -SPEED_MOST, SPEED_MOST);
     reader.finish();

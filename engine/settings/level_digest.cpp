@@ -36,6 +36,7 @@ std::uint64_t level_digest(const Settings& s) {
               source.box[1], source.box[2], source.box[3], double(source.set_velocity), source.velocity[0], source.velocity[1]})
             add(value);
         series(source.rate);
+        if (!source.discharge.samples.empty()) series(source.discharge);
     }
     series(s.rain);
     series(s.evaporation);

@@ -140,8 +140,12 @@ Status check_source(const Settings& settings, std::size_t index) {
             return refuse(path + ": lies outside the grid, which spans 0 ... " + number_text(lengths[axis]) + " m in " +
                           (axis == 0 ? "x" : "y"));
     }
-    if (source.rate.samples.empty()) return refuse(path + ".rate: missing");
+    if (source.rate.samples.empty() == source.discharge.samples.empty())
+        return refuse(path + (source.rate.samples.empty() ? ".rate: missing; depth per time in m/s, or discharge in m3/s"
+                                                          : ": give only one of rate and discharge"));
     if (Status status = check_series(path + ".rate", source.rate, -RATE_MOST, RATE_MOST); !status) return status;
+    if (Status status = check_series(path + ".discharge", source.discharge, -DISCHARGE_MOST, DISCHARGE_MOST); !status)
+        return status;
     if (!source.set_velocity) return ok_status();
     if (source.material != SourceMaterial::water) return refuse(path + ".velocity: only a source of water sets one");
     for (std::size_t axis = 0; axis < 2; ++axis)

@@ -115,9 +115,10 @@ struct Source {
     std::array<double, 2> center = {0, 0};    // point and disc [m]
     double radius = 0;                        // disc [m]
     std::array<double, 4> box = {0, 0, 0, 0}; // x0, y0, x1, y1 [m]
-    TimeSeries rate;                          // depth per time [m/s]
+    TimeSeries rate;                          // depth per time [m/s], where there is no discharge
     bool set_velocity = false;
     std::array<double, 2> velocity = {0, 0}; // forced on the water's faces inside while the rate is positive [m/s]
+    TimeSeries discharge = {};               // volume per time, shared by the cells that it covers [m3/s]
 };
 
 /// What the level wants of one effect: derived from content, or forced.

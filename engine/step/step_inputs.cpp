@@ -1,13 +1,53 @@
 #include "engine/step/step_inputs.hpp"
+#include "engine/settings/setting_table.hpp"
 #include "engine/step/half.hpp"
 #include "engine/step/world_params.hpp"
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 
 namespace wadi {
 
+namespace {
+
+/// Area of the cells that a source covers: covers() of apply_sources.stage, in its arithmetic, so that a cell whose centre lies
+/// on the rim counts here where it counts there [m2].
+double covered_area(const vec4& shape, bool disc, const Grid& grid) {
+    const auto dx = static_cast<float>(grid.dx);
+    const float radius = disc ? std::sqrt(shape.z) : 0;
+    // Rows and columns from `low` to `high`, a cell wide of them.
+    const auto first = [dx](float low, int cells) { return static_cast<int>(std::clamp(low / dx - 1.0F, 0.0F, float(cells))); };
+    const auto end = [dx](float high, int cells) { return static_cast<int>(std::clamp(high / dx + 2.0F, 0.0F, float(cells))); };
+    const int i0 = first(shape.x - radius, grid.nx), i1 = end(disc ? shape.x + radius : shape.z, grid.nx);
+    const int j0 = first(shape.y - radius, grid.ny), j1 = end(disc ? shape.y + radius : shape.w, grid.ny);
+    std::int64_t cells = 0;
+    for (int j = j0; j < j1; ++j)
+        for (int i = i0; i < i1; ++i) {
+            const float x = (static_cast<float>(i) + 0.5F) * dx, y = (static_cast<float>(j) + 0.5F) * dx;
+            const float rx = x - shape.x, ry = y - shape.y;
+            const bool in_box = x >= shape.x && y >= shape.y && x < shape.z && y < shape.w;
+            cells += (disc ? rx * rx + ry * ry <= shape.z : in_box) ? 1 : 0;
+        }
+    return static_cast<double>(cells) * grid.dx * grid.dx;
+}
+
+} // namespace
+
 StepInputs::StepInputs(const Settings& settings)
-    : settings_(settings), quantum_(height_quantum(settings.method)), totals_(settings.sources.size() + 6) {}
+    : settings_(settings), quantum_(height_quantum(settings.method)), areas_(settings.sources.size()),
+      totals_(settings.sources.size() + 6) {
+    const auto shapes = source_shapes(settings);
+    for (std::size_t n = 0; n < areas_.size(); ++n)
+        if (!settings.sources[n].discharge.samples.empty())
+            areas_[n] = covered_area(shapes[2 * n], settings.sources[n].shape == SourceShape::disc, settings.grid);
+}
+
+double StepInputs::rate_of(std::size_t n, double time) const {
+    const auto& source = settings_.sources[n];
+    if (source.discharge.samples.empty()) return source.rate.at(time);
+    return areas_[n] > 0 ? std::clamp(source.discharge.at(time) / areas_[n], -RATE_MOST, RATE_MOST) : 0;
+}
 
 float StepInputs::advance(Total& total, double rate) const {
     const double depth = rate * settings_.dt;
@@ -60,7 +100,7 @@ StepInput StepInputs::next(int step) {
     input.evaporation = advance(totals_[sources + 1], settings_.evaporation.at(time));
     for (std::size_t n = 0; n < sources; ++n) {
         const auto& source = settings_.sources[n];
-        const double rate = source.rate.at(time);
+        const double rate = rate_of(n, time);
         const bool velocity = source.set_velocity && rate > 0;
         const auto stored = [&](double v) {
             const auto speed = static_cast<float>(std::abs(v));

@@ -27,11 +27,14 @@ class StepInputs {
 
   private:
     float advance(Total& total, double rate) const;
+    /// Depth per time of source n [m/s].
+    double rate_of(std::size_t n, double time) const;
     void set_sides(StepInput& input, double time);
 
     const Settings settings_;
     const double quantum_;
-    Totals totals_, before_; // before the last next()
+    std::vector<double> areas_; // covered by each source with a discharge [m2]
+    Totals totals_, before_;    // before the last next()
 };
 
 /// Shapes as apply_sources reads them: two vec4 per source, MAX_SOURCES of them.

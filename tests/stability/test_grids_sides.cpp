@@ -109,3 +109,37 @@ TEST_CASE("a side lets water and sand out at the clamp's speed at most, whatever
     scene.fill(scene.fields.sand_velocity_x, [](double, double) { return 50; });
     on_every_backend(scene, [](World& world) { step(world, 1); }); // the ledger includes the clamp
 }
+
+TEST_CASE("a source's discharge is the volume per time that enters, whatever cells its disc covers") {
+    const double cell = 0.1, seconds = 2;
+    const auto entered = [&](std::array<double, 2> center, const TimeSeries& rate, const TimeSeries& discharge) {
+        auto scene = flat_scene(14, 12, cell, 0.01);
+        Source source;
+        source.center = center;
+        source.radius = 3 * cell;
+        source.rate = rate;
+        source.discharge = discharge;
+        scene.settings.sources = {source};
+        double volume = 0;
+        on_every_backend(scene, [&](World& world) {
+            step(world, 200);
+            const auto stats = world.reader().stats();
+            REQUIRE(stats);
+            volume = static_cast<double>(stats->ledger.water_in) * stats->quantum * cell * cell;
+            CHECK(stats->ledger.refused == 0);
+        });
+        return volume;
+    };
+    const double disc = 3.141592653589793 * 9 * cell * cell, depth = 2.5;
+    // A corner of cells, a middle with four centres on the rim itself, neither, and half of the disc outside the grid.
+    for (const auto& center : {std::array<double, 2>{0.6, 0.5}, std::array<double, 2>{0.65, 0.55},
+                               std::array<double, 2>{0.613, 0.581}, std::array<double, 2>{0, 0.6}}) {
+        CAPTURE(center[0]);
+        const double volume = depth * disc;
+        const TimeSeries constant{{{0, volume / seconds}}}, ramp{{{0, 0}, {seconds, 2 * volume / seconds}}};
+        CHECK(entered(center, {}, constant) == doctest::Approx(volume).epsilon(1e-6));
+        CHECK(entered(center, {}, ramp) == doctest::Approx(volume * 199 / 200).epsilon(1e-6)); // each step takes its start's
+        // The control: the same per area, with the area of the disc.
+        CHECK(std::abs(entered(center, {{{0, depth / seconds}}}, {}) / volume - 1) > 0.01);
+    }
+}

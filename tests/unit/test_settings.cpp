@@ -181,6 +181,12 @@ TEST_CASE("settings: sources and rain") {
                "to[0]: 1 is not greater than from, 1"));
     CHECK(says(with([](Source& s) { s.rate.samples.clear(); }), "sources[0].rate: missing"));
     CHECK(says(with([](Source& s) { s.rate.samples = {{0, 1}, {1, 2e4}}; }), "sources[0].rate[1]: 20000 is outside"));
+    CHECK(with([](Source& s) { std::swap(s.rate, s.discharge); }).empty());
+    CHECK(says(with([](Source& s) { s.discharge = s.rate; }), "sources[0]: give only one of rate and discharge"));
+    CHECK(says(with([](Source& s) {
+                   s.rate.samples.clear(), s.discharge.samples = {{0, 2e9}};
+               }),
+               "sources[0].discharge: 2e+09 is outside"));
     CHECK(with([](Source& s) { s.set_velocity = true, s.velocity = {1, 2}; }).empty());
     CHECK(says(with([](Source& s) {
                    s.set_velocity = true, s.velocity = {1, 2e5};
