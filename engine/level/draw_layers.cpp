@@ -73,8 +73,9 @@ double layer_height(const Layer& layer, double relative, const Below& below) {
     if (layer.amount == Amount::wet) return layer.top * below.sand_here;
     const double value = layer.top + relative;
     const double ground = below.terrain + below.sand;
-    // Water counts from the terrain, inside the sand too; sand that stands above the surface stays as it is.
-    if (layer.amount == Amount::surface) return value > ground ? value - ground + below.sand : 0.0;
+    // Water counts from the terrain, inside the sand too; sand that stands above the surface stays as it is unless inside_sand.
+    if (layer.amount == Amount::surface)
+        return value > (layer.inside_sand ? below.terrain : ground) ? value - ground + below.sand : 0.0;
     return value;
 }
 

@@ -49,7 +49,8 @@ struct Layer {
     std::optional<MapSource> map; // otherwise the shape counts
     Shape shape;
     Amount amount = Amount::height;
-    double top = 0; // height, surface or wet
+    double top = 0;           // height, surface or wet
+    bool inside_sand = false; // water up to a surface: in the pores of sand that stands above it, too
     Combine combine = Combine::add;
     bool only_present = false; // only cells where the field is above zero
 };

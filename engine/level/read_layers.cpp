@@ -148,6 +148,11 @@ void read_map_layer(ObjectReader& reader, LayerTarget target, Layer& layer) {
     if (absolute) layer.amount = Amount::surface;
 }
 
+/// Of water that is filled up to an elevation.
+void read_inside_sand(ObjectReader& reader, LayerTarget target, Layer& layer) {
+    if (target == LayerTarget::water && layer.amount == Amount::surface) reader.boolean("inside_sand", layer.inside_sand);
+}
+
 void read_combine(ObjectReader& reader, LayerTarget target, Layer& layer) {
     static const std::vector<std::string> all = {"add", "set", "max", "min", "subtract"};
     static const std::vector<std::string> filling = {"set", "max", "min"};
@@ -190,6 +195,7 @@ std::vector<Layer> read_layers(const Json& value, const std::string& path, Layer
             read_map_layer(reader, target, layer);
         else
             read_shape(reader, target, layer);
+        if (status) read_inside_sand(reader, target, layer);
         if (status) read_combine(reader, target, layer);
         reader.finish();
         layers.push_back(std::move(layer));

@@ -169,6 +169,24 @@ TEST_CASE("level: a dam with a flat crest across a valley") {
     CHECK(top(0, 4) == 3.75);
 }
 
+TEST_CASE("level: a surface inside sand fills the pores of a dune that stands above it") {
+    const auto drawn = [](const std::string& key) {
+        return must(parse(R"("terrain": [{"shape": "plane", "height": 0.25, "slope_x": 0.125}],
+            "sand": [{"shape": "box", "from": [3, 0], "to": [6.5, 8], "height": 2}, {"shape": "box", "from": [8, 0], "to": [9, 8], "height": 0.1}],
+            "water": [{"shape": "plane", "surface": 1.25)" +
+                          key + "}]"));
+    };
+    const Level lake = drawn(R"(, "inside_sand": true)"), dry = drawn("");
+    for (int i = 0; i < 10; ++i) {
+        CAPTURE(i);
+        const double ground = at(lake, lake.fields.terrain, i, 4), water = at(lake, lake.fields.water, i, 4);
+        CHECK(ground + water == std::max(ground, 1.25));                                     // to the bit
+        CHECK(at(dry, dry.fields.water, i, 4) == ((i >= 3 && i < 7) || i == 9 ? 0 : water)); // where sand stands above
+    }
+    CHECK(says(message(parse(R"("water": [{"shape": "plane", "height": 1, "inside_sand": true}])")), "inside_sand"));
+    CHECK(says(message(parse(R"("sand": [{"shape": "plane", "surface": 1, "inside_sand": true}])")), "inside_sand"));
+}
+
 TEST_CASE("level: surface cuts down with min") {
     const Level level = must(parse(R"("sand": [{"shape": "plane", "height": 3},
         {"shape": "box", "from": [0, 0], "to": [5, 8], "surface": 1, "combine": "min"}])"));
