@@ -14,6 +14,7 @@ namespace wadi {
 namespace {
 
 constexpr double LEVEL_MOST = 1e6; // [m], as largest_height
+constexpr const char* HEIGHT_LIMIT = " (method.largest_height)";
 constexpr double COORDINATE_MOST = double{GRID_MOST} * DX_MOST;
 
 Status refuse(std::string message) { return error(Code::bad_argument, std::move(message)); }
@@ -156,8 +157,9 @@ Status check_source(const Settings& settings, std::size_t index) {
     return ok_status();
 }
 
-/// "name: ... in cell (i, j)" for the first value outside least ... most.
-Status check_field(const char* name, const std::vector<float>& field, const Grid& grid, double least, double most) {
+/// "name: ... in cell (i, j)" for the first value outside least ... most; `limit` names where `most` comes from.
+Status check_field(const char* name, const std::vector<float>& field, const Grid& grid, double least, double most,
+                   const char* limit) {
     const std::size_t cells = static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny);
     if (!field.empty() && field.size() != cells)
         return refuse(std::string(name) + ": " + std::to_string(field.size()) + " values for a grid of " +
@@ -166,8 +168,8 @@ Status check_field(const char* name, const std::vector<float>& field, const Grid
         const double value = static_cast<double>(field[n]);
         if (value >= least && value <= most) continue;
         const auto width = static_cast<std::size_t>(grid.nx);
-        return refuse(outside_text(name, value, least, most) + " in cell (" + std::to_string(n % width) + ", " +
-                      std::to_string(n / width) + ")");
+        return refuse(outside_text(name, value, least, most) + (std::fabs(value) > most ? limit : "") + " in cell (" +
+                      std::to_string(n % width) + ", " + std::to_string(n / width) + ")");
     }
     return ok_status();
 }
@@ -238,16 +240,16 @@ Status validate(const Settings& settings) {
 Status validate(const InitialFields& fields, const Settings& settings) {
     const Grid& grid = settings.grid;
     const double most = settings.method.largest_height;
-    if (Status status = check_field("terrain", fields.terrain, grid, -most, most); !status) return status;
-    if (Status status = check_field("sand", fields.sand, grid, 0, most); !status) return status;
-    if (Status status = check_field("water", fields.water, grid, 0, most); !status) return status;
+    if (Status status = check_field("terrain", fields.terrain, grid, -most, most, HEIGHT_LIMIT); !status) return status;
+    if (Status status = check_field("sand", fields.sand, grid, 0, most, HEIGHT_LIMIT); !status) return status;
+    if (Status status = check_field("water", fields.water, grid, 0, most, HEIGHT_LIMIT); !status) return status;
     const std::pair<const char*, const std::vector<float>*> velocities[] = {{"velocity_x", &fields.velocity_x},
                                                                             {"velocity_y", &fields.velocity_y},
                                                                             {"sand_velocity_x", &fields.sand_velocity_x},
                                                                             {"sand_velocity_y", &fields.sand_velocity_y}};
     for (const auto& [name, field] : velocities)
-        if (Status status = check_field(name, *field, grid, -SPEED_MOST, SPEED_MOST); !status) return status;
-    if (Status status = check_field("roughness", settings.roughness, grid, 0, MANNING_MOST); !status) return status;
+        if (Status status = check_field(name, *field, grid, -SPEED_MOST, SPEED_MOST, ""); !status) return status;
+    if (Status status = check_field("roughness", settings.roughness, grid, 0, MANNING_MOST, ""); !status) return status;
 
     const std::size_t cells = static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny);
     for (std::size_t n = 0; n < cells; ++n) {

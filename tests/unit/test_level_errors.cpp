@@ -126,7 +126,8 @@ TEST_CASE("level errors: layers") {
     refuses(R"("roughness": [{"shape": "plane", "manning": 0.1, "where": "present"}])", "roughness[0].where: unknown key");
     refuses(R"("roughness": [{"shape": "plane", "manning": 0.1, "combine": "subtract"}])",
             "roughness: -0.1 is outside 0 ... 1 in cell (0, 0)");
-    refuses(R"("terrain": [{"shape": "plane", "height": 17}])", "terrain: 17 is outside -16 ... 16 in cell (0, 0)");
+    refuses(R"("terrain": [{"shape": "plane", "height": 17}])",
+            "terrain: 17 is outside -16 ... 16 (method.largest_height) in cell (0, 0)");
     refuses(R"("terrain": [{"shape": "plane", "height": 15}], "sand": [{"shape": "plane", "height": 2}])",
             "cell (0, 0) is 17 m high, above method.largest_height, 16 m");
 }
