@@ -1,5 +1,6 @@
 #include "engine/image/map.hpp"
 #include "engine/level/coverage.hpp"
+#include "engine/level/lakes.hpp"
 #include "engine/level/layers.hpp"
 #include "engine/settings/messages.hpp"
 #include "engine/settings/quanta.hpp"
@@ -34,9 +35,9 @@ double combined(double current, double value, Combine combine) {
     return current;
 }
 
-/// The values of a map at the middles of cells, within +-`most`; `what` they are, in messages about the layer at `path`.
-Result<std::vector<float>> load_map(const MapSource& source, const std::string& path, const char* what, double most,
-                                    const LevelGrid& grid, const FileReader& files, std::vector<std::string>& warnings) {
+/// A layer's map as its file has it.
+Result<Map> read_source(const MapSource& source, const std::string& path, const char* what, const FileReader& files,
+                        std::vector<std::string>& warnings) {
     auto map = read_map(source.file, source.size, files);
     if (!map) // a bad argument of ours is a bad field of the level's author
         return error(map.status().code == Code::bad_argument ? Code::bad_file : map.status().code,
@@ -48,15 +49,21 @@ Result<std::vector<float>> load_map(const MapSource& source, const std::string& 
         return error(Code::bad_file,
                      path + ": " + source.file + " holds grey values; give min and max, what black and white stand for");
     if (map->filled > 0) warnings.push_back(filled_warning(*map, path + ".file: " + source.file));
-    std::vector<float> values = resample(*map, grid.nx, grid.ny);
+    return map;
+}
+
+/// What a map says at the middles of nx * ny cells, within +-`most`; `what` it is, in messages about the layer at `path`.
+Result<std::vector<float>> values_of(const Map& map, const MapSource& source, const std::string& path, const char* what,
+                                     double most, int nx, int ny) {
+    std::vector<float> values = resample(map, nx, ny);
     const double scale = source.grey_range ? source.max - source.min : source.scale;
     const double offset = source.grey_range ? source.min : source.offset;
     for (std::size_t cell = 0; cell < values.size(); ++cell) {
         const double value = static_cast<double>(values[cell]) * scale + offset;
         if (!(std::fabs(value) <= most))
             return error(Code::bad_file, outside_text(path + ": " + what, value, -most, most) + " in cell (" +
-                                             std::to_string(cell % static_cast<std::size_t>(grid.nx)) + ", " +
-                                             std::to_string(cell / static_cast<std::size_t>(grid.nx)) + ")");
+                                             std::to_string(cell % static_cast<std::size_t>(nx)) + ", " +
+                                             std::to_string(cell / static_cast<std::size_t>(nx)) + ")");
         values[cell] = static_cast<float>(value);
     }
     return values;
@@ -192,9 +199,14 @@ class Drawing {
     Result<bool> draw_centers(const Layer& layer, LayerTarget target, std::vector<float>& field, std::vector<float>* at_cut) {
         std::vector<float> heights;
         if (layer.map) {
-            auto loaded = load_map(*layer.map, layer.path, "height", HEIGHT_MOST, grid_, files_, warnings_);
-            if (!loaded) return loaded.status();
-            heights = std::move(*loaded);
+            const auto map = read_source(*layer.map, layer.path, "height", files_, warnings_);
+            if (!map) return map.status();
+            auto values = values_of(*map, *layer.map, layer.path, "height", HEIGHT_MOST, grid_.nx, grid_.ny);
+            if (!values) return values.status();
+            heights = std::move(*values);
+            const bool other_size = map->nx != grid_.nx || map->ny != grid_.ny;
+            if (other_size && target == LayerTarget::water && layer.amount == Amount::height)
+                if (Status status = level_lakes_of(layer, *map, heights); !status) return status;
             if (at_cut != nullptr)
                 for (const std::size_t cell : cut_) at_cut->push_back(heights[cell]);
         }
@@ -215,6 +227,25 @@ class Drawing {
                 changed = changed || field[cell] != static_cast<float>(current);
             }
         return changed;
+    }
+
+    /// Levels the lakes of a map of depths on this grid, by the ground that the level has on the map's own.
+    Status level_lakes_of(const Layer& layer, const Map& map, std::vector<float>& depths) {
+        LevelGrid own = grid_;
+        own.nx = map.nx;
+        own.ny = map.ny;
+        own.dx = grid_.nx * grid_.dx / map.nx;
+        own.stretch_y = grid_.stretch_y * (own.ny * own.dx) / (grid_.ny * grid_.dx);
+        InitialFields ground;
+        std::vector<std::string> said_already;
+        if (Status status = draw_layers({lists_.terrain, lists_.sand, {}}, own, files_, ground, said_already); !status)
+            return status;
+        auto water = values_of(map, *layer.map, layer.path, "height", HEIGHT_MOST, map.nx, map.ny);
+        if (!water) return water.status();
+        for (float& depth : *water) depth = std::max(depth, 0.0f);
+        level_lakes({ground.terrain, ground.sand, *water}, own.nx, own.ny, {fields_.terrain, fields_.sand, depths}, grid_.nx,
+                    grid_.ny);
+        return ok_status();
     }
 
     void sample_cell(CellSamples& samples, std::size_t at) {
@@ -298,7 +329,9 @@ Status draw_velocities(const std::vector<VelocityLayer>& layers, bool of_sand, c
             velocity = to;
         };
         if (layer.map) {
-            auto values = load_map(*layer.map, layer.path, "velocity", SPEED_MOST, grid, files, warnings);
+            const auto map = read_source(*layer.map, layer.path, "velocity", files, warnings);
+            if (!map) return map.status();
+            const auto values = values_of(*map, *layer.map, layer.path, "velocity", SPEED_MOST, grid.nx, grid.ny);
             if (!values) return values.status();
             std::vector<float>& along = layer.map_along_y ? y : x;
             for (std::size_t cell = 0; cell < along.size(); ++cell) set(along[cell], (*values)[cell]);
