@@ -37,7 +37,7 @@ struct Survey {
     double dry_front = 0;      // pure water beside lower dry ground [m]
     double wet_wall = 0;       // step of wet sand [m]
     double wet_wall_ratio = 0; // W / hs there
-    double steepest_wet = 0;   // slope of wet sand beyond what buoyant friction holds
+    double steepest_wet = 0;   // slope of wet sand beyond what friction holds
     double steepest_limit = 0; // that limit
     std::size_t steep_faces = 0;
 };
@@ -65,6 +65,35 @@ double wall_cohesion(const Settings& settings, double height) {
     const double c_f = settings.material.yield_friction;
     return settings.material.sand_density * settings.gravity * height / (4 * (c_f + std::sqrt(1 + c_f * c_f)));
 }
+
+bool forced_off(const Settings& settings, const char* effect) {
+    return std::any_of(settings.effects.begin(), settings.effects.end(),
+                       [&](const auto& entry) { return entry.first == effect && entry.second == Force::off; });
+}
+
+/// What pushes and holds sand on a wet slope, per weight of the sand (section 4).
+struct WetSlope {
+    double held = 0;  // by friction, buoyancy taken off
+    double water = 0; // push of pore water by drag, per slope of the sand
+    double chi = 0;
+
+    /// `wetness`: share of the sand's depth that water fills; `fall`: of the water's surface per fall of the sand's.
+    WetSlope(const Settings& settings, double wetness, double fall) {
+        const Material& m = settings.material;
+        const double ratio = m.water_density / m.sand_density * wetness;
+        const bool drag = m.exchange_rate > 0 && !forced_off(settings, "drag");
+        held = std::max(m.friction * (1 - ratio), 0.0);
+        water = drag ? ratio * fall : 0;
+        chi = forced_off(settings, "slope_normal") ? 0 : m.slope_normal;
+    }
+    double push(double slope) const { return slope * (1 + water * (1 + chi * slope * slope)); }
+    /// Slope where both are the same.
+    double limit() const {
+        double slope = held / (1 + water); // no less than it, and Newton's steps stay so
+        for (int n = 0; n < 8; ++n) slope -= (push(slope) - held) / (1 + water * (1 + 3 * chi * slope * slope));
+        return slope;
+    }
+};
 
 /// The columns of the initial fields.
 class Columns {
@@ -111,8 +140,9 @@ void survey_face(const Settings& settings, const Columns& columns, int i, int j,
     const double step = std::min(high.ground() - low.ground(), high.sand);
     const double slope = step / settings.grid.dx;
     const Material& m = settings.material;
-    const double limit = m.friction * (1 - m.water_density / m.sand_density * high.wetness());
-    if (slope <= std::min(limit, WALL_SLOPE)) return;
+    const double water_step = std::max((high.terrain + high.water) - (low.terrain + low.water), 0.0);
+    const WetSlope balance(settings, high.wetness(), step > 0 ? water_step / step : 0);
+    if (slope <= WALL_SLOPE && balance.push(slope) <= balance.held) return;
     const double fall = std::max(columns.fall_around(i, j), columns.fall_around(i + (north ? 0 : 1), j + (north ? 1 : 0)));
     if (slope > WALL_SLOPE || fall > 2 * WALL_SLOPE * settings.grid.dx) {
         if (fall > survey.wet_wall) {
@@ -123,11 +153,11 @@ void survey_face(const Settings& settings, const Columns& columns, int i, int j,
     }
     const bool submerged = low.surface() > low.ground() + eps;
     const bool held = cohesion_at(m, high.wetness()) >= wall_cohesion(settings, high.sand);
-    if (slope <= limit || submerged || held) return;
+    if (submerged || held) return;
     ++survey.steep_faces;
     if (slope > survey.steepest_wet) {
         survey.steepest_wet = slope;
-        survey.steepest_limit = limit;
+        survey.steepest_limit = balance.limit();
     }
 }
 
@@ -144,11 +174,6 @@ Survey survey_fields(const Settings& settings, const InitialFields& fields) {
             if (j + 1 < settings.grid.ny) survey_face(settings, columns, i, j, true, survey);
         }
     return survey;
-}
-
-bool forced_off(const Settings& settings, const char* effect) {
-    return std::any_of(settings.effects.begin(), settings.effects.end(),
-                       [&](const auto& entry) { return entry.first == effect && entry.second == Force::off; });
 }
 
 void warn_water(const Settings& s, const Survey& survey, std::vector<std::string>& warnings) {
@@ -222,11 +247,12 @@ void warn_sand(const Settings& s, const Survey& survey, std::vector<std::string>
             "method.sand_transport_order: 2 with water_transport_order 1 moves sand and the water in it apart, and "
             "damp sand tears into ripples; set both to 2");
     if (survey.steep_faces > 0)
-        warnings.push_back("wet sand slopes up to " + number_text(std::round(survey.steepest_wet * 1000) / 1000) + " at " +
-                           std::to_string(survey.steep_faces) + " faces, more than friction holds there, " +
-                           number_text(std::round(survey.steepest_limit * 1000) / 1000) +
-                           " (friction (1 - density ratio * saturation)): it will slump; lower the slopes or the water, or raise "
-                           "material.friction");
+        warnings.push_back(
+            "wet sand slopes up to " + number_text(std::round(survey.steepest_wet * 1000) / 1000) + " at " +
+            std::to_string(survey.steep_faces) + " faces, more than friction holds there, " +
+            number_text(std::round(survey.steepest_limit * 1000) / 1000) +
+            " (friction (1 - r), r = density ratio * W/hs, over 1 + r (1 + slope_normal slope^2) where the water's surface falls "
+            "as the sand's does): it will slump; lower the slopes or the water, or raise material.friction");
 }
 
 /// True when a cell centre lies inside the source; a point always has its cell.

@@ -34,6 +34,31 @@ Scene bank(double slope) {
     return scene;
 }
 
+/// A slope of that steepness under sand 0.3 m deep with water to a share of its depth, and a lake up to a height. The ends are
+/// far from its middle.
+Scene wet_slope(double slope, double wetness, double exchange_rate, double lake = 0) {
+    auto scene = flat_scene(240, 2, 0.1, 0.01);
+    scene.settings.method.largest_height = 32;
+    auto& material = scene.settings.material;
+    material.friction = FRICTION;
+    material.young_modulus = 0;
+    material.exchange_rate = exchange_rate;
+    scene.fill(scene.fields.terrain, [&](double x, double) { return slope * x; });
+    scene.fill(scene.fields.sand, [](double, double) { return 0.3; });
+    scene.fill(scene.fields.water, [&](double x, double) { return std::max(0.3 * wetness, lake - slope * x); });
+    return scene;
+}
+
+/// Speed of the sand in the middle after a second [m/s].
+double slide_speed(const Scene& scene) {
+    auto world = make_world(scene);
+    step(*world, 100);
+    const auto speeds = cells_of(*world, "sand_velocity_x").values;
+    double largest = 0;
+    for (std::size_t i = 100; i < 140; ++i) largest = std::max(largest, std::fabs(static_cast<double>(speeds[i])));
+    return largest;
+}
+
 /// A damp pile that its cohesion holds upright.
 Scene damp_pile() {
     auto scene = flat_scene(50, 50, 0.2, 0.018);
@@ -71,6 +96,28 @@ TEST_CASE("a steeper bank slumps at the water line to the slope that buoyant fri
     }
     CHECK(steepest < 1.1 * held);
     CHECK(steepest > 0.5 * held);
+}
+
+TEST_CASE(
+    "wet slopes stand up to what pore water leaves of friction and slide beyond it: seeping, drained, drowned, without drag") {
+    const auto held = [](double wetness) { // S (1 + r (1 + S^2)) = mu (1 - r), r = wetness / 2
+        const double r = wetness / 2;
+        double slope = FRICTION;
+        for (int n = 0; n < 50; ++n) slope = FRICTION * (1 - r) / (1 + r * (1 + slope * slope));
+        return slope;
+    };
+    CHECK(held(1) == doctest::Approx(FRICTION / 3).epsilon(0.01));
+    for (const double wetness : {1.0, 0.4925, 0.25}) // full, what pores hold back, damp
+        for (const double exchange_rate : {1e4, 1e6}) {
+            CAPTURE(wetness);
+            CAPTURE(exchange_rate);
+            CHECK(slide_speed(wet_slope(0.95 * held(wetness), wetness, exchange_rate)) == 0);
+            CHECK(slide_speed(wet_slope(1.05 * held(wetness), wetness, exchange_rate)) > 0.04);
+        }
+    CHECK(slide_speed(wet_slope(0.95 * FRICTION / 2, 1, 0)) == 0);
+    CHECK(slide_speed(wet_slope(1.05 * FRICTION / 2, 1, 0)) > 0.04);
+    CHECK(slide_speed(wet_slope(0.99 * FRICTION, 1, 1e5, 13)) == 0);
+    CHECK(slide_speed(wet_slope(1.05 * FRICTION, 1, 1e5, 14)) > 0.04);
 }
 
 TEST_CASE("a damp pile creeps only as fast as it dries: its strength falls with its water, not by itself" *
