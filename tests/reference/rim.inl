@@ -39,14 +39,22 @@ template <class Real> void Solver<Real>::apply_source(const Source& source, doub
     const int point_j = static_cast<int>(std::floor(source.center[1] / dx));
     const Axis x = axis(false);
 
-    const double rate = sample(source.rate, time());
+    const auto covers = [&](int i, int j) {
+        return is_point ? i == point_i && j == point_j : inside((i + 0.5) * dx, (j + 0.5) * dx);
+    };
+    double rate = sample(source.rate, time());
+    if (!source.discharge.samples.empty()) {
+        int covered = 0;
+        for (int j = 0; j < x.ny; ++j)
+            for (int i = 0; i < x.nx; ++i) covered += covers(i, j) ? 1 : 0;
+        rate = covered > 0 ? sample(source.discharge, time()) / (covered * dx * dx) : 0;
+    }
     const Real amount = static_cast<Real>(quanta(total, rate * settings.dt));
     const bool is_water = source.material == SourceMaterial::water;
     if (!has(is_water ? EFFECT_WATER : EFFECT_SAND)) return;
     for (int j = 0; j < x.ny; ++j)
         for (int i = 0; i < x.nx; ++i) {
-            const bool in = is_point ? i == point_i && j == point_j : inside((i + 0.5) * dx, (j + 0.5) * dx);
-            if (in) add_depth(is_water ? water : sand, x.cell(i, j), amount, is_water ? water_added : sand_added);
+            if (covers(i, j)) add_depth(is_water ? water : sand, x.cell(i, j), amount, is_water ? water_added : sand_added);
         }
 
     if (!source.set_velocity || !is_water || !(rate > 0)) return;

@@ -184,6 +184,11 @@ TEST_CASE("reference: sources, rain and evaporation give whole quanta and add up
     CHECK(sum(s.water) == s.water_added);
     CHECK(s.refused == 0);
     set.sources.resize(1);
+    std::swap(set.sources[0].rate, set.sources[0].discharge);
+    Solver<double> by_volume(set, EFFECT_WATER | EFFECT_SOURCES);
+    for (int n = 0; n < 500; ++n) by_volume.step();
+    CHECK(sum(by_volume.water) * 0.25 * 0.25 == doctest::Approx(0.123 * 5).epsilon(1e-5));
+    set.sources[0].discharge.samples.clear();
     set.sources[0].rate.samples = {{0, 100}};
     set.sources[0].radius = 10;
     Solver<float> full(set, EFFECT_WATER | EFFECT_SOURCES);
