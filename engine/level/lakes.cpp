@@ -12,7 +12,7 @@ constexpr double STILL = 1e-4;        // and this besides: what rounding and rip
 constexpr double SAME_SURFACE = 1e-3; // of pore water and the lake beside it [m]
 
 /// One sample's column.
-struct Sample {
+struct LakeColumn {
     double ground = 0; // top of the terrain or sand
     double water = 0;
     double surface = 0; // H + W, of the water in pores, too
@@ -35,7 +35,7 @@ class Lakes {
     /// Of the deepest water: surfaces are carried over as differences from it, which keep their digits.
     double reference() const { return at(deepest_).surface; }
 
-    Sample at(std::size_t n) const {
+    LakeColumn at(std::size_t n) const {
         const auto part = [n](const std::vector<float>& field) { return field.empty() ? 0 : static_cast<double>(field[n]); };
         const double terrain = part(fields_.terrain), sand = part(fields_.sand), water = part(fields_.water);
         return {terrain + sand, water, terrain + water, water > sand};
@@ -43,7 +43,7 @@ class Lakes {
 
     /// Whether this sample lies open to a lake beside it that stands higher.
     bool front(std::size_t n) const {
-        const Sample here = at(n);
+        const LakeColumn here = at(n);
         const double top = std::max(here.ground, here.surface) + STILL;
         const auto beside = neighbours(n);
         return !lake(n) && std::any_of(beside.begin(), beside.end(),
@@ -60,11 +60,11 @@ class Lakes {
     }
 
     bool is_flat(std::size_t n) const {
-        const Sample here = at(n);
+        const LakeColumn here = at(n);
         if (!here.pure) return false;
         const auto beside = neighbours(n);
         return std::all_of(beside.begin(), beside.end(), [&](std::size_t m) {
-            const Sample there = at(m);
+            const LakeColumn there = at(m);
             return !there.pure ||
                    std::fabs(there.surface - here.surface) <= FLATTER * std::fabs(there.ground - here.ground) + STILL;
         });
@@ -75,7 +75,7 @@ class Lakes {
         const std::size_t n = joined_.back();
         joined_.pop_back();
         for (const std::size_t m : neighbours(n)) {
-            const Sample there = at(m);
+            const LakeColumn there = at(m);
             if (lake(m) || !(there.water > 0) || std::fabs(there.surface - at(n).surface) > SAME_SURFACE) continue;
             lake_[m] = 1;
             joined_.push_back(m);

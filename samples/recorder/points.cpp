@@ -11,10 +11,10 @@ namespace fs = std::filesystem;
 
 constexpr double ROUNDING = 1 + 1e-9; // 12 cells of 2.4 m are less than 28.8 m
 
-fs::path temporary(fs::path path) { return path += ".part"; }
+fs::path part_of(fs::path path) { return path += ".part"; }
 
 /// Pulls a coordinate on the far rim in by what its product with 1/dx may be rounded up.
-float inside(double at, double length) {
+float within_rim(double at, double length) {
     return static_cast<float>(std::min(at, length * (1 - 4 * double{std::numeric_limits<float>::epsilon()})));
 }
 
@@ -35,8 +35,8 @@ Failure PointTable::add(const wadi_world_info& info, std::uint32_t number, const
         const double share = parts > 0 ? static_cast<double>(n) / parts : 0;
         const double x = request.from[0] + share * along_x, y = request.from[1] + share * along_y;
         points_.push_back({number, x, y, share * length});
-        xy_.push_back(inside(x, width));
-        xy_.push_back(inside(y, depth));
+        xy_.push_back(within_rim(x, width));
+        xy_.push_back(within_rim(y, depth));
     }
     return {};
 }
@@ -44,7 +44,7 @@ Failure PointTable::add(const wadi_world_info& info, std::uint32_t number, const
 Failure PointTable::unwritten() const { return {EXIT_BAD_INPUT, "cannot write " + path_.string()}; }
 
 Failure PointTable::open() {
-    file_.open(temporary(path_), std::ios::trunc);
+    file_.open(part_of(path_), std::ios::trunc);
     file_ << "time," << number_name_ << ",x,y,distance,surface,terrain,sand_depth,water_depth,saturation,velocity_x,velocity_y\n";
     return file_ ? Failure{} : unwritten();
 }
@@ -68,9 +68,9 @@ Failure PointTable::close() {
     if (!file_.is_open()) return {};
     file_.close();
     std::error_code error;
-    if (file_) fs::rename(temporary(path_), path_, error);
+    if (file_) fs::rename(part_of(path_), path_, error);
     if (file_ && !error) return {};
-    fs::remove(temporary(path_), error);
+    fs::remove(part_of(path_), error);
     return unwritten();
 }
 

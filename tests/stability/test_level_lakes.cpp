@@ -12,13 +12,13 @@ constexpr int MAP_NX = 48, MAP_NY = 36;
 constexpr double MAP_DX = 0.25, LAKE_SURFACE = 0.9;
 
 /// A rough basin with an island, 0.3 m deep in its middle.
-double basin(double x, double y) {
+double lake_bed(double x, double y) {
     return 0.3 + 0.12 * std::hypot(x - 6, y - 4.5) + 0.1 * std::sin(2.1 * x) * std::cos(1.7 * y) +
            0.5 * std::exp(-(x - 7) * (x - 7) - (y - 3.5) * (y - 3.5));
 }
 
 /// A low dune that stands out of the lake, on slopes that friction holds when they are drowned.
-double dune(double x, double y) { return std::max(0.0, 0.95 - 0.1 * std::hypot(x - 5, y - 5)); }
+double low_dune(double x, double y) { return std::max(0.0, 0.95 - 0.1 * std::hypot(x - 5, y - 5)); }
 
 std::vector<float> map_of(const std::function<double(double x, double y)>& value) {
     std::vector<float> values;
@@ -56,7 +56,7 @@ double largest_speed(const Scene& scene) {
     return largest;
 }
 
-std::vector<LevelOverrides> sizes() {
+std::vector<LevelOverrides> grid_sizes() {
     std::vector<LevelOverrides> all(4);
     all[0].accuracy = "draft";
     all[1].accuracy = "balanced";
@@ -78,12 +78,12 @@ TEST_CASE("a lake given as a map of depths is at rest on grids of any size") {
     Map depth;
     depth.nx = MAP_NX;
     depth.ny = MAP_NY;
-    depth.values = map_of([](double x, double y) { return std::max(0.0, LAKE_SURFACE - basin(x, y)); });
-    write_map(folder, "terrain.npy", map_of(basin));
+    depth.values = map_of([](double x, double y) { return std::max(0.0, LAKE_SURFACE - lake_bed(x, y)); });
+    write_map(folder, "terrain.npy", map_of(lake_bed));
     write_map(folder, "water.npy", depth.values);
     const std::string layers = R"("terrain": [{"file": "terrain.npy"}], "water": [{"file": "water.npy"}])";
     const double volume = volume_of(level_scene(folder, layers, {}));
-    for (const auto& overrides : sizes()) {
+    for (const auto& overrides : grid_sizes()) {
         auto scene = level_scene(folder, layers, overrides);
         CAPTURE(scene.settings.grid.nx);
         CHECK(largest_speed(scene) < 1e-3);
@@ -97,10 +97,10 @@ TEST_CASE("a lake given as a map of depths is at rest on grids of any size") {
 
 TEST_CASE("a dune in a lake starts in balance where the lake's level fills its pores, drawn or from maps on grids of any size") {
     const map_files::Folder folder;
-    write_map(folder, "sand.npy", map_of(dune));
+    write_map(folder, "sand.npy", map_of(low_dune));
     write_map(folder, "water.npy", map_of([](double, double) { return LAKE_SURFACE - 0.2; }));
     const std::string ground = R"("terrain": [{"shape": "plane", "height": 0.2}], "sand": [{"file": "sand.npy"}], )";
-    for (const auto& overrides : sizes()) {
+    for (const auto& overrides : grid_sizes()) {
         CAPTURE(overrides.accuracy.value_or("size"));
         CHECK(largest_speed(level_scene(folder, ground + R"("water": [{"shape": "plane", "surface": 0.9, "inside_sand": true}])",
                                         overrides)) < 1e-3);
