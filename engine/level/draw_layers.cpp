@@ -36,7 +36,7 @@ double combined(double current, double value, Combine combine) {
 }
 
 /// A layer's map as its file has it.
-Result<Map> open_map(const MapSource& source, const std::string& path, const char* what, const FileReader& files,
+Result<Map> open_map(const MapSource& source, const std::string& path, const FileReader& files,
                      std::vector<std::string>& warnings) {
     auto map = read_map(source.file, source.size, files);
     if (!map) // a bad argument of ours is a bad field of the level's author
@@ -199,7 +199,7 @@ class Drawing {
     Result<bool> draw_centers(const Layer& layer, LayerTarget target, std::vector<float>& field, std::vector<float>* at_cut) {
         std::vector<float> heights;
         if (layer.map) {
-            const auto map = open_map(*layer.map, layer.path, "height", files_, warnings_);
+            const auto map = open_map(*layer.map, layer.path, files_, warnings_);
             if (!map) return map.status();
             auto values = values_of(*map, *layer.map, layer.path, "height", HEIGHT_MOST, grid_.nx, grid_.ny);
             if (!values) return values.status();
@@ -329,7 +329,7 @@ Status draw_velocities(const std::vector<VelocityLayer>& layers, bool of_sand, c
             velocity = to;
         };
         if (layer.map) {
-            const auto map = open_map(*layer.map, layer.path, "velocity", files, warnings);
+            const auto map = open_map(*layer.map, layer.path, files, warnings);
             if (!map) return map.status();
             const auto values = values_of(*map, *layer.map, layer.path, "velocity", SPEED_MOST, grid.nx, grid.ny);
             if (!values) return values.status();

@@ -11,7 +11,7 @@ namespace {
 /// cm that runs east, 1 m wide at 0.6 of its height.
 Scene pulse_channel(double froude, int times) {
     auto scene = flat_scene(200 * times, 1, 0.1, 0.01);
-    scene.settings.method.rest_velocity = 0;
+    scene.settings.method.rest_rule = false;
     const double speed = froude * std::sqrt(9.81);
     const auto wave = [](double x) { return 0.02 * std::exp(-std::pow(x - 10, 2) / 2); };
     scene.fill(scene.fields.water, [&](double x, double) { return 1 + wave(x); });
@@ -92,7 +92,7 @@ TEST_CASE("a level side lets waves out, holds its level in the long run and send
     // A basin 0.1 m below the level beside it, and a stream that began with that depth but not with that speed.
     for (const double discharge : {0.0, 0.5}) {
         auto scene = flat_scene(100, 1, 0.1, 0.01);
-        scene.settings.method.rest_velocity = 0;     // the rule would stop the last millimetres
+        scene.settings.method.rest_rule = false;     // the rule would stop the last millimetres
         scene.settings.material.bed_friction = 0.01; // the stream's surface falls towards its end
         scene.fill(scene.fields.water, [](double, double) { return 0.9; });
         scene.settings.sides[SIDE_EAST] = {SideKind::level, 0, 1e30, {{{0, 1}}}};
@@ -168,8 +168,7 @@ TEST_CASE("level sides hold the ground water of the sand beside them: Dupuit's p
         scene.settings.material.diffusion_rate = 0; // would add to the flow
         scene.settings.material.young_modulus = 0;
         scene.settings.material.friction = 2;
-        scene.settings.method.rest_velocity = 0;
-        scene.settings.method.rest_surface = 0;
+        scene.settings.method.rest_rule = false;
         const double length = (cells + 1) * dx; // between the middles of the ghosts
         const auto table = [&](double x) { return std::sqrt(high * high + (low * low - high * high) * (x + dx / 2) / length); };
         scene.fill(scene.fields.sand, [](double, double) { return 1.5; });
