@@ -105,8 +105,8 @@ void resolve(FusedStage& fused, const Effects& effects, std::set<std::string> te
     for (const auto& name : tested) {
         if ((effects.at(name) & (fused.needs | fused.without)) == 0) fused.stage.tested.push_back(name);
     }
-    for (const auto& part : fused.parts) {
-        auto add = part.stage.reach;
+    for (auto& part : fused.parts) {
+        auto& add = part.reach = part.stage.reach;
         const bool far = (effect_bits(part.stage.far, effects, part.stage.path) & ~fused.needs) == 0;
         for (int* n : {&add.west, &add.south, &add.east, &add.north})
             if (!far) *n = std::min(*n, 1);
@@ -203,8 +203,35 @@ void read_word(FusedStage& fused, const std::string& word, const Arguments& a, c
     } else if (word == "KEEP_RIM_IF") {
         for (const auto& name : effects_in(a[0])) asked.insert(name);
         for (std::size_t n = 1; n < a.size(); ++n) fused.kept[a[n]] = {true, bits(a[0]) & ~fused.needs, place};
+    } else if (word == "EMPTY_WITHOUT") {
+        fused.empty.without = a;
+        fused.empty.place = place;
+    } else if (word == "EMPTY_COPIES") {
+        for (const auto& text : a) {
+            const auto at = text.find('=');
+            if (at == std::string::npos) fail(place + ": \"" + text + "\" is not kept field = field");
+            fused.empty.copies[text.substr(0, at)] = text.substr(at + 1);
+        }
+    } else if (word == "NEVER_EMPTY_IF") {
+        for (const auto& name : effects_in(a[0])) asked.insert(name);
+        fused.empty.never = bits(a[0]);
     } else {
         fail(place + ": unknown word " + word);
+    }
+}
+
+// Fields that tell an empty group, and what it copies, must be read from memory whatever the mask.
+void check_empty(const FusedStage& fused) {
+    const auto check = [&](const std::string& field) {
+        const auto& all = fused.stage.bindings;
+        const bool read =
+            std::any_of(all.begin(), all.end(), [&](const Binding& b) { return b.name == field && b.access == "IN"; });
+        if (!read) fail(fused.empty.place + ": no part reads " + field + " from memory");
+    };
+    for (const auto& field : fused.empty.without) check(field);
+    for (const auto& [field, from] : fused.empty.copies) {
+        check(from);
+        if (!fused.kept.count(field)) fail(fused.empty.place + ": " + field + " is not kept");
     }
 }
 
@@ -229,6 +256,7 @@ FusedStage parse_fused(const std::string& path, const Effects& effects) {
     }
     if (fused.stage.struct_name.empty()) source.fail(0, "no FUSED(Name)");
     resolve(fused, effects, asked);
+    check_empty(fused);
     const std::size_t bytes = 4 * fields_kept(fused, Keeping::window).size() * static_cast<std::size_t>(window_floats(fused));
     if (bytes > wadi::compute::fused_shared_bytes) {
         source.fail(0, "windows of " + std::to_string(bytes) + " bytes, at most " +

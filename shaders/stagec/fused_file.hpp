@@ -18,6 +18,7 @@ struct FusedPart {
     unsigned condition = 0;                           // runs only if all these effects are on
     std::string place;                                // of its RUN, for messages
     std::size_t phase = 0;
+    Reach reach; // cells from its own index to the farthest that it reads with what the fused stage needs
 };
 
 /// Where a field that the parts write lives until the pass ends.
@@ -30,6 +31,14 @@ struct Kept {
     std::string place; // of its KEEP
 };
 
+/// What a group without some fields' content writes in place of running the phases.
+struct Empty {
+    std::vector<std::string> without;          // fields that are 0 wherever the group reads them
+    std::map<std::string, std::string> copies; // kept field -> field of memory that it equals then; the others are 0
+    unsigned never = 0;                        // effects with which no group is taken for empty
+    std::string place;                         // of its words, for messages
+};
+
 struct FusedStage {
     Stage stage; // name, struct name, extent, bindings and tested effects, as of a stage that is written by hand
     unsigned needs = 0, without = 0;
@@ -38,6 +47,7 @@ struct FusedStage {
     std::vector<FusedPart> parts;
     std::map<std::string, Keeping> fields; // fields that parts write
     std::map<std::string, Kept> kept;      // those that later passes read
+    Empty empty;
 };
 
 /// Threads of a group of a fused stage along i and j; it covers FUSED_COLUMNS x FUSED_ROWS cells.
@@ -60,7 +70,8 @@ std::size_t last_writer(const FusedStage& fused, const std::string& field);
 
 /// The parts' functions with their loads and stores redirected, one kernel function PART_kernel(i, j) each.
 std::string part_functions(const FusedStage& fused, const Effects& effects);
-/// The phases in order, with LANE, LANES (a group's threads) and BARRIER left to the language.
+/// The phases in order, or what a group without content writes; LANE, LANES (a group's threads), BARRIER and ANY (whether a
+/// number is not 0 for one of them) are left to the language.
 std::string phase_loops(const FusedStage& fused);
 /// Include lines of the parts' physics.
 std::string physics_includes(const FusedStage& fused);

@@ -1,5 +1,6 @@
 #include "fused_file.hpp"
 #include "writers.hpp"
+#include <algorithm>
 #include <cctype>
 #include <sstream>
 
@@ -160,8 +161,66 @@ std::string index_macros(const FusedStage& fused) {
     return o.str();
 }
 
+namespace {
+
+// Cells around a group's own ones from which a part reads.
+Margins read_margins(const FusedStage& fused) {
+    Margins most;
+    for (const auto& part : fused.parts) {
+        const Margins& m = fused.phases[part.phase];
+        const Reach& r = part.reach;
+        most = {std::max(most.west, m.west + r.west), std::max(most.south, m.south + r.south),
+                std::max(most.east, m.east + r.east), std::max(most.north, m.north + r.north)};
+    }
+    return most;
+}
+
+std::string each_place(int width, int height, const std::string& i0, const std::string& j0) {
+    return "    for (int n = LANE; n < " + std::to_string(width * height) + "; n += LANES) {\n        int i = " + i0 + " + n % " +
+           std::to_string(width) + ";\n        int j = " + j0 + " + n / " + std::to_string(width) + ";\n";
+}
+
+// Whether the group holds nothing, as `empty`; at the grid's rim it never does, where outer faces keep what sides set.
+std::string empty_look(const FusedStage& fused) {
+    const Margins m = read_margins(fused);
+    const auto less = [](const char* from, int n) { return std::string(from) + " - " + std::to_string(n); };
+    std::ostringstream o;
+    o << "    bool empty = own_i0 >= " << m.west << " && own_j0 >= " << m.south << " && own_i0 + FUSED_COLUMNS + " << m.east
+      << " <= P.nx && own_j0 + FUSED_ROWS + " << m.north << " <= P.ny";
+    if (fused.empty.never != 0) o << " && !HAS(" << fused.empty.never << "u)";
+    o << ";\n    if (empty) {\n    int holds = 0;\n"
+      << each_place(FUSED_COLUMNS + m.west + m.east, FUSED_ROWS + m.south + m.north, less("own_i0", m.west),
+                    less("own_j0", m.south))
+      << "        Place at = IDX(i, j);\n        holds |= ";
+    for (std::size_t n = 0; n < fused.empty.without.size(); ++n)
+        o << (n > 0 ? " || " : "") << "float(" << fused.empty.without[n] << "[IN_MEMORY(at)]) != 0.0f";
+    o << " ? 1 : 0;\n    }\n    empty = !ANY(holds);\n    }\n";
+    return o.str();
+}
+
+std::string empty_writes(const FusedStage& fused) {
+    std::ostringstream o;
+    o << each_place(FUSED_COLUMNS, FUSED_ROWS, "own_i0", "own_j0")
+      << "        if (i >= own_i1 || j >= own_j1) continue;\n        Place at = IDX(i, j);\n        float stored = 0.0f;\n";
+    for (const auto& b : fused.stage.bindings) {
+        const auto kept = fused.kept.find(b.name);
+        if (b.access == "IN" || kept == fused.kept.end() || kept->second.rim) continue;
+        const auto copy = fused.empty.copies.find(b.name);
+        if (b.condition != "0u") o << "        if (HAS(" << b.condition << ")) {\n";
+        o << "        stored = " << (copy == fused.empty.copies.end() ? "0.0f" : "float(" + copy->second + "[IN_MEMORY(at)])")
+          << ";\n        KEEP_STORED(" << b.name << ", IN_MEMORY(at), " << b.type << ");\n";
+        if (b.condition != "0u") o << "        }\n";
+    }
+    o << "    }\n";
+    return o.str();
+}
+
+} // namespace
+
 std::string phase_loops(const FusedStage& fused) {
     std::ostringstream o;
+    const bool can_be_empty = !fused.empty.without.empty();
+    if (can_be_empty) o << empty_look(fused) << "    if (empty) {\n" << empty_writes(fused) << "    } else {\n";
     for (std::size_t p = 0; p < fused.phases.size(); ++p) {
         const Margins& m = fused.phases[p];
         const int width = FUSED_COLUMNS + m.west + m.east, height = FUSED_ROWS + m.south + m.north;
@@ -187,6 +246,7 @@ std::string phase_loops(const FusedStage& fused) {
         }
         o << "    }\n";
     }
+    if (can_be_empty) o << "    }\n";
     return o.str();
 }
 

@@ -51,6 +51,7 @@ std::vector<CaseSpec> list() {
             const bool half = (mask & EFFECT_HALF_STORAGE) != 0; // the same phases with other reads and stores
             other = !other;
             if (!many || !half || !other) add("70x50", "random", "default");
+            if (!many || !other) add("170x90", "patches", "default");
             if (!half && (!many || !other) && ((mask | stages[stage].without) & EFFECT_OPEN_SIDES) == 0)
                 add("33x17", "random", "default", EFFECT_OPEN_SIDES);
             if (many && !other) continue;

@@ -123,6 +123,12 @@ bool make_heights(Scene& scene) {
             return Fields{p.s < 0.4 ? 4.0 : 0.0, p.s < 0.55 ? 1.0 : 0.1, p.s < 0.3 ? 0.5 : 0.2 + 0.1 * p.v};
         });
         stir(scene, 0.3, 0.1);
+    } else if (name == "patches") { // heaps and puddles few cells wide, far apart: groups of cells between them hold nothing
+        fill_heights(scene, [](const Place& p) {
+            const bool heap = p.i % 53 < 1 + p.j / 37 && p.j % 37 < 2, puddle = (p.i + 20) % 61 < 3 && (p.j + 5) % 41 <= p.i / 61;
+            return Fields{0.02 * p.u + 0.03 * p.v, heap ? 0.4 : 0.0, puddle ? 0.3 : 0.0};
+        });
+        stir(scene, 1, 0.5);
     } else if (name == "islands") {
         fill_heights(scene, [](const Place& p) {
             const double bed = 1 + 0.8 * std::cos(11 * p.u) * std::cos(8 * p.v);
