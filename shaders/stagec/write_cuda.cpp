@@ -102,28 +102,29 @@ std::string write_cuda(const FusedStage& f, const Effects& effects, bool all_mas
       << "\n#define BARRIER __syncthreads()\n#define ANY(X) __syncthreads_or(X)\n#define PART_FUNCTION __device__ "
          "__forceinline__\n#define NOT_KEPT(X) (void)(X)\n"
       << keep_stored << active_argument << "struct Slots { void* at[" << s.bindings.size() << "]; };\n"
-      << "template <unsigned FREE> struct " << s.struct_name << " {\n    static constexpr unsigned EFFECTS = FREE | " << f.needs
-      << "u;\n    typedef Stored<EFFECTS> float_or_half;\n    const WorldParams& P;\n    const StepInput& S;\n";
+      << "template <unsigned FREE, bool ACTIVE> struct " << s.struct_name << " {\n    static constexpr unsigned EFFECTS = FREE | "
+      << f.needs << "u;\n    typedef Stored<EFFECTS> float_or_half;\n    const WorldParams& P;\n    const StepInput& S;\n";
     for (const auto& b : s.bindings)
         o << "    " << (b.access == "IN" ? "const " : "") << b.type << "* __restrict__ " << b.name << ";\n";
     for (const auto& name : windows) o << "    float* __restrict__ window_" << name << ";\n";
     for (const auto& name : fields_kept(f, Keeping::own_index)) o << "    float own_" << name << " = 0.0f;\n";
     o << "    int own_i0 = 0, own_j0 = 0, own_i1 = 0, own_j1 = 0, window_i0 = 0, window_j0 = 0;\n    bool owned = "
-         "false, look = false, changed = false;\n"
+         "false, tile_looked_at = false, changed = false;\n"
+      << "#define look (ACTIVE && tile_looked_at)\n"
       << part_functions(f, effects) << "__device__ __forceinline__ void window() {\n    PLACE_WINDOW;\n"
       << phase_loops(f) << "}\n};\n"
       << "#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ < 800\n#define GROUPS 4\n#else\n#define GROUPS " << groups << "\n#endif\n"
-      << "template <unsigned E> __global__ void __launch_bounds__(" << fused_group_x * fused_group_y << ", (E & " << f.four_groups
-      << "u) != 0 ? 4 : GROUPS)\n"
+      << "template <unsigned E, bool ACTIVE> __global__ void __launch_bounds__(" << fused_group_x * fused_group_y << ", (E & "
+      << f.four_groups << "u) != 0 ? 4 : GROUPS)\n"
       << "run(const WorldParams P, const StepInput* __restrict__ input, const Slots b, const Active active) {\n"
       << "    __shared__ float windows[" << std::max<std::size_t>(1, windows.size()) << "][" << window_floats(f) << "];\n    "
-      << s.struct_name << "<E> stage{P, *input";
+      << s.struct_name << "<E, ACTIVE> stage{P, *input";
     for (const auto& b : s.bindings)
         o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << element_type(b, "E") << "*>(b.at[" << b.slot
           << "])";
     for (std::size_t n = 0; n < windows.size(); ++n) o << ",\n        windows[" << n << "]";
-    // One call of window() for both ways: two would be two copies of all stages.
-    o << "};\n    const bool all = active.list == nullptr;\n"
+    // The kernel for all cells has registers for nothing else.
+    o << "};\n    constexpr bool all = !ACTIVE;\n"
       << "    const int across = (P.tile_size + FUSED_COLUMNS - 1) / FUSED_COLUMNS;\n"
       << "    const int parts = across * ((P.tile_size + FUSED_ROWS - 1) / FUSED_ROWS);\n"
       << "    const int count = all ? 1 : static_cast<int>(*active.count) * parts;\n"
@@ -133,14 +134,19 @@ std::string write_cuda(const FusedStage& f, const Effects& effects, bool all_mas
       << "        stage.own_i1 = stage.own_i0 + FUSED_COLUMNS;\n        stage.own_j1 = stage.own_j0 + FUSED_ROWS;\n"
       << "        volatile uint* activity = active.activity;\n        if (!all) {\n"
       << "        const int tile = static_cast<int>(active.list[n / parts]), part = n % parts;\n"
-      << tile_part("stage.") << "        activity += tile;\n        stage.look = *activity != uint(input->step);\n"
+      << tile_part("stage.") << "        activity += tile;\n        stage.tile_looked_at = *activity != uint(input->step);\n"
       << "        stage.changed = false;\n        }\n        stage.window();\n"
-      << "        if (stage.changed) *activity = uint(input->step);\n        BARRIER;\n    }\n}\n} // namespace " << space
-      << "\nextern \"C\" const void* wadi_cuda_" << s.name << "(unsigned effects, int, int) {\n    switch (effects) {\n";
-    for (const unsigned mask : chosen)
-        o << "    case " << mask << "u: return reinterpret_cast<const void*>(&" << space << "::run<" << mask << "u>);\n";
-    o << "    default: return nullptr;\n    }\n}\nextern \"C\" const void* wadi_cuda_active_" << s.name
-      << "(unsigned effects) {\n    return wadi_cuda_" << s.name << "(effects, 0, 0);\n}\n";
+      << "        if (!all && stage.changed) *activity = uint(input->step);\n        BARRIER;\n    }\n}\n#undef look\n} // "
+         "namespace "
+      << space << "\n";
+    for (const bool active : {false, true}) {
+        o << "extern \"C\" const void* wadi_cuda_" << (active ? "active_" : "") << s.name
+          << (active ? "(unsigned effects)" : "(unsigned effects, int, int)") << " {\n    switch (effects) {\n";
+        for (const unsigned mask : chosen)
+            o << "    case " << mask << "u: return reinterpret_cast<const void*>(&" << space << "::run<" << mask << "u, "
+              << (active ? "true" : "false") << ">);\n";
+        o << "    default: return nullptr;\n    }\n}\n";
+    }
     return o.str();
 }
 
