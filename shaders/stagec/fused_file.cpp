@@ -212,6 +212,10 @@ void read_word(FusedStage& fused, const std::string& word, const Arguments& a, c
             if (at == std::string::npos) fail(place + ": \"" + text + "\" is not kept field = field");
             fused.empty.copies[text.substr(0, at)] = text.substr(at + 1);
         }
+    } else if (word == "LEAN_WITHOUT") {
+        fused.lean.less = bits(a[0]);
+        fused.lean.without.assign(a.begin() + 1, a.end());
+        fused.lean.place = place;
     } else if (word == "NEVER_EMPTY_IF") {
         for (const auto& name : effects_in(a[0])) asked.insert(name);
         fused.empty.never = bits(a[0]);
@@ -220,17 +224,18 @@ void read_word(FusedStage& fused, const std::string& word, const Arguments& a, c
     }
 }
 
-// Fields that tell an empty group, and what it copies, must be read from memory whatever the mask.
-void check_empty(const FusedStage& fused) {
-    const auto check = [&](const std::string& field) {
+// Fields that tell what a group holds, and those that it copies, must be read from memory whatever the mask.
+void check_contents(const FusedStage& fused) {
+    const auto check = [&](const std::string& field, const std::string& place) {
         const auto& all = fused.stage.bindings;
         const bool read =
             std::any_of(all.begin(), all.end(), [&](const Binding& b) { return b.name == field && b.access == "IN"; });
-        if (!read) fail(fused.empty.place + ": no part reads " + field + " from memory");
+        if (!read) fail(place + ": no part reads " + field + " from memory");
     };
-    for (const auto& field : fused.empty.without) check(field);
+    for (const auto& field : fused.empty.without) check(field, fused.empty.place);
+    for (const auto& field : fused.lean.without) check(field, fused.lean.place);
     for (const auto& [field, from] : fused.empty.copies) {
-        check(from);
+        check(from, fused.empty.place);
         if (!fused.kept.count(field)) fail(fused.empty.place + ": " + field + " is not kept");
     }
 }
@@ -256,7 +261,7 @@ FusedStage parse_fused(const std::string& path, const Effects& effects) {
     }
     if (fused.stage.struct_name.empty()) source.fail(0, "no FUSED(Name)");
     resolve(fused, effects, asked);
-    check_empty(fused);
+    check_contents(fused);
     const std::size_t bytes = 4 * fields_kept(fused, Keeping::window).size() * static_cast<std::size_t>(window_floats(fused));
     if (bytes > wadi::compute::fused_shared_bytes) {
         source.fail(0, "windows of " + std::to_string(bytes) + " bytes, at most " +

@@ -31,12 +31,21 @@ struct Kept {
     std::string place; // of its KEEP
 };
 
-/// What a group without some fields' content writes in place of running the phases.
-struct Empty {
-    std::vector<std::string> without;          // fields that are 0 wherever the group reads them
+/// Groups whose cells hold nothing of some fields, as far as the group reads them.
+struct Content {
+    std::vector<std::string> without; // those fields; none: no group is looked at
+    std::string place;                // of the words, for messages
+};
+
+/// What a group without content writes in place of running the phases.
+struct Empty : Content {
     std::map<std::string, std::string> copies; // kept field -> field of memory that it equals then; the others are 0
     unsigned never = 0;                        // effects with which no group is taken for empty
-    std::string place;                         // of its words, for messages
+};
+
+/// Effects without which such a group runs the phases; what it keeps under them is 0.
+struct Lean : Content {
+    unsigned less = 0;
 };
 
 struct FusedStage {
@@ -48,6 +57,7 @@ struct FusedStage {
     std::map<std::string, Keeping> fields; // fields that parts write
     std::map<std::string, Kept> kept;      // those that later passes read
     Empty empty;
+    Lean lean;
 };
 
 /// Threads of a group of a fused stage along i and j; it covers FUSED_COLUMNS x FUSED_ROWS cells.
@@ -68,11 +78,18 @@ bool writes_before(const FusedStage& fused, std::size_t part, const std::string&
 /// The part that writes a field last; the number of parts where none does.
 std::size_t last_writer(const FusedStage& fused, const std::string& field);
 
-/// The parts' functions with their loads and stores redirected, one kernel function PART_kernel(i, j) each.
-std::string part_functions(const FusedStage& fused, const Effects& effects);
+/// The parts' functions with their loads and stores redirected, one kernel function PART_kernel(i, j) each; and once more, as
+/// lean_PART_kernel, without the effects that lean groups do without. `mask`: the effects' name in the language.
+std::string part_functions(const FusedStage& fused, const Effects& effects, const std::string& mask);
+/// Whether the group holds nothing of the fields of `content`, as a bool of that name; false at the grid's rim, where outer faces
+/// keep what sides set.
+std::string content_look(const FusedStage& fused, const Content& content, const std::string& name);
+/// What an empty group writes, and a lean one where its phases write nothing.
+std::string empty_writes(const FusedStage& fused);
+std::string lean_writes(const FusedStage& fused, const Effects& effects);
 /// The phases in order, or what a group without content writes; LANE, LANES (a group's threads), BARRIER and ANY (whether a
 /// number is not 0 for one of them) are left to the language.
-std::string phase_loops(const FusedStage& fused);
+std::string phase_loops(const FusedStage& fused, const Effects& effects);
 /// Include lines of the parts' physics.
 std::string physics_includes(const FusedStage& fused);
 /// Macros for places in memory and in a window. They need own_i0, own_j0, window_i0, window_j0 and the language's type Place and

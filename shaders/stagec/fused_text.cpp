@@ -12,6 +12,7 @@ struct Rewriter {
     const FusedPart& part;
     std::size_t index;
     const Effects& effects;
+    std::string prefix; // of its functions
     std::set<std::string> functions;
 
     bool absent(const std::string& binding) const {
@@ -71,11 +72,11 @@ struct Rewriter {
                 at = behind_bracket(part.stage.source, skip_blanks(text, at));
             } else if (word == "END_STAGE") {
             } else if (word == "KERNEL") {
-                out += "PART_FUNCTION void " + part.stage.name + "_kernel(int i, int j)";
+                out += "PART_FUNCTION void " + prefix + part.stage.name + "_kernel(int i, int j)";
             } else if (word == "int" && is_place(text, begin)) {
                 out += "Place";
             } else if (functions.count(word)) {
-                out += part.stage.name + "_" + word;
+                out += prefix + part.stage.name + "_" + word;
             } else if (!number && at < stop && text[at] == '[' && is_binding(word)) {
                 out += access(word, begin, at);
             } else {
@@ -126,15 +127,24 @@ struct Rewriter {
 
 } // namespace
 
-std::string part_functions(const FusedStage& fused, const Effects& effects) {
+static std::string functions_of(const FusedStage& fused, const Effects& effects, const std::string& prefix) {
     std::string out;
     for (std::size_t n = 0; n < fused.parts.size(); ++n) {
-        Rewriter rewriter{fused, fused.parts[n], n, effects, {}};
+        Rewriter rewriter{fused, fused.parts[n], n, effects, prefix, {}};
         const Source& source = fused.parts[n].stage.source;
         rewriter.find_functions();
         out += "#line 1 \"" + source.path + "\"\n" + rewriter.run(0, source.text.size()) + here;
     }
     return out;
+}
+
+std::string part_functions(const FusedStage& fused, const Effects& effects, const std::string& mask) {
+    std::string out = functions_of(fused, effects, "");
+    if (fused.lean.without.empty()) return out;
+    const auto has = [](const std::string& bits) {
+        return "#undef HAS\n#define HAS(BITS) ((" + bits + " & (BITS)) == (BITS))\n";
+    };
+    return out + has(mask + " & ~" + std::to_string(fused.lean.less) + "u") + functions_of(fused, effects, "lean_") + has(mask);
 }
 
 std::string physics_includes(const FusedStage& fused) {
@@ -161,67 +171,12 @@ std::string index_macros(const FusedStage& fused) {
     return o.str();
 }
 
-namespace {
-
-// Cells around a group's own ones from which a part reads.
-Margins read_margins(const FusedStage& fused) {
-    Margins most;
-    for (const auto& part : fused.parts) {
-        const Margins& m = fused.phases[part.phase];
-        const Reach& r = part.reach;
-        most = {std::max(most.west, m.west + r.west), std::max(most.south, m.south + r.south),
-                std::max(most.east, m.east + r.east), std::max(most.north, m.north + r.north)};
-    }
-    return most;
-}
-
-std::string each_place(int width, int height, const std::string& i0, const std::string& j0) {
-    return "    for (int n = LANE; n < " + std::to_string(width * height) + "; n += LANES) {\n        int i = " + i0 + " + n % " +
-           std::to_string(width) + ";\n        int j = " + j0 + " + n / " + std::to_string(width) + ";\n";
-}
-
-// Whether the group holds nothing, as `empty`; at the grid's rim it never does, where outer faces keep what sides set.
-std::string empty_look(const FusedStage& fused) {
-    const Margins m = read_margins(fused);
-    const auto less = [](const char* from, int n) { return std::string(from) + " - " + std::to_string(n); };
+// `less`: effects that are off.
+static std::string loops(const FusedStage& fused, const std::string& prefix, unsigned less) {
     std::ostringstream o;
-    o << "    bool empty = own_i0 >= " << m.west << " && own_j0 >= " << m.south << " && own_i0 + FUSED_COLUMNS + " << m.east
-      << " <= P.nx && own_j0 + FUSED_ROWS + " << m.north << " <= P.ny";
-    if (fused.empty.never != 0) o << " && !HAS(" << fused.empty.never << "u)";
-    o << ";\n    if (empty) {\n    int holds = 0;\n"
-      << each_place(FUSED_COLUMNS + m.west + m.east, FUSED_ROWS + m.south + m.north, less("own_i0", m.west),
-                    less("own_j0", m.south))
-      << "        Place at = IDX(i, j);\n        holds |= ";
-    for (std::size_t n = 0; n < fused.empty.without.size(); ++n)
-        o << (n > 0 ? " || " : "") << "float(" << fused.empty.without[n] << "[IN_MEMORY(at)]) != 0.0f";
-    o << " ? 1 : 0;\n    }\n    empty = !ANY(holds);\n    }\n";
-    return o.str();
-}
-
-std::string empty_writes(const FusedStage& fused) {
-    std::ostringstream o;
-    o << each_place(FUSED_COLUMNS, FUSED_ROWS, "own_i0", "own_j0")
-      << "        if (i >= own_i1 || j >= own_j1) continue;\n        Place at = IDX(i, j);\n        float stored = 0.0f;\n";
-    for (const auto& b : fused.stage.bindings) {
-        const auto kept = fused.kept.find(b.name);
-        if (b.access == "IN" || kept == fused.kept.end() || kept->second.rim) continue;
-        const auto copy = fused.empty.copies.find(b.name);
-        if (b.condition != "0u") o << "        if (HAS(" << b.condition << ")) {\n";
-        o << "        stored = " << (copy == fused.empty.copies.end() ? "0.0f" : "float(" + copy->second + "[IN_MEMORY(at)])")
-          << ";\n        KEEP_STORED(" << b.name << ", IN_MEMORY(at), " << b.type << ");\n";
-        if (b.condition != "0u") o << "        }\n";
-    }
-    o << "    }\n";
-    return o.str();
-}
-
-} // namespace
-
-std::string phase_loops(const FusedStage& fused) {
-    std::ostringstream o;
-    const bool can_be_empty = !fused.empty.without.empty();
-    if (can_be_empty) o << empty_look(fused) << "    if (empty) {\n" << empty_writes(fused) << "    } else {\n";
     for (std::size_t p = 0; p < fused.phases.size(); ++p) {
+        const auto runs = [&](const FusedPart& part) { return part.phase == p && (part.condition & less) == 0; };
+        if (std::none_of(fused.parts.begin(), fused.parts.end(), runs)) continue;
         const Margins& m = fused.phases[p];
         const int width = FUSED_COLUMNS + m.west + m.east, height = FUSED_ROWS + m.south + m.north;
         if (p > 0) o << "    BARRIER;\n";
@@ -231,9 +186,9 @@ std::string phase_loops(const FusedStage& fused) {
           << "        owned = i >= own_i0 && i < own_i1 && j >= own_j0 && j < own_j1;\n"
           << "        bool inside = i >= 0 && j >= 0;\n";
         for (const auto& part : fused.parts) {
-            if (part.phase != p) continue;
+            if (!runs(part)) continue;
             if (part.condition != 0) o << "        if (HAS(" << part.condition << "u)) {\n";
-            o << "        if (inside && " << guard(part.stage.extent) << ") {\n            " << part.stage.name
+            o << "        if (inside && " << guard(part.stage.extent) << ") {\n            " << prefix << part.stage.name
               << "_kernel(i, j);\n        } else {\n"; // beyond the grid fields are 0, as ghosts are
             for (const auto& [name, field] : part.writes) {
                 const auto found = fused.fields.find(field);
@@ -246,8 +201,20 @@ std::string phase_loops(const FusedStage& fused) {
         }
         o << "    }\n";
     }
-    if (can_be_empty) o << "    }\n";
     return o.str();
+}
+
+std::string phase_loops(const FusedStage& fused, const Effects& effects) {
+    const bool empties = !fused.empty.without.empty(), leans = !fused.lean.without.empty();
+    std::string out;
+    if (empties) out += content_look(fused, fused.empty, "empty") + "    if (empty) {\n" + empty_writes(fused) + "    } else {\n";
+    if (leans)
+        out += content_look(fused, fused.lean, "lean") + "    if (lean) {\n" + loops(fused, "lean_", fused.lean.less) +
+               lean_writes(fused, effects) + "    } else {\n";
+    out += loops(fused, "", 0);
+    if (leans) out += "    }\n";
+    if (empties) out += "    }\n";
+    return out;
 }
 
 } // namespace stagec

@@ -92,8 +92,8 @@ std::string write_cpp(const FusedStage& f, const std::string& isa, const Effects
     for (const auto& name : fields_kept(f, Keeping::own_index)) o << "    float own_" << name << " = 0.0f;\n";
     o << "    int own_i0 = 0, own_j0 = 0, own_i1 = 0, own_j1 = 0, window_i0 = 0, window_j0 = 0;\n    bool owned = "
          "false;\n"
-      << part_functions(f, effects) << "void window() {\n    PLACE_WINDOW;\n"
-      << phase_loops(f) << "}\n};\n"
+      << part_functions(f, effects, "EFFECTS") << "void window() {\n    PLACE_WINDOW;\n"
+      << phase_loops(f, effects) << "}\n};\n"
       << block_head() << "    " << s.struct_name << "<E> stage{P, S\n"
       << buffer_members(s)
       << "    };\n    for (int j = j0; j < j1; j += FUSED_ROWS) {\n        for (int i = i0; i < i1; i += "

@@ -95,14 +95,14 @@ std::string write_glsl(const FusedStage& f, const Effects& effects) {
          "    if (holds != 0) group_holds = 1u;\n    barrier();\n    return group_holds != 0u;\n}\n#define ANY(X) "
          "any_of_group(X)\n"
          "int own_i0, own_j0, own_i1, own_j1, window_i0, window_j0;\nbool owned, look = false, changed = false;\n"
-      << part_functions(f, effects)
+      << part_functions(f, effects, "(EFFECTS | " + std::to_string(f.needs) + "u)")
       << "void main() {\n    own_i0 = int(gl_WorkGroupID.x) * FUSED_COLUMNS;\n    own_j0 = int(gl_WorkGroupID.y) * FUSED_ROWS;\n"
       << "    own_i1 = own_i0 + FUSED_COLUMNS;\n    own_j1 = own_j0 + FUSED_ROWS;\n    int tile = 0;\n"
       << "    if (ACTIVE_TILES != 0u) {\n        tile = int(active_list[gl_WorkGroupID.x]);\n        int part = "
          "int(gl_WorkGroupID.y);\n"
          "        int across = (P.tile_size + FUSED_COLUMNS - 1) / FUSED_COLUMNS;\n"
       << tile_part("") << "        look = activity[tile] != uint(S.step);\n    }\n    PLACE_WINDOW;\n"
-      << phase_loops(f) << "    if (changed) activity[tile] = uint(S.step);\n}\n";
+      << phase_loops(f, effects) << "    if (changed) activity[tile] = uint(S.step);\n}\n";
     return o.str();
 }
 
