@@ -19,8 +19,8 @@ Margins read_margins(const FusedStage& fused) {
 }
 
 std::string each_place(int width, int height, const std::string& i0, const std::string& j0) {
-    return "    for (int n = LANE; n < " + std::to_string(width * height) + "; n += LANES) {\n        int i = " + i0 + " + n % " +
-           std::to_string(width) + ";\n        int j = " + j0 + " + n / " + std::to_string(width) + ";\n";
+    return "    ROLLED for (int n = LANE; n < " + std::to_string(width * height) + "; n += LANES) {\n        int i = " + i0 +
+           " + n % " + std::to_string(width) + ";\n        int j = " + j0 + " + n / " + std::to_string(width) + ";\n";
 }
 
 // Stores `value` as what a group keeps of a binding at its own cell.

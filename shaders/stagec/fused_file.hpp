@@ -87,8 +87,8 @@ std::string content_look(const FusedStage& fused, const Content& content, const 
 /// What an empty group writes, and a lean one where its phases write nothing.
 std::string empty_writes(const FusedStage& fused);
 std::string lean_writes(const FusedStage& fused, const Effects& effects);
-/// The phases in order, or what a group without content writes; LANE, LANES (a group's threads), BARRIER and ANY (whether a
-/// number is not 0 for one of them) are left to the language.
+/// The phases in order, or what a group without content writes; LANE, LANES (a group's threads), BARRIER, ANY (whether a
+/// number is not 0 for one of them) and ROLLED (a loop that is not unrolled) are left to the language.
 std::string phase_loops(const FusedStage& fused, const Effects& effects);
 /// Include lines of the parts' physics.
 std::string physics_includes(const FusedStage& fused);

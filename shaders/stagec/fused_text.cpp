@@ -180,7 +180,7 @@ static std::string loops(const FusedStage& fused, const std::string& prefix, uns
         const Margins& m = fused.phases[p];
         const int width = FUSED_COLUMNS + m.west + m.east, height = FUSED_ROWS + m.south + m.north;
         if (p > 0) o << "    BARRIER;\n";
-        o << "    for (int n = LANE; n < " << width * height << "; n += LANES) {\n"
+        o << "    ROLLED for (int n = LANE; n < " << width * height << "; n += LANES) {\n"
           << "        int i = own_i0 + n % " << width << " - " << m.west << ";\n        int j = own_j0 + n / " << width << " - "
           << m.south << ";\n"
           << "        owned = i >= own_i0 && i < own_i1 && j >= own_j0 && j < own_j1;\n"

@@ -79,7 +79,8 @@ std::string write_cpp(const FusedStage& f, const std::string& isa, const Effects
       << "#pragma GCC diagnostic ignored \"-Wunused-but-set-variable\"\n#pragma GCC diagnostic ignored \"-Wunused-parameter\"\n"
       << physics_includes(f) << "struct Place { int x, y; };\n#define PLACE(X, Y) Place{X, Y}\n"
       << index_macros(f)
-      << "#define LANE 0\n#define LANES 1\n#define BARRIER (void)0\n#define ANY(X) (X)\n#define KEEP_STORED(FIELD, AT, TYPE) "
+      << "#define LANE 0\n#define LANES 1\n#define BARRIER (void)0\n#define ANY(X) (X)\n#define ROLLED\n#define "
+         "KEEP_STORED(FIELD, AT, TYPE) "
          "FIELD[AT] = "
          "TYPE(stored)\n"
       << "#define PART_FUNCTION inline __attribute__((always_inline))\n#define NOT_KEPT(X) (void)(X)\n"

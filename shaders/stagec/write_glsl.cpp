@@ -84,7 +84,7 @@ std::string write_glsl(const FusedStage& f, const Effects& effects) {
     o << head << physics_includes(f) << "#undef HAS\n#define HAS(BITS) (((EFFECTS | " << f.needs << "u) & (BITS)) == (BITS))\n"
       << "#define Place ivec2\n#define PLACE(X, Y) ivec2(X, Y)\n"
       << index_macros(f) << "#define LANE int(gl_LocalInvocationIndex)\n#define LANES " << fused_group_x * fused_group_y
-      << "\n#define BARRIER barrier()\n#define PART_FUNCTION\n#define NOT_KEPT(X)\n"
+      << "\n#define BARRIER barrier()\n#define ROLLED\n#define PART_FUNCTION\n#define NOT_KEPT(X)\n"
       << keep_stored;
     for (const auto& b : s.bindings) o << b.access << "(" << b.slot << ", " << b.type << ", " << b.name << ")\n";
     o << tile_bindings(s);

@@ -82,6 +82,10 @@ FUSED_FAULTS = [
     (5, "RUN(trial, height)", 5, "is neither binding = field nor binding > field"),
     (6, "KEEP(rise_x, rise_z)", 6, "KEEP names rise_z, which no part writes"),
     (6, "KEEP(rise_x)", 5, "nobody reads rise_y"),
+    (6, "KEEP(rise_x, rise_y)\nEMPTY_WITHOUT(rise_x)", 7, "no part reads rise_x from memory"),
+    (6, "KEEP(rise_x, rise_y)\nLEAN_WITHOUT(EFFECT_SAND, depth)", 7, "no part reads depth from memory"),
+    (6, "KEEP(rise_x, rise_y)\nEMPTY_WITHOUT(height)\nEMPTY_COPIES(rise_x, height)", 8, '"rise_x" is not kept field = field'),
+    (6, "KEEP(rise_x, rise_y)\nEMPTY_WITHOUT(height)\nEMPTY_COPIES(height = height)", 7, "height is not kept"),
     (2, "", 1, "no FUSED(Name)"),
 ]
 
