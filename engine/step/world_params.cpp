@@ -52,7 +52,7 @@ float velocity_limit(const Method& method, double k) {
     return method.half_storage ? half_at_most(limit) : limit;
 }
 
-WorldParams derive_params(const Settings& s) {
+WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     const auto& m = s.material;
     const auto& w = s.method;
     const FieldLayout layout{s.grid.nx, s.grid.ny};
@@ -113,7 +113,7 @@ WorldParams derive_params(const Settings& s) {
     p.water_density = f(m.water_density);
     p.sand_density = f(m.sand_density);
     p.friction = f(m.friction);
-    const double kd = dts * m.exchange_rate;
+    const double kd = (effects & EFFECT_DRAG) != 0 ? dts * m.exchange_rate : 0;
     p.drag_kd = f(kd);
     p.drag_coupling = f(kd * m.water_density / (m.water_density + kd) / m.sand_density);
     p.drag_share = f(kd / (m.water_density + kd));
@@ -123,8 +123,9 @@ WorldParams derive_params(const Settings& s) {
     p.wedge_slope2 = f(std::min(wedge * wedge, steep * steep));
     p.wedge_weight = f(1 / (1 + m.slope_normal * std::min(wedge * wedge, steep * steep)));
     p.internal_friction = f(m.internal_friction);
-    p.retained = f(m.retention);
-    p.inv_drainable = f(1 / (1 - m.retention));
+    const bool retains = (effects & EFFECT_RETENTION) != 0;
+    p.retained = retains ? f(m.retention) : -1.0F; // all water is free
+    p.inv_drainable = retains ? f(1 / (1 - m.retention)) : 1.0F;
     p.prestress = w.prestress ? 1.0F : 0.0F;
 
     double lambda = m.young_modulus * m.poisson_ratio / ((1 + m.poisson_ratio) * (1 - 2 * m.poisson_ratio));

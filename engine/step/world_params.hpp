@@ -11,6 +11,8 @@ double ledger_quantum(const Method& method);
 /// The velocity clamp [m/s] for k = dt/dx [s/m]; with half storage a 16-bit float, so that what is at it is not rounded above it.
 float velocity_limit(const Method& method, double k);
 
-WorldParams derive_params(const Settings& settings);
+/// effects: the mask of those that are on. Balance (NUMERICS 2.20) counts on no others: without drag water takes nothing along,
+/// without retention pores hold nothing back.
+WorldParams derive_params(const Settings& settings, std::uint32_t effects);
 
 } // namespace wadi

@@ -5,7 +5,7 @@
 namespace wadi {
 
 WorldState::WorldState(const Settings& settings, std::unique_ptr<compute::Device> device, compute::GroupSize group)
-    : settings_(settings), layout_{settings.grid.nx, settings.grid.ny}, params_(derive_params(settings)),
+    : settings_(settings), layout_{settings.grid.nx, settings.grid.ny}, params_(derive_params(settings, 0)),
       level_(level_digest(settings)), group_(group),
       device_(std::move(device), [this](const Status& lost) { tell(0, lost.message); }) {}
 
@@ -64,7 +64,7 @@ void WorldState::set_material(const Material& material) {
 }
 
 void WorldState::derive() {
-    params_ = derive_params(settings_);
+    params_ = derive_params(settings_, plan_.effects);
     if (plan_.active_tiles) params_.tile_rings = (plan_.reach + params_.tile_size - 1) / params_.tile_size;
     tiles_.wake_all();
 }

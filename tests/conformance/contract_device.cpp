@@ -178,7 +178,7 @@ void group_sizes(Session&, Device& device, Expect& expect) {
         auto scene = make_scene("65x3", "random", "default", stage_masks(stage).back());
         if (!scene) return expect.ok(scene.status(), "a scene");
         const Pilot pilot = make_pilot(*scene, name);
-        const WorldParams params = derive_params(scene->settings);
+        const WorldParams params = derive_params(scene->settings, scene->effects);
         std::vector<BenchBuffer> first;
         for (const compute::GroupSize group : {compute::GroupSize{0, 0}, {1, 1}, {8, 8}, {128, 1}, {3, 5}}) {
             auto buffers = stage_buffers(info, *scene, pilot, params);

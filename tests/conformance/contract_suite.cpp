@@ -56,7 +56,7 @@ Status run_once(compute::Device& device, const compute::ProgramBuilder& builder)
 WorldParams small_params() {
     static const WorldParams params = [] {
         auto scene = make_scene("33x17", "flat", "default", EFFECT_WATER);
-        return scene ? derive_params(scene->settings) : WorldParams{};
+        return scene ? derive_params(scene->settings, scene->effects) : WorldParams{};
     }();
     return params;
 }

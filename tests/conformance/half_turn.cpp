@@ -56,7 +56,7 @@ class HalfTurn {
         Settings settings;
         settings.grid = {2, states, 1};
         settings.dt = 0.01;
-        params_ = derive_params(settings);
+        params_ = derive_params(settings, effects_);
         for (const auto& binding : info().bindings) buffers_.push_back(fill(binding));
     }
 

@@ -167,7 +167,7 @@ Result<Scene> scene_of(const CaseSpec& spec) {
     auto scene = make_scene(spec.get("grid", "33x17"), own ? "flat" : name, fuzzed ? "default" : method, *mask);
     if (!scene) return scene;
     // A World keeps initial velocities as they are; here they start within the clamp, which must then hold for ever.
-    const WorldParams params = derive_params(scene->settings);
+    const WorldParams params = derive_params(scene->settings, scene->effects);
     const auto clamp = [](std::vector<float>& field, float most) {
         for (float& u : field) u = std::clamp(u, -most, most);
     };
@@ -184,7 +184,7 @@ Result<Scene> scene_of(const CaseSpec& spec) {
 Verdict check_bounds(World& world) {
     auto stats = world.reader().stats();
     if (!stats) return verdict_of(stats.status());
-    const WorldParams params = derive_params(world.settings());
+    const WorldParams params = derive_params(world.settings(), world.plan().effects);
     const WorldStats& s = *stats;
     if (s.not_finite > 0) return failed(std::to_string(s.not_finite) + " values are not finite");
     if (s.smallest_height < 0) return failed("a height is " + std::to_string(s.smallest_height) + " m");

@@ -47,7 +47,7 @@ std::vector<float> initial_field(const Scene& scene, const std::string& base) {
 
 PassRunner::PassRunner(compute::Device& device, const Scene& scene, PlanChoice choice)
     : device_(device), scene_(scene), plan_(make_step_plan(scene.effects, scene.settings.method.substeps, choice)),
-      params_(derive_params(scene.settings)) {}
+      params_(derive_params(scene.settings, scene.effects)) {}
 
 PassRunner::~PassRunner() {
     for (const auto& [name, pair] : buffers_)

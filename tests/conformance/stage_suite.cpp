@@ -174,7 +174,7 @@ Verdict run_stage_case(const CaseSpec& spec, compute::Device& device, const Tamp
     const auto& info = compute::stage_table()[static_cast<std::size_t>(stage)];
     Pilot pilot = make_pilot(*scene, spec.name);
     if (lists_active_tiles(spec.name)) add_active_tiles(*scene, pilot.input);
-    const WorldParams params = derive_params(scene->settings);
+    const WorldParams params = derive_params(scene->settings, scene->effects);
     if (spec.name == "apply_edits") add_edits(*scene, pilot.input);
     auto buffers = stage_buffers(info, *scene, pilot, params);
     if (half) {

@@ -24,10 +24,13 @@ template <class Real> Real Solver<Real>::balance(Real depth, Real held) const {
     const Material& m = settings.material;
     const Real c = cohesion(has(EFFECT_COHESION) ? held / (held + depth) : Real(0), depth);
     const Real wet = std::min(held, depth) / depth;
-    const Real retained = real(m.retention);
-    const Real drained = std::clamp((held / depth - retained) / (Real(1) - retained), Real(0), Real(1));
-    const Real kr = drained * drained * drained;
-    const Real leans = m.exchange_rate > 0 ? Real(1) - kr : Real(0);
+    Real kr(1);
+    if (has(EFFECT_RETENTION)) {
+        const Real retained = real(m.retention);
+        const Real drained = std::clamp((held / depth - retained) / (Real(1) - retained), Real(0), Real(1));
+        kr = drained * drained * drained;
+    }
+    const Real leans = P.exchange > Real(0) ? Real(1) - kr : Real(0);
     const Real carried = std::max(Real(1) + P.rho_w / P.rho_s * wet * wet * (leans - kr), Real(0));
     const Real T = P.rho_s * sand_gravity(depth) * depth / Real(2) * carried;
     const Real chi = real(m.slope_normal);

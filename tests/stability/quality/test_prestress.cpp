@@ -379,3 +379,21 @@ TEST_CASE("the castle without its wave stays as it is drawn") {
     CHECK(kept(true) > 0.95);
     CHECK(kept(false) < 0.85);
 }
+
+TEST_CASE("prestress counts on drag and retention where the world has them, and on nothing else") {
+    const auto tension = [](const std::string& off) { // over lambda + mu
+        auto scene = damp_box(0.5, 0.4925, true);
+        if (!off.empty()) scene.settings.effects.push_back({off, Force::off});
+        auto world = make_world(scene);
+        const double trace = 2 * std::log1p(static_cast<double>(cells_of(*world, "stretch_xx").at(box_cells / 2, box_cells / 2)));
+        return trace * std::exp(-trace);
+    };
+    const Material material;
+    const double share = material.water_density / material.sand_density / 4; // of half a depth of water
+    const double held = std::pow((0.5 - 0.4925) / (1 - 0.4925), 3), leaning = 1 + share * (1 - 2 * held);
+    for (const std::string off : {"retention", "drag"}) {
+        const double ratio = tension("") / tension(off);
+        MESSAGE("without " << off << ": " << ratio << ", wanted " << leaning / (1 - share));
+        CHECK(std::abs(ratio / (leaning / (1 - share)) - 1) < 1e-3);
+    }
+}
