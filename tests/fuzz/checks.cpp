@@ -18,7 +18,7 @@ Base run_base(const Case& c, Session& session) {
     for (int done = 0; done < c.steps && run.good(); ++done) {
         if (done == c.steps - 1) base.hash_before = hash(run);
         step(run, 1);
-        if (!run.good() || (done > 2 && done % 8 != 0 && done != c.steps - 1)) continue;
+        if (!run.good()) break;
         auto stats = run.world->reader().stats();
         run.note("stats", stats.status());
         if (!stats) break;
@@ -161,7 +161,7 @@ std::string check_reference(const Case& c, Session& session) {
     reference::Solver<float> narrow(s, run.world->plan().effects);
     reference::Solver<double> wide(s, run.world->plan().effects);
     narrow.load(c.scene.fields);
-    wide.copy_from(narrow);
+    wide.load(c.scene.fields); // no copy: V* of stiff sand (NUMERICS 2.20) has few digits as a float beside 1
     reference::Solver<double> nudged = wide;
     for (int done = 1; done <= std::min(2, c.steps); ++done) {
         nudge(nudged);
