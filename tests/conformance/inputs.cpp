@@ -229,6 +229,7 @@ void open_sides(Scene& scene) {
     s.sides[SIDE_NORTH] = {SideKind::outflow, 0, 1e30, {}};
     if (!water) return;
     s.sides[SIDE_EAST] = {SideKind::discharge, 0, 0.8 * ly, {{{0, 0.8 * deep * ly}, {1, 1.2 * deep * ly}}}};
+    if (scene.name == "slope" || scene.name == "islands") s.sides[SIDE_EAST].depth = 0.3; // less than critical
     s.sides[SIDE_SOUTH] = {SideKind::level, 0.2 * lx, 1e30, constant(scene.name == "lake" ? 1.000008 : 1.03 * deep)};
 }
 

@@ -121,6 +121,7 @@ Json level_of(const Case& c) {
         Json& to = json["sides"][side_names()[n]];
         to["kind"] = side.kind == SideKind::discharge ? "discharge" : side.kind == SideKind::level ? "level" : "outflow";
         if (!side.value.samples.empty()) to["value"] = series(side.value);
+        if (side.depth > 0) to["depth"] = side.depth;
         if (side.from > 0) to["from"] = side.from;
         if (side.to < 1e29) to["to"] = side.to;
     }

@@ -240,6 +240,8 @@ Case make_case(std::uint64_t seed) {
     if (random.chance(0.3) && !s.method.half_storage) s.method.sand_transport_order = 2;
     if (random.chance(0.2)) s.material.manning = random.log(1e-3, 1);
     if (random.chance(0.1)) s.roughness = drawn(s.grid, relief(random, s.grid, random.log(1e-3, 1)));
+    for (Side& side : s.sides)
+        if (side.kind == SideKind::discharge && random.chance(0.5)) side.depth = random.log(1e-3, 2) * size;
     return c;
 }
 

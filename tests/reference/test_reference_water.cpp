@@ -149,6 +149,44 @@ TEST_CASE("reference: steady subcritical flow over a bump, discharge and level s
     }
 }
 
+TEST_CASE("reference: a discharge with a depth below its critical one comes in as a fast stream, which a bump slows by "
+          "Bernoulli's law") {
+    const double g = 9.81, q = 0.9, h0 = 0.25, L = 10;
+    const auto bump = [](double x) { return std::max(0.0, 0.1 - 0.1 * (x - 5) * (x - 5)); };
+    const auto exact = [&](double z) { // the fast root of h + q^2/(2 g h^2) + z = E, by halves
+        const double E = h0 + q * q / (2 * g * h0 * h0);
+        double low = 0.05, high = std::cbrt(q * q / g);
+        for (int n = 0; n < 60; ++n) {
+            const double h = (low + high) / 2;
+            (h + q * q / (2 * g * h * h) + z > E ? low : high) = h;
+        }
+        return low;
+    };
+    const auto error = [&](int order, int n, double depth) {
+        Settings set = convergence_settings(n, 1, L / n);
+        set.sides[0] = {SideKind::discharge, 0, 1e30, {{{0, q * set.grid.dx}}}, depth};
+        set.sides[1].kind = SideKind::outflow;
+        Solver<double> s(set, water_of(order) | EFFECT_OPEN_SIDES);
+        Field<double> wanted(index(n));
+        for (int i = 0; i < n; ++i) {
+            s.terrain[index(i)] = bump((i + 0.5) * set.grid.dx);
+            wanted[index(i)] = exact(s.terrain[index(i)]);
+            s.water[index(i)] = h0;
+        }
+        std::fill(s.pure_velocity.x.begin(), s.pure_velocity.x.end(), q / h0);
+        run_to(s, 60, 0.45);
+        const double off = relative_error(s.water, wanted);
+        MESSAGE("fast stream over a bump, order " << order << ", n = " << n << ", depth " << depth << ": L1 " << off);
+        return off;
+    };
+    for (const int order : {1, 2}) {
+        const double coarse = error(order, 100, h0), fine = error(order, 200, h0);
+        CHECK(coarse < 0.006);
+        CHECK(fine < 0.6 * coarse);
+    }
+    CHECK(error(1, 100, 0) > 0.3); // critical or deeper without it
+}
+
 TEST_CASE("reference: water runs out at an open side and stays behind a wall") {
     for (const bool open : {true, false}) {
         Settings set = make_settings(40, 3, 0.25, 0.02);
