@@ -117,7 +117,15 @@ template <class Real> void Solver<Real>::level_face(const Axis& ax, int a, int b
         Real low{}, high{};
         if (b > 0) low = upwind(v[ax.cross(inner, b)], pure[ax.cell(inner, b - 1)], h);
         if (b + 1 < ax.across()) high = upwind(v[ax.cross(inner, b + 1)], h, pure[ax.cell(inner, b + 1)]);
-        const Real enters = (upwind(next, pure[M], h) - upwind(own, h, ghost)) + (low - high);
+        velocity = outward * own; // for face_depth
+        const auto leaves = [&](int face, Real speed, Real behind, Real ahead) {
+            // Of two cells the further one lies beside the other side and counts as flat.
+            const bool flat = cells == 2 && face != a && speed > Real(0);
+            if (!has(EFFECT_SECOND_ORDER_WATER) || flat) return upwind(speed, behind, ahead);
+            return P.k * speed * face_depth(Layer::pure, ax, face, b, outward * speed);
+        };
+        const Real along = leaves(far_end ? cells - 1 : 1, next, pure[M], h) - leaves(a, own, h, ghost);
+        const Real enters = along + (low - high);
         const Real risen = ghost - std::max(level_before - terrain[N], Real(0));
         const Real pull = P.k * g * (eta_in - eta_out) / (Real(4) * Real(cells));
         const Real incoming = pull + (h > Real(0) ? c / h : Real(0)) * (enters - Real(2) * risen);
@@ -194,7 +202,9 @@ template <class Real> void Solver<Real>::radiate(const Axis& ax, bool far_end, i
     const Real c_M = std::sqrt(g * std::max(water[N] - rise, Real(0)));
     const Real subcritical = c_N > Real(0) ? std::clamp(Real(2) * (Real(1) - std::abs(next) / c_N), Real(0), Real(1)) : Real(1);
     const Real u = next + subcritical * Real(2) * (c_N - c_M);
-    velocity[ax.face(far_end ? ax.along() : 0, b)] = outward * std::clamp(u, Real(0), P.clamp);
+    const std::size_t f = ax.face(far_end ? ax.along() : 0, b);
+    velocity[f] = outward * std::clamp(u, Real(0), P.clamp);
+    if (has(EFFECT_SECOND_ORDER_WATER)) ghost_water.along(ax)[f] = std::max(pure[N] + rise, Real(0)); // the slope goes on
 }
 
 /// The water's velocities and outer depths of one side's faces. Positive `outward` points out of the domain.
