@@ -52,16 +52,16 @@ Result<Map> open_map(const MapSource& source, const std::string& path, const Fil
     return map;
 }
 
-/// What a map says at the middles of nx * ny cells, within +-`most`; `what` it is, in messages about the layer at `path`.
-Result<std::vector<float>> values_of(const Map& map, const MapSource& source, const std::string& path, const char* what,
-                                     double most, int nx, int ny) {
+/// What a map says at the middles of nx * ny cells; `path` names its layer in messages.
+Result<std::vector<float>> values_of(const Map& map, const MapSource& source, const std::string& path, int nx, int ny) {
     std::vector<float> values = resample(map, nx, ny);
     const double scale = source.grey_range ? source.max - source.min : source.scale;
     const double offset = source.grey_range ? source.min : source.offset;
     for (std::size_t cell = 0; cell < values.size(); ++cell) {
         const double value = static_cast<double>(values[cell]) * scale + offset;
-        if (!(std::fabs(value) <= most))
-            return error(Code::bad_file, outside_text(path + ": " + what, value, -most, most) + " in cell (" +
+        const auto& [name, least, most] = source.meaning;
+        if (!(value >= least && value <= most))
+            return error(Code::bad_file, outside_text(path + ": " + name, value, least, most) + " in cell (" +
                                              std::to_string(cell % static_cast<std::size_t>(nx)) + ", " +
                                              std::to_string(cell / static_cast<std::size_t>(nx)) + ")");
         values[cell] = static_cast<float>(value);
@@ -201,7 +201,7 @@ class Drawing {
         if (layer.map) {
             const auto map = open_map(*layer.map, layer.path, files_, warnings_);
             if (!map) return map.status();
-            auto values = values_of(*map, *layer.map, layer.path, "height", HEIGHT_MOST, grid_.nx, grid_.ny);
+            auto values = values_of(*map, *layer.map, layer.path, grid_.nx, grid_.ny);
             if (!values) return values.status();
             heights = std::move(*values);
             const bool other_size = map->nx != grid_.nx || map->ny != grid_.ny;
@@ -240,7 +240,7 @@ class Drawing {
         std::vector<std::string> said_already;
         if (Status status = draw_layers({lists_.terrain, lists_.sand, {}}, own, files_, ground, said_already); !status)
             return status;
-        auto water = values_of(map, *layer.map, layer.path, "height", HEIGHT_MOST, map.nx, map.ny);
+        auto water = values_of(map, *layer.map, layer.path, map.nx, map.ny);
         if (!water) return water.status();
         for (float& depth : *water) depth = std::max(depth, 0.0f);
         level_lakes({ground.terrain, ground.sand, *water}, own.nx, own.ny, {fields_.terrain, fields_.sand, depths}, grid_.nx,
@@ -331,7 +331,7 @@ Status draw_velocities(const std::vector<VelocityLayer>& layers, bool of_sand, c
         if (layer.map) {
             const auto map = open_map(*layer.map, layer.path, files, warnings);
             if (!map) return map.status();
-            const auto values = values_of(*map, *layer.map, layer.path, "velocity", SPEED_MOST, grid.nx, grid.ny);
+            const auto values = values_of(*map, *layer.map, layer.path, grid.nx, grid.ny);
             if (!values) return values.status();
             std::vector<float>& along = layer.map_along_y ? y : x;
             for (std::size_t cell = 0; cell < along.size(); ++cell) set(along[cell], (*values)[cell]);

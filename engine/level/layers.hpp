@@ -33,8 +33,16 @@ enum class Amount {
     wet,     // water as a share of the sand's depth
 };
 
+/// What the values of a map are, as messages name them, and their range in the unit of the field.
+struct MapMeaning {
+    const char* name = "height";
+    double least = -HEIGHT_MOST;
+    double most = HEIGHT_MOST;
+};
+
 struct MapSource {
     std::string file;
+    MapMeaning meaning;
     std::optional<std::pair<int, int>> size; // of an r16 map
     bool grey_range = false;                 // grey 0 ... 1 becomes min ... max; otherwise value * scale + offset
     double min = 0;

@@ -116,8 +116,9 @@ void read_shape(ObjectReader& reader, LayerTarget target, Layer& layer) {
     }
 }
 
-MapSource read_map_source(ObjectReader& reader) {
+MapSource read_map_source(ObjectReader& reader, const MapMeaning& meaning) {
     MapSource map;
+    map.meaning = meaning;
     reader.string("file", map.file);
     if (map.file.empty()) reader.fail("file", "must name a map");
     const bool range = reader.find("min") != nullptr || reader.find("max") != nullptr;
@@ -142,7 +143,7 @@ MapSource read_map_source(ObjectReader& reader) {
 }
 
 void read_map_layer(ObjectReader& reader, LayerTarget target, Layer& layer) {
-    layer.map = read_map_source(reader);
+    layer.map = read_map_source(reader, target == LayerTarget::roughness ? MapMeaning{"manning", 0, MANNING_MOST} : MapMeaning{});
     bool absolute = false;
     if (of_column(target)) reader.boolean("absolute", absolute);
     if (absolute) layer.amount = Amount::surface;
@@ -222,7 +223,7 @@ std::vector<VelocityLayer> read_velocities(const Json& value, const std::string&
             reader.require("component");
             reader.choice("component", {"x", "y"}, component);
             layer.map_along_y = component == 1;
-            layer.map = read_map_source(reader);
+            layer.map = read_map_source(reader, {"velocity", -SPEED_MOST, SPEED_MOST});
         } else {
             int kind = 0;
             reader.choice("shape", REGION_NAMES, kind);

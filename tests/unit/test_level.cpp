@@ -231,6 +231,16 @@ TEST_CASE("level: roughness by shapes and maps, added to that of the material an
     };
     CHECK(mapped(R"({"file": "n.npy"})") == std::vector<float>{0.03f, 0, 0.011f, 1});
     CHECK(mapped(R"({"file": "grey.png", "min": 0.25, "max": 0.5})") == std::vector<float>{0.5f, 0.25f, 0.25f, 0.5f});
+    const auto refused = [&](const std::string& numbers) {
+        const auto text =
+            level_text::level(R"("roughness": [{"file": "n.npy", )" + numbers + "}]", R"({"nx": 2, "ny": 2, "dx": 1})");
+        const auto parsed = parse_level(text, folder.path(), {});
+        return parsed ? "" : parsed.status().message;
+    };
+    CHECK(refused(R"("scale": 1)").empty());
+    CHECK_MESSAGE(says(refused(R"("offset": 0.5)"), "roughness[0]: manning: 1.5 is outside 0 ... 1 in cell (1, "),
+                  refused(R"("offset": 0.5)"));
+    CHECK_MESSAGE(says(refused(R"("offset": -0.25)"), "roughness[0]: manning: -0.2"), refused(R"("offset": -0.25)"));
 }
 
 TEST_CASE("level: velocities from maps, each of one component") {
