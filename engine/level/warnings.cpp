@@ -1,5 +1,6 @@
 // Advice on a level that loads but would not do what its author expects. Each message has the numbers and what to change.
 // Rules and constants: NUMERICS.md sections 2.4b, 2.4d, 2.7, 2.8 and 4.
+#include "engine/level/films.hpp"
 #include "engine/level/level.hpp"
 #include "engine/settings/messages.hpp"
 #include "engine/settings/setting_table.hpp"
@@ -19,21 +20,13 @@ constexpr double WET_SHARE = 0.02;  // sand with less water than this share of i
 constexpr double NEARLY_FULL = 0.9; // of largest_height
 
 std::string meters(double value) { return number_text(std::round(value * 1000) / 1000) + " m"; }
-/// Three significant digits, rounded down: a limit that may be typed as it stands.
-std::string at_most(double value) {
-    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 2);
-    return number_text(std::floor(value / unit * (1 + 1e-12)) * unit);
-}
-std::string at_least(double value) {
-    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 2);
-    return number_text(std::ceil(value / unit * (1 - 1e-12)) * unit);
-}
 
 /// The extremes of the initial fields that the rules need.
 struct Survey {
     double highest_column = 0; // H + hs + W [m]
     double deepest_water = 0;  // W [m]
     double deepest_sand = 0;   // hs [m]
+    std::size_t dry_cells = 0; // without water above their sand
     double dry_front = 0;      // pure water beside lower dry ground [m]
     double wet_wall = 0;       // step of wet sand [m]
     double wet_wall_ratio = 0; // W / hs there
@@ -169,6 +162,7 @@ Survey survey_fields(const Settings& settings, const InitialFields& fields) {
             const Column here = columns.at(i, j);
             survey.highest_column = std::max(survey.highest_column, here.ground() + here.water);
             survey.deepest_water = std::max(survey.deepest_water, here.water);
+            if (here.water - here.sand <= settings.method.dry_threshold) ++survey.dry_cells;
             survey.deepest_sand = std::max(survey.deepest_sand, here.sand);
             if (i + 1 < settings.grid.nx) survey_face(settings, columns, i, j, false, survey);
             if (j + 1 < settings.grid.ny) survey_face(settings, columns, i, j, true, survey);
@@ -302,6 +296,8 @@ std::vector<std::string> level_warnings(const Settings& settings, const InitialF
     const Survey survey = survey_fields(settings, fields);
     warn_water(settings, survey, warnings);
     warn_sand(settings, survey, warnings);
+    const auto cells = static_cast<std::size_t>(settings.grid.nx) * static_cast<std::size_t>(settings.grid.ny);
+    warn_films(settings, {survey.highest_column, 2 * survey.dry_cells > cells}, warnings);
     for (std::size_t n = 0; n < settings.sources.size(); ++n)
         if (!covers_a_cell(settings.sources[n], settings.grid))
             warnings.push_back("sources[" + std::to_string(n) +

@@ -1,5 +1,6 @@
 #include "engine/settings/messages.hpp"
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdio>
 
@@ -9,6 +10,16 @@ std::string number_text(double value) {
     char text[32];
     std::snprintf(text, sizeof(text), "%.6g", value);
     return text;
+}
+
+std::string at_most(double value) {
+    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 2);
+    return number_text(std::floor(value / unit * (1 + 1e-12)) * unit);
+}
+
+std::string at_least(double value) {
+    const double unit = std::pow(10.0, std::floor(std::log10(value)) - 2);
+    return number_text(std::ceil(value / unit * (1 - 1e-12)) * unit);
 }
 
 std::string outside_text(const std::string& path, double value, double least, double most) {

@@ -8,6 +8,11 @@ namespace wadi {
 /// At most six significant digits: 0.045, 1e+06.
 std::string number_text(double value);
 
+/// Three significant digits of a positive value, rounded down: a limit that may be typed as it stands.
+std::string at_most(double value);
+/// The same rounded up.
+std::string at_least(double value);
+
 /// "path: value is outside least ... most".
 std::string outside_text(const std::string& path, double value, double least, double most);
 

@@ -154,6 +154,32 @@ TEST_CASE("a discharge arrives on time to one quantum a face however small it is
     CHECK(std::abs(total(cells_of(*world, "water_height")) - 400 * 5e-6) <= 400 * height_quantum(scene.settings.method));
 }
 
+TEST_CASE(
+    "a film that brings less than a quantum a step waits until it moves one: all of it arrives, as deep as the warning says") {
+    const auto too_deep = [](double dt) {
+        const double q = 1e-5, slope = 0.05, manning = 0.03;
+        auto scene = flat_scene(20, 1, 1, dt);
+        scene.settings.material.manning = manning;
+        scene.fill(scene.fields.terrain, [=](double x, double) { return slope * (20 - x); });
+        scene.settings.sides[SIDE_WEST] = {SideKind::discharge, 0, 1e30, {{{0, q}}}};
+        scene.settings.sides[SIDE_EAST].kind = SideKind::outflow;
+        auto world = make_world(scene);
+        step(*world, static_cast<int>(2000 / dt));
+        const auto before = stats_of(*world);
+        step(*world, static_cast<int>(500 / dt));
+        const auto after = stats_of(*world);
+        const double out = double(after.ledger.water_out - before.ledger.water_out) * after.quantum / 500; // m2/s
+        const double depth = static_cast<double>(cells_of(*world, "water_height").at(10, 0));
+        const double ratio = depth / std::pow(manning * q / std::sqrt(slope), 0.6);
+        MESSAGE("dt " << dt << ": " << ratio << " times too deep, " << out / q << " of the flow leaves");
+        CHECK(std::abs(out / q - 1) < 0.05);
+        return ratio;
+    };
+    const double quanta = 1e-5 * 0.05 / height_quantum(Method{}); // 0.52 a step
+    CHECK(std::abs(too_deep(0.05) * std::pow(quanta, 0.6) - 1) < 0.05);
+    CHECK(too_deep(0.2) < 1.3); // 2.1 a step
+}
+
 TEST_CASE("a discharge with a depth below critical comes in that deep and fast; without it, critical") {
     const auto middle = [](double depth) {
         auto scene = flat_scene(100, 1, 0.1, 0.005);
