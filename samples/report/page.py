@@ -140,8 +140,7 @@ def second_order(page, all_scenes, rows):
         return
     page.heading("Second order for water: where it pays")
     page.text("method.water_transport_order = 2 (engine/NUMERICS.md 2.16; choice second_order in a point) moves the water's heights and velocities with limited slopes. It pays where water "
-              "is smooth or a bore or front runs through it: waves, dam breaks, streams over a bump with and without a jump. It does not pay where shores move over "
-              "sloping ground (both of Thacker's bowls): cells beside dry ones stay of first order and rule the error, and more cells are the better buy. Water inside sand gains "
+              "is smooth or a bore or front runs through it: waves, dam breaks, streams over a bump with and without a jump, shores that move over sloping ground. Water inside sand gains "
               "where it flows as one body (the mound), not where drag or a boundary sets its error (the pair, Dupuit's dam). Doubling the cells along x and y costs eight times the work.")
     page.table(["case", "cells", "order 1 [%]", "order 2 [%]", "order 1, twice the cells [%]", "2 over 1", "measured order, 1 / 2", "time of a step, 2 over 1", "order 1, cells for that time [%]", "pays?"], body)
     if series:

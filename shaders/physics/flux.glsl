@@ -9,7 +9,7 @@ FN float upwind_flux(float velocity, float height_low, float height_high, float 
     return k * (wmax(velocity, 0.0f) * height_low + wmin(velocity, 0.0f) * height_high);
 }
 
-// Depth and free surface of one layer in a cell.
+// Depth of one layer in a cell, and the surface whose slope bounds that of the depth: for pure water the depth again.
 struct Column {
     float depth, surface;
 };

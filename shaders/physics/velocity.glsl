@@ -106,8 +106,8 @@ FN float sand_gravity(float gravity, float highest, float cap) {
     return gravity * highest > cap ? limited : gravity;
 }
 
-// Wet/dry rule (NUMERICS 2.4c): true where a face must stand still, because both cells are dry, or because the wet
-// one's surface does not stand above its dry neighbour.
+// Wet/dry rule of sand and of water in it (NUMERICS 2.4c): true where a face must stand still, because both cells are dry, or because
+// the wet one's surface does not stand above its dry neighbour.
 FN bool blocked(float height_low, float height_high, float surface_low, float surface_high, float dry) {
     bool wet_low = height_low > dry;
     bool wet_high = height_high > dry;
@@ -115,6 +115,13 @@ FN bool blocked(float height_low, float height_high, float surface_low, float su
     bool wall_high = both(both(wet_low, !wet_high), surface_high >= surface_low);
     bool wall_low = both(both(wet_high, !wet_low), surface_low >= surface_high);
     return either(both_dry, either(wall_high, wall_low));
+}
+
+// A velocity that draws no water from a dry cell (NUMERICS 2.4c).
+FN float leaving_wet(float u, float height_low, float height_high, float dry) {
+    float up = height_low > dry ? wmax(u, 0.0f) : 0.0f;
+    float down = height_high > dry ? wmin(u, 0.0f) : 0.0f;
+    return up + down;
 }
 
 // Clamp of a velocity by its size, across being its other component at the face (NUMERICS 2.4d): a clamp by component would let water run

@@ -5,7 +5,13 @@
 
 namespace wadi::reference {
 
-/// 2.4c: whether a face of a layer with depths h and surfaces S on both sides must stand still.
+/// 2.4c: a velocity of pure water that would draw from a dry cell is 0.
+template <class Real> Real leaving_wet(Real u, Real h_left, Real h_right, Real eps) {
+    const Real donor = u > Real(0) ? h_left : h_right;
+    return donor > eps ? u : Real(0);
+}
+
+/// 2.4c: whether a face of sand or of mixed water with depths h and surfaces S on both sides must stand still.
 template <class Real> bool blocked(Real h_left, Real h_right, Real S_left, Real S_right, Real eps) {
     const bool wet_left = h_left > eps;
     const bool wet_right = h_right > eps;

@@ -43,8 +43,9 @@ template <class Real> Real Solver<Real>::face_depth(Layer layer, const Axis& ax,
     };
     const Column before = at(donor - down), own = at(donor), after = at(donor + down);
     if (std::min({before.depth, own.depth, after.depth}) <= P.eps) return own.depth;
-    const auto rise = [](const Column& from, const Column& to) {
-        return minmod(to.depth - from.depth, to.surface - from.surface);
+    const auto rise = [&](const Column& from, const Column& to) {
+        const Real deeper = to.depth - from.depth;
+        return layer == Layer::pure ? deeper : minmod(deeper, to.surface - from.surface);
     };
     const Real k = layer == Layer::sand ? P.k_sand : P.k;
     const Real courant = std::min(Real(1), k * std::abs(u));

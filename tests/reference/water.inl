@@ -107,7 +107,7 @@ void Solver<Real>::water_face(const Faces<Real>& pure_old, const Faces<Real>& mi
 
     uw -= push;
     if (level && std::abs(uw) <= P.rest_velocity) uw = Real(0);
-    if (blocked(pure[L], pure[R], eta_L, eta_R, P.eps)) uw = Real(0);
+    uw = leaving_wet(uw, pure[L], pure[R], P.eps);
     Real grip = P.bed_friction; // 2.4: c
     if (mean(sand[L], sand[R]) > P.eps) grip += P.bed_shear;
     const Real across = across_face(pure_old, ax, a, b);

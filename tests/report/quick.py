@@ -49,12 +49,11 @@ def main():
         # Each with a control: what must not be as good.
         assert error("stoker@n400,dt1,T3,robust") < 0.6 * error("stoker@n100,dt1,T3,robust") < error("stoker@n400,dt1,T3,published")
         assert error("ritter@n400,dt1,T3,robust") < 0.6 * error("ritter@n100,dt1,T3,robust") < error("ritter@n400,dt1,T3,published")
-        for scene, most in (("wave", 0.5), ("stoker", 0.8), ("ritter", 0.6), ("transcritical", 0.6), ("jump", 0.6), ("mound", 0.6)):  # second order pays
+        for scene, most in (("wave", 0.5), ("stoker", 0.8), ("ritter", 0.6), ("transcritical", 0.6), ("jump", 0.6), ("mound", 0.6), ("planar", 0.2)):  # second order pays
             sizes = sorted(int(point.split("@n")[1].split(",")[0]) for point in rows if point.startswith(scene + "@") and point.endswith("second_order"))
             assert error(f"{scene}@n{sizes[1]},dt1,T3,second_order") < error(f"{scene}@n{sizes[2]},dt1,T3,robust"), scene
             assert error(f"{scene}@n{sizes[1]},dt1,T3,second_order") < most * error(f"{scene}@n{sizes[1]},dt1,T3,robust"), scene
-        for scene, n in (("thacker", 48), ("planar", 100)):  # and does not on moving shores
-            assert error(f"{scene}@n{n},dt1,T3,second_order") > error(f"{scene}@n{2 * n},dt1,T3,robust"), scene
+        assert error("thacker@n96,dt1,T3,second_order") < 0.6 * error("thacker@n96,dt1,T3,robust")
         assert error("planar@n200,dt1,T3,robust") < 4 < error("planar@n200,dt1,T3,published")
         assert error("transcritical@n100,dt1,T3,robust") < 4 < error("transcritical@n50,dt1,T3,robust")
         assert error("jump@n100,dt1,T3,robust") < 2 < error("jump@n50,dt1,T3,robust")
