@@ -207,7 +207,7 @@ TEST_CASE("choices of method are passes of their own at their place in the order
     scene.settings.method = {};
     scene.settings.method.water_transport_order = 2;
     CHECK(effects_required(scene.settings, content_of(scene.fields))->mask == (EFFECT_WATER | EFFECT_SECOND_ORDER_WATER));
-    // The same passes and buffers: the fluxes read the terrain as well.
+    // The same passes and buffers; for water in pores the fluxes read the terrain as well.
     const auto second = make_step_plan(EFFECT_WATER | EFFECT_SECOND_ORDER_WATER, 3), first = make_step_plan(EFFECT_WATER, 3);
     CHECK(order(second.water_passes) == order(first.water_passes));
     CHECK(second.field_buffers() == first.field_buffers());
@@ -216,7 +216,9 @@ TEST_CASE("choices of method are passes of their own at their place in the order
             return std::find(pass.fields.begin(), pass.fields.end(), "terrain") != pass.fields.end();
         });
     };
-    CHECK(reads_terrain(second) == reads_terrain(first) + 2);
+    CHECK(reads_terrain(second) == reads_terrain(first));
+    constexpr std::uint32_t pores = EFFECT_WATER | EFFECT_SAND | EFFECT_MIXTURE;
+    CHECK(reads_terrain(make_step_plan(pores | EFFECT_SECOND_ORDER_WATER, 3)) == reads_terrain(make_step_plan(pores, 3)) + 2);
     scene.settings.method.sand_transport_order = 2; // no sand: nothing to act on
     CHECK(effects_required(scene.settings, content_of(scene.fields))->mask == (EFFECT_WATER | EFFECT_SECOND_ORDER_WATER));
     scene.fill(scene.fields.sand, [](double, double) { return 1; });
