@@ -39,6 +39,7 @@ void choose_method(Settings& settings, const std::string& name) {
         chosen.quantum = 0;
         chosen.gravity_cap = chosen.gravity_cap_least = chosen.sand_gravity_cap = chosen.elastic_cap = 0;
         chosen.rest_rule = false;
+        chosen.shock_viscosity = 0;
         chosen.passive_pressure = chosen.gradient_clamp = chosen.cohesion_cap = 0;
         chosen.saturation_smoothing = 0;
         chosen.prestress = false;

@@ -110,7 +110,7 @@ constexpr Setting rows[] = {
     {"method.elastic_cap", method<&Method::elastic_cap>, {0, 1e6}, "", EFFECT_ELASTOPLASTIC,
      "softens sand that the sand substep cannot follow; 0 = off"},
     {"method.shock_viscosity", method<&Method::shock_viscosity>, {0, 1}, "", EFFECT_WATER,
-     "damps ripples of two cells behind a bore; 0 = off"},
+     "keeps bores from ringing; smooth waves pass; 0 = off"},
     {"method.bulk_viscosity", method<&Method::bulk_viscosity>, {0, 1e3}, "m2/s", EFFECT_ELASTOPLASTIC,
      "damps waves of stress in sand; 0 = off"},
     {"method.rest_rule", method<&Method::rest_rule>, flag, "", EFFECT_WATER,

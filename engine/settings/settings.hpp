@@ -69,7 +69,7 @@ struct Method {
     double gravity_cap_least = 0.15;
     double sand_gravity_cap = 0.25; // NUMERICS 2.7
     double elastic_cap = 0.2;       // lambda + 2 mu <= elastic_cap rho_s dx^2/dts^2
-    double shock_viscosity = 0;     // c1 of NUMERICS 2.3
+    double shock_viscosity = 0.25;  // c1 of NUMERICS 2.3
     double bulk_viscosity = 0;      // NUMERICS 2.7
     bool rest_rule = true;          // NUMERICS 2.4e
     double passive_pressure = 1;    // K of the compression cap, NUMERICS 2.7

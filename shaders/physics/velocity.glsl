@@ -66,11 +66,18 @@ FN float advect_velocity_second_order(float u, FaceLine along, FaceLine across, 
     return height > dry ? moved : u;
 }
 
-// Viscous flux of a cell that is compressed along one axis (NUMERICS 2.3, after von Neumann and Richtmyer 1950), 0 elsewhere: growth
-// is the difference of its two face velocities. 0.12 keeps the explicit step stable at a step of the depth.
-FN float shock_flux(float growth, float height, float viscosity) {
-    float number = wmin(viscosity * wsqrt(wmax(height, 0.0f)), 0.12f);
-    return growth < 0.0f ? number * growth * height : 0.0f;
+// How fast a cell and the two beside it are compressed along one axis [m/s]: velocity at the low face less that at the high one.
+struct Compression {
+    float low, own, high;
+};
+
+// Viscous flux of a cell (NUMERICS 2.3, after von Neumann and Richtmyer 1950, limited after Christensen 1990): of what the neighbours'
+// compression does not explain. Three times it does, so that no smooth wave is damped but at its crest, where 12 k times the rest is
+// next to nothing. 0.12 keeps the explicit step stable at a step of the depth.
+FN float shock_flux(Compression at, float height, float viscosity, float k) {
+    float rest = wmax(at.own - wmax(3.0f * wmin(at.low, at.high), 0.0f), 0.0f);
+    float number = wmin(wmin(viscosity * wsqrt(wmax(height, 0.0f)), 12.0f * k * rest), 0.12f);
+    return -number * rest * height;
 }
 
 // Momentum exchange between pure and mixed water when the boundary between them moves (paper 3.4.2; convex form,

@@ -129,15 +129,21 @@ void Solver<Real>::water_face(const Faces<Real>& pure_old, const Faces<Real>& mi
     um = shortened(um, across_face(mixed_old, ax, a, b), P.clamp);
 }
 
-/// 2.3: viscosity along each axis in cells that are compressed along it.
+/// 2.3: viscosity along each axis in cells that are compressed along it more than their neighbours explain.
 template <class Real> void Solver<Real>::damp_shocks(const Faces<Real>& before) {
     for_inner_faces([&](const Axis& ax, int a, int b) {
         const Field<Real>& u = before.along(ax);
         const auto viscous = [&](int cell) {
-            const Real growth = u[ax.face(cell + 1, b)] - u[ax.face(cell, b)];
+            const auto compression = [&](int at) {
+                const int inside = std::clamp(at, 0, ax.along() - 1) == at ? at : cell;
+                return u[ax.face(inside, b)] - u[ax.face(inside + 1, b)];
+            };
+            const Real explained = Real(3) * std::min(compression(cell - 1), compression(cell + 1));
+            const Real rest = std::max(compression(cell) - std::max(explained, Real(0)), Real(0));
             const Real depth = pure_predicted[ax.cell(cell, b)];
-            const Real number = std::min(P.shock_viscosity * P.k * std::sqrt(P.gravity * depth), Real(0.12));
-            return growth < Real(0) ? number * growth * depth : Real(0);
+            const Real waves = P.shock_viscosity * std::sqrt(P.gravity * depth);
+            const Real number = std::min(P.k * std::min(waves, Real(12) * rest), Real(0.12));
+            return -number * rest * depth;
         };
         const Real depth = mean(pure_predicted[ax.cell(a - 1, b)], pure_predicted[ax.cell(a, b)]);
         if (depth > P.eps) pure_velocity.along(ax)[ax.face(a, b)] += (viscous(a) - viscous(a - 1)) / depth;
