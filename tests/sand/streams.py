@@ -23,8 +23,7 @@ def washed(name, sand, water, wet, seconds, limits, control):
         def scene(spacing, turn=0):
             cells = grid(FIELD, FIELD, spacing)
             drawn = shapes.draw(cells, sand, turn)
-            return level(cells, sand=[{"file": drawn}], water=[{"file": shapes.draw(cells, water, turn) + wet * drawn}],
-                         method={"shock_viscosity": 0.25})
+            return level(cells, sand=[{"file": drawn}], water=[{"file": shapes.draw(cells, water, turn) + wet * drawn}])
 
         straight, fine, *turned = lab.runs([(one, [0, seconds]) for one in (scene(dx), scene(dx / 2), *(scene(dx, turn) for turn in TURNS))])
         start, coarse = straight.field("hs", 0), straight.field("hs", seconds)

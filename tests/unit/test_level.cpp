@@ -414,6 +414,14 @@ TEST_CASE("level: an accuracy preset scales cells and time step and sets the sub
     CHECK(accurate.settings.grid.nx == 2 * plain.settings.grid.nx);
     CHECK(accurate.settings.method.water_transport_order == 2);
     CHECK(draft.settings.method.water_transport_order == 1);
+    for (const auto* preset : {"draft", "balanced", "accurate"}) {
+        overrides.accuracy = preset;
+        for (const auto* method : {"robust", "published"}) {
+            overrides.method = method;
+            CHECK(!must(parse("", "", overrides)).settings.method.half_storage); // only a level asks for it
+        }
+    }
+    overrides = {};
     CHECK(must(parse(R"("accuracy": "draft", "method": {"water_transport_order": 2})")).settings.method.water_transport_order ==
           2);
     overrides.size = {12, 8};
