@@ -115,7 +115,8 @@ TEST_CASE(
     for (const double dt_share : {0.5, 1.0, 3.0}) {
         CAPTURE(dt_share);
         const Wake plain = wake(dt_share, 0), smooth = wake(dt_share, 0.25);
-        MESSAGE("stripes " << plain.stripes << ", damped " << smooth.stripes << "; board " << plain.board << ", " << smooth.board);
+        MESSAGE("stripes " << plain.stripes << ", damped " << smooth.stripes << "; board " << plain.board << ", "
+                           << smooth.board);
         CHECK(plain.board < 1e-4);
         CHECK(smooth.board < 1e-5);
         CHECK(plain.stripes < 0.2);
