@@ -46,6 +46,10 @@ std::string describe_plan(const WorldState& world) {
         << plan.water_passes.size() + plan.substep_passes.size() * static_cast<std::size_t>(plan.substeps)
         << " in all\n  water step\n";
     list_passes(out, plan.water_passes);
+    if (!plan.start_passes.empty()) {
+        out << "  step 0 as well, ahead of the fluxes\n";
+        list_passes(out, plan.start_passes);
+    }
     if (!plan.substep_passes.empty()) {
         out << "  sand substep, " << plan.substeps << " times\n";
         list_passes(out, plan.substep_passes);

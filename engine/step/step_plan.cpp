@@ -73,11 +73,15 @@ void account_water(Builder& b) {
     b.run("account_sides", {}, {{"flux_x", "mixed_flux_x"}, {"flux_y", "mixed_flux_y"}, {"side_ledger", "water_side_ledger"}});
 }
 
-// Both layers' fluxes and the new height.
-void plan_water_transport(Builder& b) {
+void plan_water_fluxes(Builder& b) {
     if (b.has(EFFECT_DIFFUSION)) b.run("diffuse_mixed_water");
     b.run("limit_water_outflow");
     b.run("compute_water_flux");
+}
+
+// Both layers' fluxes and the new height.
+void plan_water_transport(Builder& b) {
+    plan_water_fluxes(b);
     if (b.has(EFFECT_OPEN_SIDES)) account_water(b);
     b.run("integrate_water_height", {"water_height"});
 }
@@ -100,11 +104,29 @@ void plan_water_motion(Builder& b) {
     b.run("integrate_water_velocity", moved);
 }
 
-void plan_water(Builder b) {
+// What comes from outside.
+void plan_inflow(Builder b) {
     if (b.has(EFFECT_SOURCES)) b.run("apply_sources");
     if (b.has(EFFECT_RAIN)) b.run("apply_rain");
+    if (b.has(EFFECT_WATER | EFFECT_OPEN_SIDES)) b.run("open_sides");
+}
+
+// A step's heights and velocities are tried in the other buffers of their fields, and velocities go half the way there.
+void plan_start(Builder b) {
+    if (!b.has(EFFECT_SECOND_ORDER_WATER) || b.has(EFFECT_SEMI_LAGRANGIAN)) return;
+    plan_water_fluxes(b);
+    b.run("integrate_water_height");
+    b.run("integrate_water_velocity", {}, {{"water_height", "water_height_next"}});
+    Names names;
+    for (const std::string axis : {"x", "y"}) {
+        names["velocity_" + axis] = "water_velocity_" + axis;
+        names["tried_velocity_" + axis] = next_name("water_velocity_" + axis);
+    }
+    b.run("start_water_velocity", {}, names);
+}
+
+void plan_water(Builder b) {
     if (!b.has(EFFECT_WATER)) return;
-    if (b.has(EFFECT_OPEN_SIDES)) b.run("open_sides");
     const bool traced = b.has(EFFECT_SEMI_LAGRANGIAN);
     if (traced) b.run("update_water_boundary_types");
     // In flux form the diffusive flux carries its momentum; traced velocities need a pass for it.
@@ -267,6 +289,9 @@ StepPlan make_step_plan(std::uint32_t effects, int substeps, PlanChoice choice) 
     plan.tiles_by_material = choice.active_tiles && tells_materials_apart(effects);
     const Builder water(plan, plan.water_passes, false), substep(plan, plan.substep_passes, true);
     if (choice.active_tiles) plan_active_tiles(water);
+    plan_inflow(water);
+    plan.start_at = plan.water_passes.size();
+    plan_start({plan, plan.start_passes, false});
     plan_water(water);
     plan_sand(substep);
     if (!plan.substep_passes.empty()) plan.substep_passes.back().flips.push_back("sand_height");

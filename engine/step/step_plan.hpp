@@ -37,7 +37,9 @@ struct PlanField {
 struct StepPlan {
     std::uint32_t effects = 0;
     int substeps = 1;
-    std::vector<PlanPass> water_passes;   // in order; before the substeps
+    std::vector<PlanPass> water_passes; // in order; before the substeps
+    std::vector<PlanPass> start_passes; // step 0 has them as well, ahead of water_passes[start_at]; none of them flips a field
+    std::size_t start_at = 0;
     std::vector<PlanPass> substep_passes; // run T times
     std::vector<PlanField> fields;
     int scratch_blocks = 0;

@@ -11,6 +11,7 @@ void Stepper::drop_programs() {
     };
     drop(programs_);
     drop(timed_programs_);
+    drop(start_programs_);
     for (auto& programs : part_programs_) {
         drop(programs);
         programs.clear();
@@ -114,38 +115,68 @@ Status Stepper::prepare() {
     return ok_status();
 }
 
+// The water's part, with the start passes or without, or a sand substep.
+Result<compute::Program> Stepper::record_part(int part, bool start, Parity& parity) {
+    compute::ProgramBuilder builder(start ? "start part" : part == 0 ? "water part" : "sand part");
+    const auto& plan = state_.plan();
+    std::vector<PlanPass> passes = part == 0 ? plan.water_passes : plan.substep_passes;
+    if (start) {
+        const auto at = passes.begin() + static_cast<std::ptrdiff_t>(plan.start_at);
+        passes.insert(at, plan.start_passes.begin(), plan.start_passes.end());
+    }
+    for (const auto& pass : passes) {
+        if (auto status = state_.append(builder, pass, parity); !status) return status;
+    }
+    if (part == 0 && plan.active_tiles) {
+        if (auto status = active_.append(builder, state_.fields().turn()); !status) return status;
+    }
+    return state_.device().compile(builder, state_.params());
+}
+
 Status Stepper::record_parts(std::size_t turn) {
     Parity parity = state_.fields().parity(static_cast<int>(turn));
     for (int part = 0; part < parts(); ++part) {
-        compute::ProgramBuilder builder(part == 0 ? "water part" : "sand part");
-        for (const auto& pass : part == 0 ? state_.plan().water_passes : state_.plan().substep_passes) {
-            if (auto status = state_.append(builder, pass, parity); !status) return status;
-        }
-        if (part == 0 && state_.plan().active_tiles) {
-            if (auto status = active_.append(builder, static_cast<int>(turn)); !status) return status;
-        }
-        auto program = state_.device().compile(builder, state_.params());
+        auto program = record_part(part, false, parity);
         if (!program) return program.status();
         part_programs_[turn].push_back(*program);
     }
     return ok_status();
 }
 
-// Submits parts until `parts` of the step are done; the last one makes the step whole.
-Status Stepper::finish(int parts) {
+Status Stepper::record_start(std::size_t turn) {
+    Parity parity = state_.fields().parity(static_cast<int>(turn));
+    auto program = record_part(0, true, parity);
+    if (!program) return program.status();
+    start_programs_[turn] = *program;
+    return ok_status();
+}
+
+Status Stepper::submit_parts(int parts) {
     const auto turn = static_cast<std::size_t>(state_.fields().turn());
-    if (asleep_) parts_done_ = parts;
-    if (!asleep_ && part_programs_[turn].empty()) {
+    const bool start = starts();
+    if (part_programs_[turn].empty()) {
         if (auto status = record_parts(turn); !status) return status;
     }
+    if (start && start_programs_[turn].id == 0) {
+        if (auto status = record_start(turn); !status) return status;
+    }
     for (; parts_done_ < parts; ++parts_done_) {
-        auto ticket = state_.device().submit(part_programs_[turn][static_cast<std::size_t>(parts_done_)], input_);
-        if (!ticket) {
-            if (parts_done_ == 0) inputs_.undo();
-            return ticket.status();
-        }
+        const auto part = static_cast<std::size_t>(parts_done_);
+        auto ticket = state_.device().submit(part == 0 && start ? start_programs_[turn] : part_programs_[turn][part], input_);
+        if (!ticket) return ticket.status();
         ticket_ = *ticket;
-        if (parts_done_ == 0) note_submitted(input_);
+        if (part == 0) note_submitted(input_);
+    }
+    return ok_status();
+}
+
+// Submits parts until `parts` of the step are done; the last one makes the step whole.
+Status Stepper::finish(int parts) {
+    if (asleep_) {
+        parts_done_ = parts;
+    } else if (auto status = submit_parts(parts); !status) {
+        if (parts_done_ == 0) inputs_.undo();
+        return status;
     }
     return parts_done_ < this->parts() ? ok_status() : complete_step();
 }
@@ -194,12 +225,17 @@ Status Stepper::finish_step() {
     return status;
 }
 
+Status Stepper::begin() {
+    if (auto status = hooks_.before_step(); !status) return status;
+    input_ = next_input();
+    asleep_ = may_sleep(input_);
+    return ok_status();
+}
+
 Status Stepper::step_part() {
     if (!state_.lost()) return state_.lost();
     if (parts_done_ == 0) {
-        if (auto status = hooks_.before_step(); !status) return status;
-        input_ = next_input();
-        asleep_ = may_sleep(input_);
+        if (auto status = begin(); !status) return status;
     }
     return finish(parts_done_ + 1);
 }
@@ -207,17 +243,16 @@ Status Stepper::step_part() {
 Status Stepper::step() {
     if (!state_.lost()) return state_.lost();
     if (parts_done_ > 0) return finish(parts());
-    if (auto status = hooks_.before_step(); !status) return status;
+    if (auto status = begin(); !status) return status;
+    if (asleep_ || starts()) return finish(parts());
     const auto turn = static_cast<std::size_t>(state_.fields().turn());
-    const StepInput input = next_input();
-    if (may_sleep(input)) return complete_step();
-    auto ticket = state_.device().submit(profiling_ ? timed_programs_[turn] : programs_[turn], input);
+    auto ticket = state_.device().submit(profiling_ ? timed_programs_[turn] : programs_[turn], input_);
     if (!ticket) {
         inputs_.undo();
         return ticket.status();
     }
     ticket_ = *ticket;
-    note_submitted(input);
+    note_submitted(input_);
     if (profiling_) {
         pending_timings_.push_back(*ticket);
         if (auto status = collect_timings(false); !status) return status;

@@ -82,7 +82,14 @@ class Stepper {
 
   private:
     Result<compute::Program> record_step(int turn, Parity& parity, bool timestamps);
+    Result<compute::Program> record_part(int part, bool start, Parity& parity);
     Status record_parts(std::size_t turn);
+    Status record_start(std::size_t turn);
+    /// Makes the step that comes the present one.
+    Status begin();
+    /// Whether the present step has the plan's start passes.
+    bool starts() const { return state_.steps == 0 && !state_.plan().start_passes.empty(); }
+    Status submit_parts(int parts);
     Status finish(int parts);
     Status complete_step();
     Status collect_timings(bool all);
@@ -98,9 +105,10 @@ class Stepper {
     bool asleep_ = false; // the present step submits nothing
     std::array<compute::Program, 2> programs_{}, timed_programs_{};
     std::array<std::vector<compute::Program>, 2> part_programs_;
+    std::array<compute::Program, 2> start_programs_{}; // the water part of step 0
     int parts_done_ = 0;
     compute::Ticket ticket_;
-    StepInput input_{}; // of the step whose parts are being submitted
+    StepInput input_{}; // of the present step
     Hooks hooks_;
     bool profiling_ = false;
     std::vector<compute::Ticket> pending_timings_;

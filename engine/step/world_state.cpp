@@ -72,7 +72,7 @@ void WorldState::derive() {
 Status WorldState::prepare(std::uint32_t effects) {
     const StepPlan plan = plan_for(effects);
     std::set<int> stages = {compute::find_stage("apply_edits")};
-    for (const auto* passes : {&plan.water_passes, &plan.substep_passes})
+    for (const auto* passes : {&plan.start_passes, &plan.water_passes, &plan.substep_passes})
         for (const auto& pass : *passes) stages.insert(pass.stage);
     for (const int stage : stages) {
         if (auto made = device_.create_pipeline(stage, effects, group_of(stage)); !made) return made.status();

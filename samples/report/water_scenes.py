@@ -60,9 +60,8 @@ def smooth_wave():
 
     def make(n):
         dx = length / n
-        dt = 0.04 * dx  # the velocities lead the heights by half a step
         cells = [{"of": "water", "shape": "box", "from": [i * dx, 0], "to": [(i + 1) * dx, 3 * dx],
-                  "velocity": [2 * (math.sqrt(G * exact.simple_wave((i + 0.5) * dx, dt / 2)) - math.sqrt(G)), 0]} for i in range(n) if abs((i + 0.5) * dx - 20) < 16]
+                  "velocity": [2 * (math.sqrt(G * exact.simple_wave((i + 0.5) * dx, 0)) - math.sqrt(G)), 0]} for i in range(n) if abs((i + 0.5) * dx - 20) < 16]
         return base("Smooth wave", n, 3, dx, water=[{"file": "water.npy"}], velocities=cells)
 
     def files(n):

@@ -60,15 +60,19 @@ FieldName field_of(const std::string& stage, const std::string& binding, std::ui
     if (name.next) name.base.resize(name.base.size() - 5);
     const bool mixture = (effects & EFFECT_MIXTURE) != 0;
     if (name.base.starts_with("drag_velocity")) name.base = (mixture ? "mixed" : "water") + name.base.substr(4);
-    if ((stage == "publish_velocity" || stage == "publish_flow") && name.base.starts_with("velocity"))
+    if ((stage == "publish_velocity" || stage == "publish_flow" || stage == "start_water_velocity") &&
+        name.base.starts_with("velocity"))
         name.base = "water_" + name.base;
     if (stage == "extrapolate_velocity" || stage.starts_with("backtrace_")) { // one layer's: the reference has run the same
         const char* layer = stage == "backtrace_sand_velocity" ? "sand_" : "water_";
         if (name.base.starts_with("velocity") || name.base.starts_with("face_type")) name.base = layer + name.base;
     }
     if (stage == "account_sides" && name.base.starts_with("flux")) name.base = "water_" + name.base;
-    // Stages that read published fields: any fields do, equal in some places and not in others.
-    const std::map<std::string, const char*> stand_ins = {{"previous_output", "sand_height"}, {"current_output", "water_height"}};
+    // Stages that read published fields, or velocities that were tried: any fields do, equal in some places and not in others.
+    const std::map<std::string, const char*> stand_ins = {{"previous_output", "sand_height"},
+                                                          {"current_output", "water_height"},
+                                                          {"tried_velocity_x", "water_flux_x"},
+                                                          {"tried_velocity_y", "water_flux_y"}};
     const std::map<std::string, const char*> surfaces = {{"sand_surface", "terrain"},
                                                          {"previous_sand_surface", "terrain"},
                                                          {"free_surface", "water_height"},

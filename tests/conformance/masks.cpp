@@ -32,7 +32,7 @@ class Plans {
         if (stages.empty()) {
             stages.resize(compute::stage_table().size());
             const StepPlan plan = make_step_plan(mask, 1);
-            for (const auto* passes : {&plan.water_passes, &plan.substep_passes})
+            for (const auto* passes : {&plan.start_passes, &plan.water_passes, &plan.substep_passes})
                 for (const auto& pass : *passes) stages[static_cast<std::size_t>(pass.stage)] = true;
         }
         return stages[stage];

@@ -115,6 +115,24 @@ Verdict check_source_ledger(const StageRun& run) {
     return {};
 }
 
+// The mean of both velocities, in bits.
+Verdict check_start(const StageRun& run) {
+    const FieldLayout layout{run.params.nx, run.params.ny};
+    for (const auto& [name, tried] : {std::pair{"velocity_x", "tried_velocity_x"}, std::pair{"velocity_y", "tried_velocity_y"}}) {
+        for (int j = 0; j <= run.params.ny; ++j) {
+            for (int i = 0; i <= run.params.nx; ++i) {
+                const float got = run.buffer(name).floats()[layout.index(i, j)];
+                const double mean = 0.5 * (wide(run.before(name, i, j)) + wide(run.before(tried, i, j)));
+                const double expected = std::abs(mean) < 1e-20 ? 0 : wide(static_cast<float>(mean));
+                if (wide(got) != expected)
+                    return failed(std::string(name) + "(" + std::to_string(i) + ", " + std::to_string(j) + ") is " +
+                                  std::to_string(got) + ", the mean " + std::to_string(expected));
+            }
+        }
+    }
+    return {};
+}
+
 struct Definition {
     const char* stage;
     Verdict (*check)(const StageRun& run);
@@ -133,6 +151,7 @@ constexpr Definition definitions[] = {
     {"publish_smooth_surface", check_published},
     {"publish_velocity", check_published},
     {"publish_water_depth", check_published},
+    {"start_water_velocity", check_start},
     {"account_sides", check_side_ledger},
     {"apply_rain", check_source_ledger},
     {"apply_sources", check_source_ledger},

@@ -217,6 +217,7 @@ template <class Real> void Solver<Real>::step() {
     const bool traced = has(EFFECT_SEMI_LAGRANGIAN);
     if (has(EFFECT_WATER)) {
         split_water();
+        if (step_index == 0 && has(EFFECT_SECOND_ORDER_WATER) && !traced) start_water_velocity();
         if (traced) update_water_boundary_types();
         if (traced && has(EFFECT_LAPLACE_DIFFUSION)) diffuse_mixed_velocity();
         diffuse_mixed_water();

@@ -64,6 +64,7 @@ template <class Real> class Solver {
     void apply_sources();
     void apply_rain();
     void update_open_sides();                    // 2.9, water
+    void start_water_velocity();                 // 2.16, in step 0 -> pure_velocity
     void split_water();                          // mixed = min(W, hs), pure = W - mixed
     void update_water_boundary_types();          // 2.12 -> pure_type, mixed_type
     void diffuse_mixed_velocity();               // 2.15 -> mixed_velocity

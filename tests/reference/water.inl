@@ -163,6 +163,26 @@ template <class Real> void Solver<Real>::integrate_water_velocity() {
     for_inner_faces([&](const Axis& ax, int a, int b) { water_face(before, mixed_old, ax, a, b); });
 }
 
+/// 2.16: heights at t = 0, velocities half a step later; nothing else of the step that is tried stays.
+template <class Real> void Solver<Real>::start_water_velocity() {
+    const Field<Real> water_start = water;
+    const Faces<Real> pure_start = pure_velocity, mixed_start = mixed_velocity;
+    const double added = water_added;
+    diffuse_mixed_water();
+    limit_water_outflow();
+    compute_water_flux();
+    integrate_water_height();
+    integrate_water_velocity();
+    for_inner_faces([&](const Axis& ax, int a, int b) {
+        Real& u = pure_velocity.along(ax)[ax.face(a, b)];
+        u = mean(pure_start.along(ax)[ax.face(a, b)], u);
+    });
+    mixed_velocity = mixed_start;
+    water = water_start;
+    water_added = added;
+    split_water();
+}
+
 /// 2.11: sand that pure water drags along its bed.
 template <class Real> void Solver<Real>::compute_bed_load() {
     for_inner_faces([&](const Axis& ax, int a, int b) {

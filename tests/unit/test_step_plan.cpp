@@ -292,7 +292,7 @@ TEST_CASE("the engine's pages name every stage of a step, and none that there is
     std::set<std::string> run;
     for (const auto& [mask, choice] : some_plans()) {
         const auto plan = make_step_plan(mask, 1, {.active_tiles = choice.active_tiles});
-        for (const auto* passes : {&plan.water_passes, &plan.substep_passes})
+        for (const auto* passes : {&plan.start_passes, &plan.water_passes, &plan.substep_passes})
             for (const auto& pass : *passes) run.emplace(compute::stage_table()[static_cast<std::size_t>(pass.stage)].name);
     }
     for (const auto& stage : run) CHECK_MESSAGE(named.contains(stage), "not in the pages: " << stage);
