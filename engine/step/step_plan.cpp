@@ -86,6 +86,14 @@ void plan_water_transport(Builder& b) {
     b.run("integrate_water_height", {"water_height"});
 }
 
+// Momentum advection of second order takes the pure water's velocities at the time of the heights, the mixed water's as they are.
+void plan_water_velocity(Builder& b, std::vector<std::string> flips, Names names) {
+    if (b.has(EFFECT_SECOND_ORDER_WATER)) b.run("center_water_velocity", {}, names);
+    names["centered_mixed_velocity_x"] = "mixed_velocity_x";
+    names["centered_mixed_velocity_y"] = "mixed_velocity_y";
+    b.run("integrate_water_velocity", std::move(flips), names);
+}
+
 // Height and velocities of the water.
 void plan_water_motion(Builder& b) {
     std::vector<std::string> moved = {"water_velocity_x", "water_velocity_y"};
@@ -101,7 +109,7 @@ void plan_water_motion(Builder& b) {
         plan_backtrace(b, "water", "backtrace_water_velocity");
         if (b.has(EFFECT_MIXTURE)) plan_backtrace(b, "mixed", "backtrace_water_velocity");
     }
-    b.run("integrate_water_velocity", moved);
+    plan_water_velocity(b, moved, {});
 }
 
 // What comes from outside.
@@ -116,7 +124,7 @@ void plan_start(Builder b) {
     if (!b.has(EFFECT_SECOND_ORDER_WATER) || b.has(EFFECT_SEMI_LAGRANGIAN)) return;
     plan_water_fluxes(b);
     b.run("integrate_water_height");
-    b.run("integrate_water_velocity", {}, {{"water_height", "water_height_next"}});
+    plan_water_velocity(b, {}, {{"water_height", "water_height_next"}});
     Names names;
     for (const std::string axis : {"x", "y"}) {
         names["velocity_" + axis] = "water_velocity_" + axis;

@@ -66,6 +66,12 @@ FN float limited_flux(float raw, float scale_low, float scale_high, float quantu
     return flush(whole_quanta(raw * scale, quantum, inv_quantum));
 }
 
+// The same to the nearest quantum, for a donor that its limiter leaves half a quantum for each face (NUMERICS 2.16).
+FN float nearest_flux(float raw, float scale_low, float scale_high, float quantum, float inv_quantum) {
+    float limited = raw * (raw > 0.0f ? scale_low : scale_high);
+    return flush(whole_quanta(limited + (limited > 0.0f ? 0.5f : -0.5f) * quantum, quantum, inv_quantum));
+}
+
 FN float integrate_height(float height, float flux_west, float flux_east, float flux_south, float flux_north) {
     return flush(wmax(height + ((flux_west - flux_east) + (flux_south - flux_north)), 0.0f));
 }

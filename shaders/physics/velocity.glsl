@@ -56,12 +56,13 @@ FN float line_gain(float u, FaceLine at, float flux_low, float flux_high, float 
            side_gain(-flux_high, u, at.high, at.far_high, at.inside_high, own, inv_height);
 }
 
-// advect_velocity with limited slopes, kept between the five velocities: no new extremum at any time step.
-FN float advect_velocity_second_order(float u, FaceLine along, FaceLine across, float flux_low, float flux_high, float flux_left, float flux_right,
-                                      float height, float inv_height, float dry) {
-    float gain = line_gain(u, along, flux_low, flux_high, inv_height) + line_gain(u, across, flux_left, flux_right, inv_height);
-    float least = wmin(u, wmin(wmin(along.low, along.high), wmin(across.low, across.high)));
-    float most = wmax(u, wmax(wmax(along.low, along.high), wmax(across.low, across.high)));
+// advect_velocity with limited slopes, kept between u and its four neighbours: no new extremum at any time step. `centered` and the lines
+// are the velocities that are advected, at the time of the height; u_*: the face's and its neighbours' own.
+FN float advect_velocity_second_order(float u, float u_low, float u_high, float u_left, float u_right, float centered, FaceLine along, FaceLine across,
+                                      float flux_low, float flux_high, float flux_left, float flux_right, float height, float inv_height, float dry) {
+    float gain = line_gain(centered, along, flux_low, flux_high, inv_height) + line_gain(centered, across, flux_left, flux_right, inv_height);
+    float least = wmin(u, wmin(wmin(u_low, u_high), wmin(u_left, u_right)));
+    float most = wmax(u, wmax(wmax(u_low, u_high), wmax(u_left, u_right)));
     float moved = wclamp(u + gain * inv_height, least, most);
     return height > dry ? moved : u;
 }

@@ -29,13 +29,21 @@ template <class Real> const Field<Real>* cell_field(const Solver<Real>& s, const
 
 template <class Real> const Faces<Real>* face_field(const Solver<Real>& s, const std::string& layer) {
     const std::map<std::string, const Faces<Real>*> fields = {
-        {"water_velocity", &s.pure_velocity},  {"mixed_velocity", &s.mixed_velocity},
-        {"sand_velocity", &s.sand_velocity},   {"water_flux", &s.pure_flux},
-        {"mixed_flux", &s.mixed_flux},         {"sand_flux", &s.sand_flux},
-        {"pressure", &s.mixed_push},           {"bed_load", &s.bed_load},
-        {"water_face_type", &s.pure_type},     {"mixed_face_type", &s.mixed_type},
-        {"sand_face_type", &s.sand_type},      {"extrapolated_velocity", &s.extrapolated},
-        {"friction_limit", &s.friction_limit}, {"withheld_push", &s.withheld_push},
+        {"water_velocity", &s.pure_velocity},
+        {"mixed_velocity", &s.mixed_velocity},
+        {"sand_velocity", &s.sand_velocity},
+        {"water_flux", &s.pure_flux},
+        {"mixed_flux", &s.mixed_flux},
+        {"sand_flux", &s.sand_flux},
+        {"pressure", &s.mixed_push},
+        {"bed_load", &s.bed_load},
+        {"water_face_type", &s.pure_type},
+        {"mixed_face_type", &s.mixed_type},
+        {"sand_face_type", &s.sand_type},
+        {"extrapolated_velocity", &s.extrapolated},
+        {"friction_limit", &s.friction_limit},
+        {"withheld_push", &s.withheld_push},
+        {"centered_water_velocity", &s.centered_velocity},
     };
     const auto found = fields.find(layer);
     return found == fields.end() ? nullptr : found->second;
@@ -59,6 +67,7 @@ FieldName field_of(const std::string& stage, const std::string& binding, std::ui
     FieldName name{binding, binding.ends_with("_next")};
     if (name.next) name.base.resize(name.base.size() - 5);
     const bool mixture = (effects & EFFECT_MIXTURE) != 0;
+    if (name.base.starts_with("centered_mixed")) name.base = name.base.substr(9);
     if (name.base.starts_with("drag_velocity")) name.base = (mixture ? "mixed" : "water") + name.base.substr(4);
     if ((stage == "publish_velocity" || stage == "publish_flow" || stage == "start_water_velocity") &&
         name.base.starts_with("velocity"))

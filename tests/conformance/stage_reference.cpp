@@ -33,6 +33,7 @@ constexpr Step<Real> steps[] = {
     {"extrapolate_velocity", &Solver<Real>::extrapolate_pure_velocity, EFFECT_SEMI_LAGRANGIAN | EFFECT_WATER},
     {"backtrace_water_velocity", &Solver<Real>::backtrace_pure_velocity, EFFECT_SEMI_LAGRANGIAN | EFFECT_WATER},
     {"transport_mixed_velocity", &Solver<Real>::transport_mixed_velocity, EFFECT_SEMI_LAGRANGIAN | EFFECT_MIXTURE},
+    {"center_water_velocity", &Solver<Real>::center_water_velocity, EFFECT_SECOND_ORDER_WATER},
     {"integrate_water_velocity", &Solver<Real>::integrate_water_velocity, EFFECT_WATER},
     {"compute_bed_load", &Solver<Real>::compute_bed_load, EFFECT_BED_SHEAR},
     {"compute_saturation", &Solver<Real>::compute_saturation, EFFECT_COHESION},

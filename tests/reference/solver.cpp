@@ -84,9 +84,9 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
         field->assign(nx * ny, Real(0));
     Vxx.assign(nx * ny, Real(1));
     Vyy.assign(nx * ny, Real(1));
-    for (Faces<Real>* faces :
-         {&sand_velocity, &pure_velocity, &mixed_velocity, &diffusion_flux, &pure_flux, &mixed_flux, &sand_flux, &bed_load,
-          &mixed_push, &ghost_water, &pure_type, &mixed_type, &sand_type, &extrapolated, &friction_limit, &withheld_push}) {
+    for (Faces<Real>* faces : {&sand_velocity, &pure_velocity, &mixed_velocity, &diffusion_flux, &pure_flux, &mixed_flux,
+                               &sand_flux, &bed_load, &centered_velocity, &mixed_push, &ghost_water, &pure_type, &mixed_type,
+                               &sand_type, &extrapolated, &friction_limit, &withheld_push}) {
         faces->x.assign((nx + 1) * ny, Real(0));
         faces->y.assign(nx * (ny + 1), Real(0));
     }
@@ -191,6 +191,7 @@ template <class Real> template <class Other> void Solver<Real>::copy_from(const 
     faces(&A::pure_flux, &B::pure_flux);
     faces(&A::mixed_flux, &B::mixed_flux);
     faces(&A::sand_flux, &B::sand_flux);
+    faces(&A::centered_velocity, &B::centered_velocity);
     faces(&A::bed_load, &B::bed_load);
     faces(&A::mixed_push, &B::mixed_push);
     faces(&A::ghost_water, &B::ghost_water);
@@ -229,6 +230,7 @@ template <class Real> void Solver<Real>::step() {
             backtrace_pure_velocity();
             if (has(EFFECT_MIXTURE)) transport_mixed_velocity();
         }
+        if (has(EFFECT_SECOND_ORDER_WATER)) center_water_velocity();
         integrate_water_velocity();
     }
     if (has(EFFECT_BED_SHEAR)) compute_bed_load();

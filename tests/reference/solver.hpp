@@ -76,6 +76,7 @@ template <class Real> class Solver {
     void backtrace_pure_velocity();              // 2.12 -> pure_velocity
     void transport_mixed_velocity();             // both for the mixed water
     void damp_shocks(const Faces<Real>& before); // 2.3
+    void center_water_velocity();                // 2.16 -> centered_velocity, pure_flux
     void integrate_water_velocity();             // 2.3, 2.4 -> pure_velocity, mixed_velocity, mixed_push
     void compute_bed_load();                     // 2.11 -> bed_load
     void compute_saturation();                   // 2.7 -> saturation
@@ -116,6 +117,7 @@ template <class Real> class Solver {
     Field<Real> pure_scale, mixed_scale, sand_scale;
     Faces<Real> diffusion_flux; // q_D [m2/s]
     Faces<Real> pure_flux, mixed_flux, sand_flux;
+    Faces<Real> centered_velocity;                // uw at the time of the heights [m/s]
     Faces<Real> bed_load;                         // [m2/s]
     Faces<Real> mixed_push;                       // d_f, pressure's change of um per sand substep [m/s]
     Faces<Real> pure_type, mixed_type, sand_type; // boundary types: 0 untracked, 1 tracked, 2 fixed
@@ -145,6 +147,8 @@ template <class Real> class Solver {
     /// f(axis, a, b) for every face between two cells.
     template <class F> void for_inner_faces(F f) const;
 
+    /// 2.16: fluxes of inner faces to the nearest quantum, not toward 0.
+    bool nearest(Layer layer) const;
     Real raw_flux(Layer layer, const Axis& axis, int a, int b) const;
     void limit_outflow(Layer layer, Real k, Field<Real>& scale) const;
     void limited_flux(Layer layer, Real k, const Field<Real>& scale, Faces<Real>& flux) const;
@@ -152,14 +156,17 @@ template <class Real> class Solver {
     Real gain(const Faces<Real>& flux, int i, int j) const;
     const Faces<Real>& velocity_of(Layer layer) const;
     Real face_depth(Layer layer, const Axis& axis, int a, int b, Real u) const;
-    void advect(std::uint32_t second_order, const Field<Real>& height, const Faces<Real>& flux, Faces<Real>& velocity) const;
-    void advect_velocity_second_order(const Field<Real>& height, const Faces<Real>& flux, Faces<Real>& velocity) const;
+    void advect(std::uint32_t second_order, const Field<Real>& height, const Faces<Real>& flux, const Faces<Real>& carried,
+                Faces<Real>& velocity) const;
+    void advect_velocity_second_order(const Field<Real>& height, const Faces<Real>& flux, const Faces<Real>& carried,
+                                      Faces<Real>& velocity) const;
     void advect_velocity(const Field<Real>& height, const Faces<Real>& flux, Faces<Real>& velocity) const;
     template <class Height, class Surface> void update_types(Height height, Surface surface, Faces<Real>& type) const;
     void extrapolate(const Faces<Real>& velocity, const Faces<Real>& type);
     void backtrace(const Faces<Real>& type, Real k, Faces<Real>& velocity) const;
     void exchange_split(const Field<Real>& mixed_old, const Field<Real>& pure_old, const Field<Real>& mixed_new);
     Real water_gravity(Real fastest, Real deepest) const;
+    Real friction_rate(std::size_t L, std::size_t R) const;
     Real sand_gravity(Real deepest) const;
     Real across_face(const Faces<Real>& velocity, const Axis& axis, int a, int b) const; // mean of the four around
     void water_face(const Faces<Real>& pure_old, const Faces<Real>& mixed_old, const Axis& axis, int a, int b);

@@ -72,6 +72,10 @@ template <class Real> Real Solver<Real>::raw_flux(Layer layer, const Axis& ax, i
     return q;
 }
 
+template <class Real> bool Solver<Real>::nearest(Layer layer) const {
+    return layer != Layer::sand && has(EFFECT_SECOND_ORDER_WATER);
+}
+
 template <class Real> void Solver<Real>::limit_outflow(Layer layer, Real k, Field<Real>& scale) const {
     const Field<Real>& h = layer == Layer::pure ? pure : layer == Layer::mixed ? mixed : sand;
     const Axis x = axis(false);
@@ -85,7 +89,8 @@ template <class Real> void Solver<Real>::limit_outflow(Layer layer, Real k, Fiel
             const Real north = std::max(raw_flux(layer, y, j + 1, i), Real(0));
             const Real outflow = k * ((west + east) + (south + north));
             const std::size_t c = x.cell(i, j);
-            scale[c] = !P.limiter || outflow <= h[c] ? Real(1) : h[c] / outflow * margin;
+            const Real held = nearest(layer) ? std::max(h[c] - Real(2) * P.quantum, Real(0)) : h[c];
+            scale[c] = !P.limiter || outflow <= held ? Real(1) : held / outflow * margin;
         }
     }
 }
@@ -98,7 +103,8 @@ template <class Real> void Solver<Real>::limited_flux(Layer layer, Real k, const
                 Real q = raw_flux(layer, ax, a, b);
                 if (q > Real(0) && a > 0) q *= scale[ax.cell(a - 1, b)];
                 if (q < Real(0) && a < ax.along()) q *= scale[ax.cell(a, b)];
-                flux.along(ax)[ax.face(a, b)] = whole_quanta(k * q, P.quantum);
+                const bool inner = a > 0 && a < ax.along();
+                flux.along(ax)[ax.face(a, b)] = whole_quanta(k * q, P.quantum, inner && nearest(layer));
             }
         }
     }
@@ -137,15 +143,17 @@ void Solver<Real>::advect_velocity(const Field<Real>& height, const Faces<Real>&
 
 /// 2.16 in place of 2.3.
 template <class Real>
-void Solver<Real>::advect_velocity_second_order(const Field<Real>& height, const Faces<Real>& flux, Faces<Real>& velocity) const {
+void Solver<Real>::advect_velocity_second_order(const Field<Real>& height, const Faces<Real>& flux, const Faces<Real>& carried,
+                                                Faces<Real>& velocity) const {
     const Faces<Real> old = velocity;
     for_inner_faces([&](const Axis& ax, int a, int b) {
         const Real hb = mean(height[ax.cell(a - 1, b)], height[ax.cell(a, b)]);
         if (hb <= P.eps) return;
         // Offsets along and across; beyond the last face or row its value again.
-        const auto at = [&](int da, int db) {
-            return old.along(ax)[ax.face(std::clamp(a + da, 0, ax.along()), std::clamp(b + db, 0, ax.across() - 1))];
+        const auto in = [&](const Faces<Real>& from, int da, int db) {
+            return from.along(ax)[ax.face(std::clamp(a + da, 0, ax.along()), std::clamp(b + db, 0, ax.across() - 1))];
         };
+        const auto at = [&](int da, int db) { return in(carried, da, db); };
         // Volume that enters (positive) through the side at offset (da, db), from the fluxes of the two cells there.
         const auto inflow = [&](int da, int db) {
             if (da != 0) return Real(-da) * mean(flux.along(ax)[ax.face(a, b)], flux.along(ax)[ax.face(a + da, b)]);
@@ -154,23 +162,23 @@ void Solver<Real>::advect_velocity_second_order(const Field<Real>& height, const
         };
         const Real u = at(0, 0);
         const auto gain = [&](int da, int db) {
-            const Real in = inflow(da, db);
-            const Real share = std::max(Real(0), Real(1) - std::abs(in) / hb) / Real(2);
+            const Real entering = inflow(da, db);
+            const Real share = std::max(Real(0), Real(1) - std::abs(entering) / hb) / Real(2);
             const Real neighbour = at(da, db);
-            if (in > Real(0)) return in * ((neighbour - u) + share * centred_slope(at(2 * da, 2 * db), neighbour, u));
-            return in * share * centred_slope(at(-da, -db), u, neighbour);
+            if (entering > Real(0)) return entering * ((neighbour - u) + share * centred_slope(at(2 * da, 2 * db), neighbour, u));
+            return entering * share * centred_slope(at(-da, -db), u, neighbour);
         };
-        const Real moved = u + ((gain(-1, 0) + gain(1, 0)) + (gain(0, -1) + gain(0, 1))) / hb;
-        const auto around = {u, at(-1, 0), at(1, 0), at(0, -1), at(0, 1)};
+        const Real moved = in(old, 0, 0) + ((gain(-1, 0) + gain(1, 0)) + (gain(0, -1) + gain(0, 1))) / hb;
+        const auto around = {in(old, 0, 0), in(old, -1, 0), in(old, 1, 0), in(old, 0, -1), in(old, 0, 1)};
         velocity.along(ax)[ax.face(a, b)] = std::clamp(moved, std::min(around), std::max(around));
     });
 }
 
-/// A layer's momentum by the order that its effect chooses.
+/// A layer's momentum by the order that its effect chooses; `carried` is what advection of second order carries.
 template <class Real>
 void Solver<Real>::advect(std::uint32_t second_order, const Field<Real>& height, const Faces<Real>& flux,
-                          Faces<Real>& velocity) const {
-    has(second_order) ? advect_velocity_second_order(height, flux, velocity) : advect_velocity(height, flux, velocity);
+                          const Faces<Real>& carried, Faces<Real>& velocity) const {
+    has(second_order) ? advect_velocity_second_order(height, flux, carried, velocity) : advect_velocity(height, flux, velocity);
 }
 
 } // namespace wadi::reference

@@ -89,6 +89,17 @@ template <class Real> Real Solver<Real>::water_gravity(Real fastest, Real deepes
     return std::min(P.gravity, room * room / (P.k * P.k * deepest));
 }
 
+/// 2.4: c/hb of the stresses on the bed between two cells, 0 without water.
+template <class Real> Real Solver<Real>::friction_rate(std::size_t L, std::size_t R) const {
+    const Real depth = mean(pure[L], pure[R]);
+    if (depth <= Real(0)) return Real(0);
+    const Real n_L = P.manning + roughness[L];
+    const Real n_R = P.manning + roughness[R];
+    Real c = P.bed_friction + P.gravity * mean(n_L * n_L, n_R * n_R) / std::cbrt(depth);
+    if (mean(sand[L], sand[R]) > P.eps) c += P.bed_shear;
+    return c / depth;
+}
+
 /// 2.4b, e, c, bed friction and d on one inner face.
 template <class Real>
 void Solver<Real>::water_face(const Faces<Real>& pure_old, const Faces<Real>& mixed_old, const Axis& ax, int a, int b) {
@@ -108,14 +119,8 @@ void Solver<Real>::water_face(const Faces<Real>& pure_old, const Faces<Real>& mi
     uw -= push;
     if (level && std::abs(uw) <= P.rest_velocity) uw = Real(0);
     uw = leaving_wet(uw, pure[L], pure[R], P.eps);
-    Real grip = P.bed_friction; // 2.4: c
-    if (mean(sand[L], sand[R]) > P.eps) grip += P.bed_shear;
     const Real across = across_face(pure_old, ax, a, b);
-    const Real depth = mean(pure[L], pure[R]);
-    const Real n_L = P.manning + roughness[L];
-    const Real n_R = P.manning + roughness[R];
-    if (depth > Real(0)) grip += P.gravity * mean(n_L * n_L, n_R * n_R) / std::cbrt(depth);
-    if (grip > Real(0) && depth > Real(0)) uw = rubbed(uw, across, std::hypot(before, across), P.dt * grip / depth);
+    uw = rubbed(uw, across, std::hypot(before, across), P.dt * friction_rate(L, R));
     uw = shortened(uw, across, P.clamp);
 
     if (!has(EFFECT_MIXTURE)) return;
@@ -154,13 +159,39 @@ template <class Real> void Solver<Real>::integrate_water_velocity() {
     const bool traced = has(EFFECT_SEMI_LAGRANGIAN);
     const Faces<Real> before = pure_velocity;
     const Faces<Real> mixed_old = mixed_velocity;
-    if (!traced) advect(EFFECT_SECOND_ORDER_WATER, pure_predicted, pure_flux, pure_velocity);
+    if (!traced) advect(EFFECT_SECOND_ORDER_WATER, pure_predicted, pure_flux, centered_velocity, pure_velocity);
     damp_shocks(before);
     if (has(EFFECT_MIXTURE)) {
-        if (!traced) advect(EFFECT_SECOND_ORDER_WATER, mixed_predicted, mixed_flux, mixed_velocity);
+        if (!traced) advect(EFFECT_SECOND_ORDER_WATER, mixed_predicted, mixed_flux, mixed_old, mixed_velocity);
         exchange_split(mixed_predicted, pure_predicted, mixed);
     }
     for_inner_faces([&](const Axis& ax, int a, int b) { water_face(before, mixed_old, ax, a, b); });
+}
+
+/// 2.16: half of the step's push and bed friction, and the fluxes of those velocities.
+template <class Real> void Solver<Real>::center_water_velocity() {
+    centered_velocity = pure_velocity;
+    for_inner_faces([&](const Axis& ax, int a, int b) {
+        const std::size_t L = ax.cell(a - 1, b);
+        const std::size_t R = ax.cell(a, b);
+        const std::size_t f = ax.face(a, b);
+        const Real eta_L = terrain[L] + water[L];
+        const Real eta_R = terrain[R] + water[R];
+        if (blocked(pure[L], pure[R], eta_L, eta_R, P.eps)) return;
+        const Real u = pure_velocity.along(ax)[f];
+        const Real across = across_face(pure_velocity, ax, a, b);
+        const Real push = P.k * water_gravity(std::abs(u), std::max(water[L], water[R])) * (eta_R - eta_L);
+        const auto eta = [&](int cell) { return terrain[ax.cell(cell, b)] + water[ax.cell(cell, b)]; };
+        const Real rise = eta_R - eta_L;
+        const Real rise_low = a > 1 ? eta_L - eta(a - 2) : Real(0);
+        const Real rise_high = a + 1 < ax.along() ? eta(a + 1) - eta_R : Real(0);
+        if (rise == Real(0)) return;
+        const Real share = minmod(minmod(rise_low, rise), rise_high) / rise;
+        const Real pushed = rubbed(u - push / Real(2), across, std::hypot(u, across), P.dt / Real(2) * friction_rate(L, R));
+        Real& centered = centered_velocity.along(ax)[f];
+        centered += share * (pushed - u);
+        pure_flux.along(ax)[f] += P.k * mean(pure[L], pure[R]) * (centered - u);
+    });
 }
 
 /// 2.16: heights at t = 0, velocities half a step later; nothing else of the step that is tried stays.
@@ -172,6 +203,7 @@ template <class Real> void Solver<Real>::start_water_velocity() {
     limit_water_outflow();
     compute_water_flux();
     integrate_water_height();
+    center_water_velocity();
     integrate_water_velocity();
     for_inner_faces([&](const Axis& ax, int a, int b) {
         Real& u = pure_velocity.along(ax)[ax.face(a, b)];

@@ -207,18 +207,26 @@ TEST_CASE("choices of method are passes of their own at their place in the order
     scene.settings.method = {};
     scene.settings.method.water_transport_order = 2;
     CHECK(effects_required(scene.settings, content_of(scene.fields))->mask == (EFFECT_WATER | EFFECT_SECOND_ORDER_WATER));
-    // The same passes and buffers; for water in pores the fluxes read the terrain as well.
+    // The same passes and one more, which reads the terrain; for water in pores the fluxes read it as well.
     const auto second = make_step_plan(EFFECT_WATER | EFFECT_SECOND_ORDER_WATER, 3), first = make_step_plan(EFFECT_WATER, 3);
-    CHECK(order(second.water_passes) == order(first.water_passes));
-    CHECK(second.field_buffers() == first.field_buffers());
+    CHECK(order(second.water_passes) == "limit_water_outflow compute_water_flux integrate_water_height center_water_velocity "
+                                        "integrate_water_velocity ");
+    CHECK(second.field_buffers() == first.field_buffers() + 1);
+    // Step 0 tries them first; without a flip, since both programs of a step follow.
+    CHECK(order(second.start_passes) == order(second.water_passes) + "start_water_velocity ");
+    CHECK(second.start_at == 0);
+    for (const auto& pass : second.start_passes) CHECK(pass.flips.empty());
+    CHECK(first.start_passes.empty());
+    CHECK(make_step_plan(EFFECT_WATER | EFFECT_SECOND_ORDER_WATER | EFFECT_SEMI_LAGRANGIAN, 3).start_passes.empty());
+    CHECK(make_step_plan(EFFECT_WATER | EFFECT_SECOND_ORDER_WATER | EFFECT_OPEN_SIDES | EFFECT_RAIN, 3).start_at == 2);
     const auto reads_terrain = [](const StepPlan& p) {
         return std::count_if(p.water_passes.begin(), p.water_passes.end(), [](const PlanPass& pass) {
             return std::find(pass.fields.begin(), pass.fields.end(), "terrain") != pass.fields.end();
         });
     };
-    CHECK(reads_terrain(second) == reads_terrain(first));
+    CHECK(reads_terrain(second) == reads_terrain(first) + 1);
     constexpr std::uint32_t pores = EFFECT_WATER | EFFECT_SAND | EFFECT_MIXTURE;
-    CHECK(reads_terrain(make_step_plan(pores | EFFECT_SECOND_ORDER_WATER, 3)) == reads_terrain(make_step_plan(pores, 3)) + 2);
+    CHECK(reads_terrain(make_step_plan(pores | EFFECT_SECOND_ORDER_WATER, 3)) == reads_terrain(make_step_plan(pores, 3)) + 3);
     scene.settings.method.sand_transport_order = 2; // no sand: nothing to act on
     CHECK(effects_required(scene.settings, content_of(scene.fields))->mask == (EFFECT_WATER | EFFECT_SECOND_ORDER_WATER));
     scene.fill(scene.fields.sand, [](double, double) { return 1; });

@@ -9,9 +9,10 @@ using namespace wadi::test;
 
 namespace {
 
-constexpr double hump_gravity = 9.81, hump_width = 40, hump_time = 2; // [m/s2], [m], [s]
+// A lake 4 m deep: errors on 512 cells are some quanta, 1 um with the default largest height.
+constexpr double hump_gravity = 9.81, hump_width = 160, hump_time = 4; // [m/s2], [m], [s]
 
-double hump(double r) { return 1 + 0.2 * std::exp(-r * r / 9); }
+double hump(double r) { return 4 + 0.8 * std::exp(-r * r / 144); }
 
 /// Depth around a hump that is let go at t = 0, by distance from its middle: shallow water along a line (dimensions 1) or around
 /// a point (2), differences of sixth order, Runge and Kutta's fourth-order steps. Depth is even in r, velocity odd.
@@ -34,7 +35,7 @@ class Truth {
   private:
     using Values = std::vector<double>;
     static constexpr int points = 1500;
-    static constexpr double spacing = 0.02;
+    static constexpr double spacing = 0.08;
     static std::size_t at(int n) { return static_cast<std::size_t>(n); }
     static double radius(int n) { return (n + 0.5) * spacing; }
     static double value(const Values& f, int n, double sign) {
@@ -74,7 +75,7 @@ class Truth {
 /// Mean error of the depth [m] of a world of n cells (1-D) or n x n around that hump.
 double hump_error(const Truth& truth, int dimensions, int n, int order) {
     const double dx = hump_width / n, middle = hump_width / 2;
-    const int steps = static_cast<int>(std::lround(hump_time / (0.04 * dx)));
+    const int steps = static_cast<int>(std::lround(hump_time / (0.02 * dx)));
     auto scene = flat_scene(n, dimensions == 1 ? 3 : n, dx, hump_time / steps);
     scene.settings.method.water_transport_order = order;
     const auto r = [&](double x, double y) {
@@ -92,7 +93,7 @@ double hump_error(const Truth& truth, int dimensions, int n, int order) {
 } // namespace
 
 TEST_CASE("convergence: a hump on still water, along a line and around a point") {
-    for (const auto& [dimensions, least] : {std::pair{1, 1.8}, std::pair{2, 1.5}}) {
+    for (const auto& [dimensions, least] : {std::pair{1, 1.9}, std::pair{2, 1.9}}) {
         const Truth truth(dimensions);
         std::array<double, 4> errors{};
         for (std::size_t level = 0; level < errors.size(); ++level) {
