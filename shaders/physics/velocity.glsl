@@ -72,13 +72,21 @@ struct Compression {
     float low, own, high;
 };
 
+// The flux of the faster of a cell's two faces, without its sign.
+FN float faster_flux(float u_low, float u_high, float flux_low, float flux_high) {
+    float low = wabs(u_low) >= wabs(u_high) ? wabs(flux_low) : 0.0f;
+    float high = wabs(u_high) >= wabs(u_low) ? wabs(flux_high) : 0.0f;
+    return wmax(low, high);
+}
+
 // Viscous flux of a cell (NUMERICS 2.3, after von Neumann and Richtmyer 1950, limited after Christensen 1990): of what the neighbours'
 // compression does not explain. Three times it does, so that no smooth wave is damped but at its crest, where 12 k times the rest is
-// next to nothing. 0.12 keeps the explicit step stable at a step of the depth.
-FN float shock_flux(Compression at, float height, float viscosity, float k) {
+// next to nothing. 0.12 keeps the explicit step stable at a step of the depth. carried: what the faster of its faces moves; a film
+// that runs into a lake at speed brings it next to nothing.
+FN float shock_flux(Compression at, float height, float carried, float viscosity, float k) {
     float rest = wmax(at.own - wmax(3.0f * wmin(at.low, at.high), 0.0f), 0.0f);
     float number = wmin(wmin(viscosity * wsqrt(wmax(height, 0.0f)), 12.0f * k * rest), 0.12f);
-    return -number * rest * height;
+    return -wmin(number * height, 4.0f * carried) * rest;
 }
 
 // Momentum exchange between pure and mixed water when the boundary between them moves (paper 3.4.2; convex form,

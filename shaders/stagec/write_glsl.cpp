@@ -91,9 +91,10 @@ std::string write_glsl(const FusedStage& f, const Effects& effects) {
     for (const auto& name : fields_kept(f, Keeping::window))
         o << "shared float window_" << name << "[" << window_floats(f) << "];\n";
     for (const auto& name : fields_kept(f, Keeping::own_index)) o << "float own_" << name << ";\n";
+    // The last barrier: the next call's first line must not come ahead of anyone's look.
     o << "shared uint group_holds;\nbool any_of_group(int holds) {\n    if (LANE == 0) group_holds = 0u;\n    barrier();\n"
-         "    if (holds != 0) group_holds = 1u;\n    barrier();\n    return group_holds != 0u;\n}\n#define ANY(X) "
-         "any_of_group(X)\n"
+         "    if (holds != 0) group_holds = 1u;\n    barrier();\n    bool any = group_holds != 0u;\n    barrier();\n"
+         "    return any;\n}\n#define ANY(X) any_of_group(X)\n"
          "int own_i0, own_j0, own_i1, own_j1, window_i0, window_j0;\nbool owned, look = false, changed = false;\n"
       << part_functions(f, effects, "(EFFECTS | " + std::to_string(f.needs) + "u)")
       << "void main() {\n    own_i0 = int(gl_WorkGroupID.x) * FUSED_COLUMNS;\n    own_j0 = int(gl_WorkGroupID.y) * FUSED_ROWS;\n"

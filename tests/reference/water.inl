@@ -148,7 +148,13 @@ template <class Real> void Solver<Real>::damp_shocks(const Faces<Real>& before) 
             const Real depth = pure_predicted[ax.cell(cell, b)];
             const Real waves = P.shock_viscosity * std::sqrt(P.gravity * depth);
             const Real number = std::min(P.k * std::min(waves, Real(12) * rest), Real(0.12));
-            return -number * rest * depth;
+            const std::size_t W = ax.face(cell, b);
+            const std::size_t E = ax.face(cell + 1, b);
+            const Field<Real>& moved = pure_flux.along(ax);
+            Real carried = Real(0); // by the faster face
+            if (std::abs(u[W]) >= std::abs(u[E])) carried = std::abs(moved[W]);
+            if (std::abs(u[E]) >= std::abs(u[W])) carried = std::max(carried, std::abs(moved[E]));
+            return -std::min(number * depth, Real(4) * carried) * rest;
         };
         const Real depth = mean(pure_predicted[ax.cell(a - 1, b)], pure_predicted[ax.cell(a, b)]);
         if (depth > P.eps) pure_velocity.along(ax)[ax.face(a, b)] += (viscous(a) - viscous(a - 1)) / depth;

@@ -71,6 +71,7 @@ TEST_CASE("velocity clamp: whirls too fast for dt pile water up a little and gai
         auto scene = flat_scene(40, 40, 0.5, 0.5);
         scene.settings.method.velocity_clamp = clamp;
         scene.settings.method.largest_height = 128;
+        scene.settings.method.shock_viscosity = 0; // which takes its part of what whirls gain
         scene.fill(scene.fields.water, [](double x, double y) { return 0.5 + 0.3 * std::sin(x) * std::sin(y); });
         scene.fill(scene.fields.velocity_x, [&](double x, double y) { return 10 * std::sin(0.5 * x) * std::cos(0.5 * y); });
         scene.fill(scene.fields.velocity_y, [&](double x, double y) { return -10 * std::cos(0.5 * x) * std::sin(0.5 * y); });
