@@ -62,7 +62,7 @@ constexpr Row against_reference[] = {
     {"33x17", WET | EFFECT_EXPLICIT_DRAG | EFFECT_LAPLACE_DIFFUSION, "slope", "default", 3},
     {"33x17", WET | TRACED | EFFECT_LAPLACE_DIFFUSION, "slope", "default", 3},
     {"33x17", EFFECT_WATER | EFFECT_SAND | EFFECT_DRAG | EFFECT_EXPLICIT_DRAG, "slope", "default", 3},
-    {"33x17", EFFECT_WATER | SECOND, "dam_break", "default", 4},
+    {"33x17", EFFECT_WATER | SECOND, "dam_break", "default", 5},
     {"33x17", EFFECT_WATER | SECOND, "islands", "plain", 4},
     {"33x17", EFFECT_WATER | EFFECT_OPEN_SIDES | SECOND, "flat", "default", 4},
     {"33x17", EFFECT_WATER | SECOND | TRACED, "dam_break", "default", 4},
