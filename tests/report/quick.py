@@ -56,7 +56,7 @@ def main():
         assert error("thacker@n96,dt1,T3,second_order") < 0.6 * error("thacker@n96,dt1,T3,robust")
         assert error("planar@n200,dt1,T3,robust") < 4 < error("planar@n200,dt1,T3,published")
         assert error("transcritical@n100,dt1,T3,robust") < 4 < error("transcritical@n50,dt1,T3,robust")
-        assert error("jump@n100,dt1,T3,robust") < 2 < error("jump@n50,dt1,T3,robust")
+        assert error("jump@n100,dt1,T3,robust") < 2.5 < error("jump@n50,dt1,T3,robust")
         assert error("dupuit@n112,dt1,T3,robust") < 0.5 < error("dupuit@n56,dt1,T3,robust") < 5 < error("dupuit@n112,dt1,T3,published")
         for scene in ("drained_slide", "soaked_slide"):
             assert error(f"{scene}@n160,dt1,T3,robust") < 0.01, scene
