@@ -135,9 +135,9 @@ FN bool blocked(float height_low, float height_high, float surface_low, float su
 
 // A velocity that draws no water from a dry cell (NUMERICS 2.4c).
 FN float leaving_wet(float u, float height_low, float height_high, float dry) {
-    float up = height_low > dry ? wmax(u, 0.0f) : 0.0f;
-    float down = height_high > dry ? wmin(u, 0.0f) : 0.0f;
-    return up + down;
+    float low = height_low > dry ? 1.0f : 0.0f; // weights: with u in one arm of a selection g++ does not vectorise the row
+    float high = height_high > dry ? 1.0f : 0.0f;
+    return low * wmax(u, 0.0f) + high * wmin(u, 0.0f);
 }
 
 // Clamp of a velocity by its size, across being its other component at the face (NUMERICS 2.4d): a clamp by component would let water run
