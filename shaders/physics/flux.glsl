@@ -66,10 +66,12 @@ FN float limited_flux(float raw, float scale_low, float scale_high, float quantu
     return flush(whole_quanta(raw * scale, quantum, inv_quantum));
 }
 
-// The same to the nearest quantum, for a donor that its limiter leaves half a quantum for each face (NUMERICS 2.16).
-FN float nearest_flux(float raw, float scale_low, float scale_high, float quantum, float inv_quantum) {
+// The same to the nearest quantum, for a donor that its limiter leaves half a quantum for each face (NUMERICS 2.16), or with up = 0
+// toward 0; up: 0.5 or 0.
+FN float rounded_flux(float raw, float scale_low, float scale_high, float up, float quantum, float inv_quantum) {
     float limited = raw * (raw > 0.0f ? scale_low : scale_high);
-    return flush(whole_quanta(limited + (limited > 0.0f ? 0.5f : -0.5f) * quantum, quantum, inv_quantum));
+    float share = limited > 0.0f ? up : -up;
+    return flush(whole_quanta(limited + share * quantum, quantum, inv_quantum));
 }
 
 FN float integrate_height(float height, float flux_west, float flux_east, float flux_south, float flux_north) {
