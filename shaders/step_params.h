@@ -5,6 +5,7 @@
 #define WADI_STEP_PARAMS_H
 
 #define GHOST 2          // ghost cells on each side of every field
+#define LEAD 32          // elements ahead of cell 0 of the first row and behind the last row: rows begin at multiples of 32
 #define STRIP 32         // rows of one ledger strip
 #define MAX_SOURCES 32   // sources and sinks of one world
 #define MAX_EDITS 16     // edits of one submission

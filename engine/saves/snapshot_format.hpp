@@ -1,6 +1,6 @@
 // A snapshot as bytes: what lies where, the checksum, and for which level it is.
 //
-// Little-endian, version 2:
+// Little-endian, version 3:
 //      0  char[8]  "WADISNAP"
 //      8  u32      version
 //     12  u32      number of fields
@@ -15,7 +15,7 @@
 //     80  f64      per number of material_keys(): its value
 //      .  f64[2]   per running total: metres, whole quanta
 //      .  per field: char[32] name, u64 bytes
-//      .  the fields in that order, as they lie on the device, ghosts included
+//      .  the fields in that order, as they lie on the device, ghosts and padding included
 #pragma once
 #include "engine/saves/sealed_bytes.hpp"
 #include "engine/step/stepper.hpp"
@@ -24,7 +24,7 @@
 
 namespace wadi {
 
-constexpr std::uint32_t snapshot_version = 2;
+constexpr std::uint32_t snapshot_version = 3;
 
 struct SnapshotHeader {
     int nx = 0, ny = 0;

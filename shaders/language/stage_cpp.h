@@ -49,7 +49,7 @@ template <class T> struct StageBuffer {
 #define OUT_IF(BITS, SLOT, T, NAME) OUT(SLOT, T, NAME)
 #define INOUT_IF(BITS, SLOT, T, NAME) INOUT(SLOT, T, NAME)
 #define HAS(BITS) ((EFFECTS & (BITS)) == (BITS))
-#define IDX(I, J) (((J) + GHOST) * P.pitch + (I) + GHOST)
+#define IDX(I, J) (((J) + GHOST) * P.pitch + (I) + LEAD)
 #define UNIFORM(C) true // a branch would keep the loop over i from vectorising
 FN float wdiv(float a, float b) { return a / b; }
 FN float wsqrt(float x) { return __builtin_sqrtf(x); }

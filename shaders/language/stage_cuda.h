@@ -32,7 +32,7 @@ typedef unsigned int uint;
 #define INOUT_IF(BITS, SLOT, T, NAME) INOUT(SLOT, T, NAME)
 #define HAS(BITS) ((EFFECTS & (BITS)) == (BITS))
 #define UNIFORM(C) (C)
-#define IDX(I, J) (((J) + GHOST) * P.pitch + (I) + GHOST)
+#define IDX(I, J) (((J) + GHOST) * P.pitch + (I) + LEAD)
 
 #ifdef WADI_RELAXED_FLOAT
 FN float wdiv(float a, float b) { return a / b; }

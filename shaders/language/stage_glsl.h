@@ -18,7 +18,7 @@
 #define INOUT_IF(BITS, SLOT, T, NAME) INOUT(SLOT, T, NAME)
 #define HAS(BITS) ((EFFECTS & (BITS)) == (BITS))
 #define UNIFORM(C) (C)
-#define IDX(I, J) (((J) + GHOST) * P.pitch + (I) + GHOST)
+#define IDX(I, J) (((J) + GHOST) * P.pitch + (I) + LEAD)
 
 layout(local_size_x_id = 1, local_size_y_id = 2, local_size_z = 1) in;
 layout(constant_id = 0) const uint EFFECTS = 0u;

@@ -107,7 +107,7 @@ void resolve(FusedStage& fused, const Effects& effects, std::set<std::string> te
     }
     for (auto& part : fused.parts) {
         auto& add = part.reach = part.stage.reach;
-        const bool far = (effect_bits(part.stage.far, effects, part.stage.path) & ~fused.needs) == 0;
+        const bool far = (effect_bits(part.stage.far, effects, part.stage.path) & fused.without) == 0;
         for (int* n : {&add.west, &add.south, &add.east, &add.north})
             if (!far) *n = std::min(*n, 1);
         auto& sum = fused.stage.reach;
@@ -145,23 +145,49 @@ std::size_t last_writer(const FusedStage& fused, const std::string& field) {
     return last;
 }
 
-Margins window_margins(const FusedStage& fused) {
+Margins read_margins(const FusedStage& fused) {
     Margins most;
-    for (const auto& m : fused.phases) {
-        most = {std::max(most.west, m.west), std::max(most.south, m.south), std::max(most.east, m.east),
-                std::max(most.north, m.north)};
+    for (const auto& part : fused.parts) {
+        const Margins& m = fused.phases[part.phase];
+        const Reach& r = part.reach;
+        most = {std::max(most.west, m.west + r.west), std::max(most.south, m.south + r.south),
+                std::max(most.east, m.east + r.east), std::max(most.north, m.north + r.north)};
     }
     return most;
 }
 
-int window_pitch(const FusedStage& fused) {
-    const Margins m = window_margins(fused);
-    return FUSED_COLUMNS + m.west + m.east;
+std::vector<SharedRows> windows(const FusedStage& fused) {
+    std::vector<SharedRows> all;
+    for (const auto& field : fields_kept(fused, Keeping::window)) {
+        SharedRows rows{field};
+        for (const auto& part : fused.parts)
+            for (const auto& [name, written] : part.writes)
+                if (written == field) {
+                    rows.south = std::max(rows.south, fused.phases[part.phase].south);
+                    rows.north = std::max(rows.north, fused.phases[part.phase].north);
+                }
+        all.push_back(rows);
+    }
+    return all;
 }
 
-int window_floats(const FusedStage& fused) {
-    const Margins m = window_margins(fused);
-    return window_pitch(fused) * (FUSED_ROWS + m.south + m.north);
+std::vector<SharedRows> staged(const FusedStage& fused) {
+    const Margins m = read_margins(fused);
+    std::vector<SharedRows> all;
+    for (const auto& field : fused.staged) all.push_back({field, m.south, m.north});
+    return all;
+}
+
+std::size_t shared_bytes(const FusedStage& fused) {
+    std::size_t rows = 0;
+    for (const auto& array : windows(fused)) rows += static_cast<std::size_t>(array.rows());
+    for (const auto& array : staged(fused)) rows += static_cast<std::size_t>(array.rows());
+    return rows * shared_pitch * sizeof(float);
+}
+
+FusedStage fitted(FusedStage fused, std::size_t bytes) {
+    while (!fused.staged.empty() && shared_bytes(fused) > bytes) fused.staged.pop_back();
+    return fused;
 }
 
 std::vector<std::string> fields_kept(const FusedStage& fused, Keeping keeping) {
@@ -203,6 +229,9 @@ void read_word(FusedStage& fused, const std::string& word, const Arguments& a, c
     } else if (word == "KEEP_RIM_IF") {
         for (const auto& name : effects_in(a[0])) asked.insert(name);
         for (std::size_t n = 1; n < a.size(); ++n) fused.kept[a[n]] = {true, bits(a[0]) & ~fused.needs, place};
+    } else if (word == "STAGED") {
+        fused.staged = a;
+        fused.staged_place = place;
     } else if (word == "EMPTY_WITHOUT") {
         fused.empty.without = a;
         fused.empty.place = place;
@@ -234,6 +263,7 @@ void check_contents(const FusedStage& fused) {
     };
     for (const auto& field : fused.empty.without) check(field, fused.empty.place);
     for (const auto& field : fused.lean.without) check(field, fused.lean.place);
+    for (const auto& field : fused.staged) check(field, fused.staged_place);
     for (const auto& [field, from] : fused.empty.copies) {
         check(from, fused.empty.place);
         if (!fused.kept.count(field)) fail(fused.empty.place + ": " + field + " is not kept");
@@ -262,11 +292,12 @@ FusedStage parse_fused(const std::string& path, const Effects& effects) {
     if (fused.stage.struct_name.empty()) source.fail(0, "no FUSED(Name)");
     resolve(fused, effects, asked);
     check_contents(fused);
-    const std::size_t bytes = 4 * fields_kept(fused, Keeping::window).size() * static_cast<std::size_t>(window_floats(fused));
-    if (bytes > wadi::compute::fused_shared_bytes) {
-        source.fail(0, "windows of " + std::to_string(bytes) + " bytes, at most " +
-                           std::to_string(wadi::compute::fused_shared_bytes) + " are shared");
-    }
+    const auto check_bytes = [&](const char* what, std::size_t bytes, std::size_t most) {
+        if (bytes <= most) return;
+        source.fail(0, what + std::to_string(bytes) + " bytes, at most " + std::to_string(most) + " are shared");
+    };
+    check_bytes("windows of ", shared_bytes(fitted(fused, 0)), shared_bytes_everywhere);
+    check_bytes("windows and staged fields of ", shared_bytes(fused), shared_bytes_cuda);
     return fused;
 }
 

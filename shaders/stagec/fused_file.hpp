@@ -18,7 +18,7 @@ struct FusedPart {
     unsigned condition = 0;                           // runs only if all these effects are on
     std::string place;                                // of its RUN, for messages
     std::size_t phase = 0;
-    Reach reach; // cells from its own index to the farthest that it reads with what the fused stage needs
+    Reach reach; // cells from its own index to the farthest that it reads with what the fused stage allows
 };
 
 /// Where a field that the parts write lives until the pass ends.
@@ -56,16 +56,32 @@ struct FusedStage {
     std::vector<FusedPart> parts;
     std::map<std::string, Keeping> fields; // fields that parts write
     std::map<std::string, Kept> kept;      // those that later passes read
+    std::vector<std::string> staged;       // fields of memory that a group copies to shared memory ahead of its phases
+    std::string staged_place;              // of STAGED, for messages
     Empty empty;
     Lean lean;
 };
 
 /// Threads of a group of a fused stage along i and j; it covers FUSED_COLUMNS x FUSED_ROWS cells.
 inline constexpr int fused_group_x = wadi::compute::fused_group_x, fused_group_y = wadi::compute::fused_group_y;
-/// The box that holds every field kept in shared memory: margins around a group's own cells.
-Margins window_margins(const FusedStage& fused);
-int window_pitch(const FusedStage& fused);
-int window_floats(const FusedStage& fused);
+
+/// Rows of a field that a group shares: those of its own cells and some around.
+struct SharedRows {
+    std::string field;
+    int south = 0, north = 0;
+    int rows() const { return FUSED_ROWS + south + north; }
+};
+/// A shared row: a group's own cells and, so that it begins at a multiple of four as they do, four more on either side.
+inline constexpr int shared_beside = 4, shared_pitch = FUSED_COLUMNS + 2 * shared_beside;
+/// Bytes of shared memory of a group: what every backend may use, and CUDA.
+inline constexpr std::size_t shared_bytes_everywhere = wadi::compute::fused_shared_bytes, shared_bytes_cuda = 49152;
+/// Fields that one phase gives a later one.
+std::vector<SharedRows> windows(const FusedStage& fused);
+/// Copies of fields of memory, with all that the parts read around them.
+std::vector<SharedRows> staged(const FusedStage& fused);
+std::size_t shared_bytes(const FusedStage& fused);
+/// The same with the last staged fields left out that `bytes` of shared memory do not hold.
+FusedStage fitted(FusedStage fused, std::size_t bytes);
 std::vector<std::string> fields_kept(const FusedStage& fused, Keeping keeping);
 
 /// Stages are looked for in the rooms of the folder stages beside the file's own.
@@ -81,19 +97,26 @@ std::size_t last_writer(const FusedStage& fused, const std::string& field);
 /// The parts' functions with their loads and stores redirected, one kernel function PART_kernel(i, j) each; and once more, as
 /// lean_PART_kernel, without the effects that lean groups do without. `mask`: the effects' name in the language.
 std::string part_functions(const FusedStage& fused, const Effects& effects, const std::string& mask);
+/// Margins around a group's own cells from which the parts read memory.
+Margins read_margins(const FusedStage& fused);
+/// Copies the staged fields, and waits for them. `zero`: fields that hold only 0 there.
+std::string staging(const FusedStage& fused, const std::vector<std::string>& zero);
 /// Whether the group holds nothing of the fields of `content`, as a bool of that name; false at the grid's rim, where outer faces
 /// keep what sides set.
 std::string content_look(const FusedStage& fused, const Content& content, const std::string& name);
 /// What an empty group writes, and a lean one where its phases write nothing.
 std::string empty_writes(const FusedStage& fused);
 std::string lean_writes(const FusedStage& fused, const Effects& effects);
-/// The phases in order, or what a group without content writes; LANE, LANES (a group's threads), BARRIER, ANY (whether a
-/// number is not 0 for one of them) and ROLLED (a loop that is not unrolled) are left to the language.
+/// The phases in order, or what a group without content writes. The language gives LANE, LANES (a group's threads), BARRIER, ANY
+/// (whether a number is not 0 for one of them), ROLLED (a loop that is not unrolled), WIDE (elements that a thread copies at
+/// once, 1 or 4), COPY(to, at, from, at) of so many, COPIED ahead of the barrier behind all copies, HOLDS(field, at), whether one
+/// of WIDE elements is not 0, and KEEP_WIDE(field, at, type, from), which stores WIDE elements of another field, or zeros.
 std::string phase_loops(const FusedStage& fused, const Effects& effects);
 /// Include lines of the parts' physics.
 std::string physics_includes(const FusedStage& fused);
-/// Macros for places in memory and in a window. They need own_i0, own_j0, window_i0, window_j0 and the language's type Place and
-/// PLACE.
-std::string index_macros(const FusedStage& fused);
+/// What fused stages keep for themselves, as declarations with `shared` ahead of arrays in shared memory.
+std::string own_variables(const FusedStage& fused);
+/// Macros for places in memory and in shared rows. They need own_i0, own_j0 and the language's type Place and PLACE.
+extern const char* const index_macros;
 
 } // namespace stagec

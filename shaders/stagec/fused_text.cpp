@@ -24,8 +24,28 @@ struct Rewriter {
     std::string load(const std::string& binding, const std::string& at) const {
         if (absent(binding)) return "0.0f";
         const std::string& field = part.reads.at(binding);
-        if (!writes_before(fused, index, field)) return "float(" + field + "[IN_MEMORY(" + at + ")])";
-        return fused.fields.at(field) == Keeping::window ? "window_" + field + "[IN_WINDOW(" + at + ")]" : "own_" + field;
+        if (!writes_before(fused, index, field)) {
+            const auto copy = find(staged(fused), field);
+            return copy.empty() ? "LOAD(" + field + ", IN_MEMORY(" + at + "))" : "staged_" + field + copy + at + ")]";
+        }
+        const auto window = find(windows(fused), field);
+        return window.empty() || written_in_phase(field) ? "own_" + field : "window_" + field + window + at + ")]";
+    }
+
+    // The index of a place in a field's shared rows, but for the place; empty where none of `all` is the field's.
+    static std::string find(const std::vector<SharedRows>& all, const std::string& field) {
+        for (const auto& rows : all)
+            if (rows.field == field) return "[IN_ROWS(" + std::to_string(rows.south) + ", ";
+        return "";
+    }
+
+    // Written ahead of this part in the same phase: rows that a phase shares are stored when a thread has computed all of its
+    // own.
+    bool written_in_phase(const std::string& field) const {
+        for (std::size_t n = index; n-- > 0;)
+            for (const auto& [name, written] : fused.parts[n].writes)
+                if (written == field) return fused.parts[n].phase == part.phase;
+        return false;
     }
 
     std::string store(const std::string& binding, const std::string& at, const std::string& value) const {
@@ -34,8 +54,7 @@ struct Rewriter {
         const bool narrow = binding_of(part.stage, binding).narrow();
         std::string out = "{ float stored = " + (narrow ? "to_stored(" + value + ")" : value) + ";";
         const Keeping keeping = fused.fields.at(field);
-        if (keeping == Keeping::window) out += " window_" + field + "[IN_WINDOW(" + at + ")] = stored;";
-        if (keeping == Keeping::own_index) out += " own_" + field + " = stored;";
+        if (keeping != Keeping::nowhere) out += " own_" + field + " = stored;";
         const auto kept = fused.kept.find(field);
         if (kept != fused.kept.end() && last_writer(fused, field) == index) {
             const Kept& k = kept->second;
@@ -161,57 +180,127 @@ std::string physics_includes(const FusedStage& fused) {
     return out;
 }
 
-std::string index_macros(const FusedStage& fused) {
-    const Margins m = window_margins(fused);
+// Two numbers a place: compilers then see that neighbours lie at fixed distances, in memory as in shared rows.
+const char* const index_macros =
+    "#undef IDX\n#define IDX(I, J) PLACE(((J) + GHOST) * P.pitch + (I) + LEAD, ((J) - own_j0) * SHARED_PITCH + (I) - own_i0)\n"
+    "#define IN_MEMORY(C) (C).x\n#define IN_ROWS(SOUTH, C) ((C).y + (SOUTH) * SHARED_PITCH + SHARED_BESIDE)\n";
+
+std::string own_variables(const FusedStage& fused) {
+    std::string out = "int own_i0 = 0, own_j0 = 0, own_i1 = 0, own_j1 = 0;\nbool owned = false, changed = false;\n";
+    for (const auto& [field, keeping] : fused.fields)
+        if (keeping != Keeping::nowhere) out += "float own_" + field + " = 0.0f;\n";
+    return out;
+}
+
+// A thread computes two cells of a column at once, so that compilers load what both read once, and stores what it shares behind
+// both. Cells beyond the grid are computed like the nearest one in it, without a branch, and are 0, as ghosts are.
+namespace {
+
+constexpr int rows_each = 2;
+
+struct Phase {
+    std::size_t number;
+    const Margins& margins;
+    std::vector<const FusedPart*> parts;
+};
+
+std::string effects_on(unsigned condition) { return condition == 0 ? "" : "if (HAS(" + std::to_string(condition) + "u)) "; }
+
+// The parts for the cell (i, j), which is a FACES or CELLS stage's (at_i, at_j) where that lies in the grid.
+std::string cell_text(const FusedStage& fused, const Phase& phase, const std::string& prefix) {
+    std::string out;
+    for (const auto* part : phase.parts) {
+        const std::string at = part->stage.extent == "FACES" ? "face" : "cell", in = "in_" + at;
+        out += "        " + effects_on(part->condition) + "{\n            owned = own && " + in + ";\n            " + prefix +
+               part->stage.name + "_kernel(" + at + "_i, " + at + "_j);\n";
+        for (const auto& [name, field] : part->writes) {
+            const auto found = fused.fields.find(field);
+            if (found == fused.fields.end() || found->second == Keeping::nowhere) continue;
+            out += "            own_" + field + " = " + in + " ? own_" + field + " : 0.0f;\n";
+        }
+        out += "        }\n";
+    }
+    return out;
+}
+
+// Shared rows that the phase writes, each field once and under the weakest condition.
+std::map<std::string, unsigned> shared_by(const FusedStage& fused, const Phase& phase) {
+    std::map<std::string, unsigned> fields;
+    for (const auto* part : phase.parts)
+        for (const auto& [name, field] : part->writes) {
+            const auto found = fused.fields.find(field);
+            if (found == fused.fields.end() || found->second != Keeping::window) continue;
+            const auto [at, first] = fields.emplace(field, part->condition);
+            if (!first) at->second &= part->condition;
+        }
+    return fields;
+}
+
+std::string phase_text(const FusedStage& fused, const Phase& phase, const std::string& prefix) {
+    const Margins& m = phase.margins;
+    const int width = FUSED_COLUMNS + m.west + m.east, height = FUSED_ROWS + m.south + m.north;
+    const auto shared = shared_by(fused, phase);
+    const std::string top = "own_j0 + " + std::to_string(height - m.south);
     std::ostringstream o;
-    // Two numbers a place: compilers then see that neighbours lie at fixed distances, in memory as in the window.
-    o << "#undef IDX\n#define IDX(I, J) PLACE(((J) + GHOST) * P.pitch + (I) + GHOST, ((J) - window_j0) * " << window_pitch(fused)
-      << " + (I) - window_i0)\n#define IN_MEMORY(C) (C).x\n#define IN_WINDOW(C) (C).y\n"
-      << "#define PLACE_WINDOW window_i0 = own_i0 - " << m.west << "; window_j0 = own_j0 - " << m.south << "\n";
+    o << "    ROLLED for (int n = LANE; n < " << width * ((height + rows_each - 1) / rows_each) << "; n += LANES) {\n"
+      << "        int i = own_i0 + n % " << width << " - " << m.west << ";\n        int j0 = own_j0 + n / " << width << " * "
+      << rows_each << " - " << m.south << ";\n"
+      << "        bool own_column = i >= own_i0 && i < own_i1;\n";
+    std::set<std::string> extents;
+    for (const auto* part : phase.parts) extents.insert(part->stage.extent == "FACES" ? "face" : "cell");
+    for (const auto& at : extents) {
+        const std::string less = at == "face" ? "" : " - 1";
+        o << "        int last_" << at << "_i = P.nx" << less << ", last_" << at << "_j = P.ny" << less << ";\n"
+          << "        int " << at << "_i = NEAREST(i, last_" << at << "_i, own_i0 - " << m.west << ");\n";
+    }
+    for (int row = 0; row < rows_each; ++row) {
+        const bool within = row == 0 || height % rows_each == 0; // else the last row is computed twice
+        o << "        int j_" << row << " = j0 + " << row
+          << (within ? "" : " < " + top + " ? j0 + " + std::to_string(row) + " : j0") << ";\n        {\n        int j = j_" << row
+          << ";\n"
+          << "        bool own = own_column && j >= own_j0 && j < own_j1, inside = i >= 0 && j >= 0;\n";
+        for (const auto& at : extents)
+            o << "        bool in_" << at << " = inside && i <= last_" << at << "_i && j <= last_" << at << "_j;\n        int "
+              << at << "_j = NEAREST(j, last_" << at << "_j, own_j0 - " << m.south << ");\n";
+        o << cell_text(fused, phase, prefix) << "        }\n";
+        for (const auto& [field, condition] : shared) o << "        float " << field << "_" << row << " = own_" << field << ";\n";
+    }
+    for (int row = 0; row < rows_each; ++row) {
+        for (const auto& rows : windows(fused)) {
+            const auto found = shared.find(rows.field);
+            if (found == shared.end()) continue;
+            o << "        " << effects_on(found->second) << "window_" << rows.field << "[IN_ROWS(" << rows.south << ", IDX(i, j_"
+              << row << "))] = " << rows.field << "_" << row << ";\n";
+        }
+    }
+    o << "    }\n";
     return o.str();
 }
 
 // `less`: effects that are off.
-static std::string loops(const FusedStage& fused, const std::string& prefix, unsigned less) {
-    std::ostringstream o;
+std::string loops(const FusedStage& fused, const std::string& prefix, unsigned less) {
+    std::string out;
     for (std::size_t p = 0; p < fused.phases.size(); ++p) {
-        const auto runs = [&](const FusedPart& part) { return part.phase == p && (part.condition & less) == 0; };
-        if (std::none_of(fused.parts.begin(), fused.parts.end(), runs)) continue;
-        const Margins& m = fused.phases[p];
-        const int width = FUSED_COLUMNS + m.west + m.east, height = FUSED_ROWS + m.south + m.north;
-        if (p > 0) o << "    BARRIER;\n";
-        o << "    ROLLED for (int n = LANE; n < " << width * height << "; n += LANES) {\n"
-          << "        int i = own_i0 + n % " << width << " - " << m.west << ";\n        int j = own_j0 + n / " << width << " - "
-          << m.south << ";\n"
-          << "        owned = i >= own_i0 && i < own_i1 && j >= own_j0 && j < own_j1;\n"
-          << "        bool inside = i >= 0 && j >= 0;\n";
-        for (const auto& part : fused.parts) {
-            if (!runs(part)) continue;
-            if (part.condition != 0) o << "        if (HAS(" << part.condition << "u)) {\n";
-            o << "        if (inside && " << guard(part.stage.extent) << ") {\n            " << prefix << part.stage.name
-              << "_kernel(i, j);\n        } else {\n"; // beyond the grid fields are 0, as ghosts are
-            for (const auto& [name, field] : part.writes) {
-                const auto found = fused.fields.find(field);
-                if (found == fused.fields.end()) continue;
-                if (found->second == Keeping::window) o << "            window_" << field << "[IN_WINDOW(IDX(i, j))] = 0.0f;\n";
-                if (found->second == Keeping::own_index) o << "            own_" << field << " = 0.0f;\n";
-            }
-            o << "        }\n";
-            if (part.condition != 0) o << "        }\n";
-        }
-        o << "    }\n";
+        Phase phase{p, fused.phases[p], {}};
+        for (const auto& part : fused.parts)
+            if (part.phase == p && (part.condition & less) == 0) phase.parts.push_back(&part);
+        if (phase.parts.empty()) continue;
+        if (!out.empty()) out += "    BARRIER;\n";
+        out += phase_text(fused, phase, prefix);
     }
-    return o.str();
+    return out;
 }
+
+} // namespace
 
 std::string phase_loops(const FusedStage& fused, const Effects& effects) {
     const bool empties = !fused.empty.without.empty(), leans = !fused.lean.without.empty();
     std::string out;
     if (empties) out += content_look(fused, fused.empty, "empty") + "    if (empty) {\n" + empty_writes(fused) + "    } else {\n";
     if (leans)
-        out += content_look(fused, fused.lean, "lean") + "    if (lean) {\n" + loops(fused, "lean_", fused.lean.less) +
-               lean_writes(fused, effects) + "    } else {\n";
-    out += loops(fused, "", 0);
+        out += content_look(fused, fused.lean, "lean") + "    if (lean) {\n" + staging(fused, fused.lean.without) +
+               loops(fused, "lean_", fused.lean.less) + lean_writes(fused, effects) + "    } else {\n";
+    out += staging(fused, {}) + loops(fused, "", 0);
     if (leans) out += "    }\n";
     if (empties) out += "    }\n";
     return out;

@@ -55,6 +55,12 @@ std::string marking(const Stage& s, const std::string& member) {
            "        if (changed) activity[tile] = uint(S.step);\n    }\n";
 }
 
+std::string shared_macros() {
+    return "#define SHARED_PITCH " + std::to_string(shared_pitch) + "\n#define SHARED_BESIDE " + std::to_string(shared_beside) +
+           "\n#define NEAREST(AT, LAST, LOWEST) nearest_index(AT, LAST, LOWEST)\nFN int nearest_index(int at, int last, int "
+           "lowest) {\n    int most = last < lowest ? lowest : last;\n    return at < 0 ? 0 : at > most ? most : at;\n}\n";
+}
+
 std::string tile_part(const std::string& m) {
     std::string text;
     for (const auto& [axis, place, size, part] : {std::array{"i", "tile % P.tile_columns", "FUSED_COLUMNS", "part % across"},

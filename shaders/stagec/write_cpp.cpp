@@ -78,22 +78,18 @@ std::string write_cpp(const FusedStage& f, const std::string& isa, const Effects
     o << file_head(s, isa)
       << "#pragma GCC diagnostic ignored \"-Wunused-but-set-variable\"\n#pragma GCC diagnostic ignored \"-Wunused-parameter\"\n"
       << physics_includes(f) << "struct Place { int x, y; };\n#define PLACE(X, Y) Place{X, Y}\n"
-      << index_macros(f)
+      << index_macros << shared_macros() << one_by_one
       << "#define LANE 0\n#define LANES 1\n#define BARRIER (void)0\n#define ANY(X) (X)\n#define ROLLED\n#define "
-         "KEEP_STORED(FIELD, AT, TYPE) "
-         "FIELD[AT] = "
-         "TYPE(stored)\n"
+         "KEEP_STORED(FIELD, AT, TYPE) FIELD[AT] = TYPE(stored);\n"
       << "#define PART_FUNCTION inline __attribute__((always_inline))\n#define NOT_KEPT(X) (void)(X)\n"
       << "template <unsigned FREE> struct " << s.struct_name << " {\n    static constexpr unsigned EFFECTS = FREE | " << f.needs
       << "u;\n    typedef Stored<EFFECTS> float_or_half;\n    const WorldParams& P;\n    const StepInput& S;\n";
     for (const auto& b : s.bindings)
         o << "    WADI_BUFFER(" << (b.access == "IN" ? "const " : "") << b.type << ") " << b.name << ";\n";
-    for (const auto& name : fields_kept(f, Keeping::window))
-        o << "    float window_" << name << "[" << window_floats(f) << "] = {};\n";
-    for (const auto& name : fields_kept(f, Keeping::own_index)) o << "    float own_" << name << " = 0.0f;\n";
-    o << "    int own_i0 = 0, own_j0 = 0, own_i1 = 0, own_j1 = 0, window_i0 = 0, window_j0 = 0;\n    bool owned = "
-         "false;\n"
-      << part_functions(f, effects, "EFFECTS") << "void window() {\n    PLACE_WINDOW;\n"
+    for (const auto& rows : windows(f))
+        o << "    float window_" << rows.field << "[" << rows.rows() * shared_pitch << "] = {};\n";
+    for (const auto& rows : staged(f)) o << "    float staged_" << rows.field << "[" << rows.rows() * shared_pitch << "] = {};\n";
+    o << own_variables(f) << part_functions(f, effects, "EFFECTS") << "void window() {\n"
       << phase_loops(f, effects) << "}\n};\n"
       << block_head() << "    " << s.struct_name << "<E> stage{P, S\n"
       << buffer_members(s)

@@ -41,6 +41,81 @@ std::string cuda_active(const Stage& s) {
     return o.str();
 }
 
+// Rows of a group begin at multiples of four elements, in memory as in shared rows. Copies to shared memory are asynchronous
+// where the device has that. Buffers that are read are never written by the same pass: they may come through the read-only cache.
+const char* const four_at_once = R"(#define WIDE 4
+__device__ __forceinline__ float loaded(const float* from) { return __ldg(from); }
+__device__ __forceinline__ float loaded(const Half* from) {
+    Half stored(0.0f);
+    stored.bits = __ldg(&from->bits);
+    return float(stored);
+}
+__device__ __forceinline__ void copy(float* to, const float* from) {
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
+    asm volatile("cp.async.cg.shared.global [%0], [%1], 16;" :: "r"(static_cast<unsigned>(__cvta_generic_to_shared(to))), "l"(from) : "memory");
+#else
+    *reinterpret_cast<float4*>(to) = __ldg(reinterpret_cast<const float4*>(from));
+#endif
+}
+__device__ __forceinline__ void copy(float* to, const Half* from) {
+#pragma unroll
+    for (int k = 0; k < 4; ++k) to[k] = loaded(from + k);
+}
+__device__ __forceinline__ bool holds(const float* from) {
+    const float4 v = __ldg(reinterpret_cast<const float4*>(from));
+    return v.x != 0.0f || v.y != 0.0f || v.z != 0.0f || v.w != 0.0f;
+}
+__device__ __forceinline__ bool holds(const Half* from) {
+    return loaded(from) != 0.0f || loaded(from + 1) != 0.0f || loaded(from + 2) != 0.0f || loaded(from + 3) != 0.0f;
+}
+// Whether a bit changed, where `look` asks.
+__device__ __forceinline__ bool keep(float* to, float4 value, bool look) {
+    float4* const place = reinterpret_cast<float4*>(to);
+    bool changed = false;
+    if (look) {
+        const float4 old = *place;
+        changed = float_bits(old.x) != float_bits(value.x) || float_bits(old.y) != float_bits(value.y) ||
+                  float_bits(old.z) != float_bits(value.z) || float_bits(old.w) != float_bits(value.w);
+    }
+    *place = value;
+    return changed;
+}
+__device__ __forceinline__ bool keep(Half* to, float4 value, bool look) {
+    const float values[4] = {value.x, value.y, value.z, value.w};
+    bool changed = false;
+#pragma unroll
+    for (int k = 0; k < 4; ++k) {
+        const Half stored(values[k]);
+        changed = changed || (look && to[k].bits != stored.bits);
+        to[k] = stored;
+    }
+    return changed;
+}
+__device__ __forceinline__ float4 four(const float* from) { return __ldg(reinterpret_cast<const float4*>(from)); }
+__device__ __forceinline__ float4 four(const Half* from) {
+    return make_float4(loaded(from), loaded(from + 1), loaded(from + 2), loaded(from + 3));
+}
+#define LOAD(FIELD, AT) loaded(FIELD + (AT))
+#define COPY(TO, T, FROM, F) copy(TO + (T), FROM + (F))
+#define ZERO(TO, T) *reinterpret_cast<float4*>(TO + (T)) = make_float4(0.0f, 0.0f, 0.0f, 0.0f)
+#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
+#define COPIED asm volatile("cp.async.wait_all;" ::: "memory")
+#else
+#define COPIED
+#endif
+#define HOLDS(FIELD, AT) holds(FIELD + (AT))
+#define KEEP_ZEROS(FIELD, AT, TYPE) changed = keep(FIELD + (AT), make_float4(0.0f, 0.0f, 0.0f, 0.0f), look) || changed
+#define KEEP_COPY(FIELD, AT, TYPE, FROM) changed = keep(FIELD + (AT), four(FROM + (AT)), look) || changed
+)";
+
+// Arrays in shared memory and their floats.
+std::vector<std::pair<std::string, int>> shared_rows(const FusedStage& f) {
+    std::vector<std::pair<std::string, int>> all;
+    for (const auto& rows : windows(f)) all.emplace_back("window_" + rows.field, rows.rows() * shared_pitch);
+    for (const auto& rows : staged(f)) all.emplace_back("staged_" + rows.field, rows.rows() * shared_pitch);
+    return all;
+}
+
 } // namespace
 
 // A namespace per stage: kernels of two files that had one name would be one function to the linker.
@@ -88,17 +163,17 @@ std::string write_cuda(const FusedStage& f, const Effects& effects, bool all_mas
     const Stage& s = f.stage;
     const auto legal = masks(tested_bits(s, effects), f.needs, f.without), chosen = all_masks ? legal : largest(legal);
     const std::string space = "wadi_stage_cuda_" + s.name;
-    const auto windows = fields_kept(f, Keeping::window);
     // Groups on a multiprocessor, for which the compiler saves registers: these kernels wait for instructions, not for memory.
     // Before compute capability 8.0 it holds 1024 threads, 4 groups.
-    const int groups = 4 * windows.size() * static_cast<std::size_t>(window_floats(f)) > 16384 ? 5 : 6;
+    const std::size_t bytes = shared_bytes(f);
+    const int groups = bytes > 40960 ? 4 : bytes > 32768 ? 5 : 6;
     std::ostringstream o;
     o << "// Written by stagec from " << s.name << ".fused.\nnamespace " << space
       << " {\n#pragma nv_diag_suppress 177, 550\n#include \"language/stage_cuda.h\"\n" // places that nobody uses, as in
                                                                                        // write_cpp.cpp
       << physics_includes(f) << "struct Place { int x, y; };\n#define PLACE(X, Y) Place{X, Y}\n"
-      << index_macros(f) << "#define LANE static_cast<int>(threadIdx.y * " << fused_group_x << " + threadIdx.x)\n#define LANES "
-      << fused_group_x * fused_group_y
+      << index_macros << shared_macros() << four_at_once << "#define LANE static_cast<int>(threadIdx.y * " << fused_group_x
+      << " + threadIdx.x)\n#define LANES " << fused_group_x * fused_group_y
       << "\n#define BARRIER __syncthreads()\n#define ANY(X) __syncthreads_or(X)\n#define ROLLED _Pragma(\"unroll 1\")\n#define "
          "PART_FUNCTION __device__ "
          "__forceinline__\n#define NOT_KEPT(X) (void)(X)\n"
@@ -107,23 +182,26 @@ std::string write_cuda(const FusedStage& f, const Effects& effects, bool all_mas
       << f.needs << "u;\n    typedef Stored<EFFECTS> float_or_half;\n    const WorldParams& P;\n    const StepInput& S;\n";
     for (const auto& b : s.bindings)
         o << "    " << (b.access == "IN" ? "const " : "") << b.type << "* __restrict__ " << b.name << ";\n";
-    for (const auto& name : windows) o << "    float* __restrict__ window_" << name << ";\n";
-    for (const auto& name : fields_kept(f, Keeping::own_index)) o << "    float own_" << name << " = 0.0f;\n";
-    o << "    int own_i0 = 0, own_j0 = 0, own_i1 = 0, own_j1 = 0, window_i0 = 0, window_j0 = 0;\n    bool owned = "
-         "false, tile_looked_at = false, changed = false;\n"
+    const auto shared = shared_rows(f);
+    for (const auto& [name, floats] : shared) o << "    float* __restrict__ " << name << ";\n";
+    o << own_variables(f) << "bool tile_looked_at = false;\n"
       << "#define look (ACTIVE && tile_looked_at)\n"
-      << part_functions(f, effects, "EFFECTS") << "__device__ __forceinline__ void window() {\n    PLACE_WINDOW;\n"
+      << part_functions(f, effects, "EFFECTS") << "__device__ __forceinline__ void window() {\n"
       << phase_loops(f, effects) << "}\n};\n"
       << "#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ < 800\n#define GROUPS 4\n#else\n#define GROUPS " << groups << "\n#endif\n"
       << "template <unsigned E, bool ACTIVE> __global__ void __launch_bounds__(" << fused_group_x * fused_group_y << ", (E & "
       << f.four_groups << "u) != 0 ? 4 : GROUPS)\n"
       << "run(const WorldParams P, const StepInput* __restrict__ input, const Slots b, const Active active) {\n"
-      << "    __shared__ float windows[" << std::max<std::size_t>(1, windows.size()) << "][" << window_floats(f) << "];\n    "
+      << "    __shared__ __align__(16) float shared[" << std::max<std::size_t>(4, bytes / sizeof(float)) << "];\n    "
       << s.struct_name << "<E, ACTIVE> stage{P, *input";
     for (const auto& b : s.bindings)
         o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << element_type(b, "E") << "*>(b.at[" << b.slot
           << "])";
-    for (std::size_t n = 0; n < windows.size(); ++n) o << ",\n        windows[" << n << "]";
+    int at = 0;
+    for (const auto& [name, floats] : shared) {
+        o << ",\n        shared + " << at;
+        at += floats;
+    }
     // The kernel for all cells has registers for nothing else.
     o << "};\n    constexpr bool all = !ACTIVE;\n"
       << "    const int across = (P.tile_size + FUSED_COLUMNS - 1) / FUSED_COLUMNS;\n"

@@ -78,31 +78,32 @@ std::string write_glsl(const Stage& s) {
     return o.str();
 }
 
-std::string write_glsl(const FusedStage& f, const Effects& effects) {
+std::string write_glsl(const FusedStage& whole, const Effects& effects) {
+    const FusedStage f = fitted(whole, shared_bytes_everywhere);
     const Stage& s = f.stage;
     std::ostringstream o;
     o << head << physics_includes(f) << "#undef HAS\n#define HAS(BITS) (((EFFECTS | " << f.needs << "u) & (BITS)) == (BITS))\n"
       << "#define Place ivec2\n#define PLACE(X, Y) ivec2(X, Y)\n"
-      << index_macros(f) << "#define LANE int(gl_LocalInvocationIndex)\n#define LANES " << fused_group_x * fused_group_y
+      << index_macros << shared_macros() << one_by_one << "#define LANE int(gl_LocalInvocationIndex)\n#define LANES "
+      << fused_group_x * fused_group_y
       << "\n#define BARRIER barrier()\n#define ROLLED\n#define PART_FUNCTION\n#define NOT_KEPT(X)\n"
       << keep_stored;
     for (const auto& b : s.bindings) o << b.access << "(" << b.slot << ", " << b.type << ", " << b.name << ")\n";
     o << tile_bindings(s);
-    for (const auto& name : fields_kept(f, Keeping::window))
-        o << "shared float window_" << name << "[" << window_floats(f) << "];\n";
-    for (const auto& name : fields_kept(f, Keeping::own_index)) o << "float own_" << name << ";\n";
+    for (const auto& rows : windows(f)) o << "shared float window_" << rows.field << "[" << rows.rows() * shared_pitch << "];\n";
+    for (const auto& rows : staged(f)) o << "shared float staged_" << rows.field << "[" << rows.rows() * shared_pitch << "];\n";
     // The last barrier: the next call's first line must not come ahead of anyone's look.
     o << "shared uint group_holds;\nbool any_of_group(int holds) {\n    if (LANE == 0) group_holds = 0u;\n    barrier();\n"
          "    if (holds != 0) group_holds = 1u;\n    barrier();\n    bool any = group_holds != 0u;\n    barrier();\n"
          "    return any;\n}\n#define ANY(X) any_of_group(X)\n"
-         "int own_i0, own_j0, own_i1, own_j1, window_i0, window_j0;\nbool owned, look = false, changed = false;\n"
-      << part_functions(f, effects, "(EFFECTS | " + std::to_string(f.needs) + "u)")
+         "bool look = false;\n"
+      << own_variables(f) << part_functions(f, effects, "(EFFECTS | " + std::to_string(f.needs) + "u)")
       << "void main() {\n    own_i0 = int(gl_WorkGroupID.x) * FUSED_COLUMNS;\n    own_j0 = int(gl_WorkGroupID.y) * FUSED_ROWS;\n"
       << "    own_i1 = own_i0 + FUSED_COLUMNS;\n    own_j1 = own_j0 + FUSED_ROWS;\n    int tile = 0;\n"
       << "    if (ACTIVE_TILES != 0u) {\n        tile = int(active_list[gl_WorkGroupID.x]);\n        int part = "
          "int(gl_WorkGroupID.y);\n"
          "        int across = (P.tile_size + FUSED_COLUMNS - 1) / FUSED_COLUMNS;\n"
-      << tile_part("") << "        look = activity[tile] != uint(S.step);\n    }\n    PLACE_WINDOW;\n"
+      << tile_part("") << "        look = activity[tile] != uint(S.step);\n    }\n"
       << phase_loops(f, effects) << "    if (changed) activity[tile] = uint(S.step);\n}\n";
     return o.str();
 }

@@ -19,6 +19,14 @@ std::string rim_place(const Stage& stage);
 /// KEEP_STORED of a fused stage: stores, and notes whether that changed a bit where somebody looks.
 inline constexpr const char* keep_stored = "#define KEEP_STORED(FIELD, AT, TYPE) { if (look) changed = changed || "
                                            "float_bits(float(FIELD[AT])) != float_bits(stored); FIELD[AT] = TYPE(stored); }\n";
+/// Copies, looks and stores of fused stages where a thread takes one element at a time.
+inline constexpr const char* one_by_one =
+    "#define WIDE 1\n#define COPY(TO, T, FROM, F) TO[T] = float(FROM[F])\n#define ZERO(TO, T) TO[T] = 0.0f\n#define COPIED\n"
+    "#define HOLDS(FIELD, AT) float(FIELD[AT]) != 0.0f\n#define LOAD(FIELD, AT) float(FIELD[AT])\n"
+    "#define KEEP_ZEROS(FIELD, AT, TYPE) { float stored = 0.0f; KEEP_STORED(FIELD, AT, TYPE) }\n"
+    "#define KEEP_COPY(FIELD, AT, TYPE, FROM) { float stored = float(FROM[AT]); KEEP_STORED(FIELD, AT, TYPE) }\n";
+/// SHARED_PITCH and SHARED_BESIDE, and NEAREST: the index in 0 ... LAST that is nearest, or LOWEST where that is beyond LAST.
+std::string shared_macros();
 /// The type of a buffer's elements in C++ and CUDA, where `effects` names the mask.
 inline std::string element_type(const Binding& binding, const std::string& effects) {
     return binding.narrow() ? "Stored<" + effects + ">" : binding.type;

@@ -11,7 +11,8 @@ namespace {
 
 std::string word_place(std::size_t word, const FieldLayout& layout) {
     const auto pitch = static_cast<std::size_t>(layout.pitch());
-    const int i = static_cast<int>(word % pitch) - GHOST, j = static_cast<int>(word / pitch) - GHOST;
+    const std::size_t at = word + GHOST - LEAD; // from the first ghost of row -GHOST
+    const int i = static_cast<int>(at % pitch) - GHOST, j = static_cast<int>(at / pitch) - GHOST;
     return "word " + std::to_string(word) + ", in a field cell (" + std::to_string(i) + ", " + std::to_string(j) + ")";
 }
 

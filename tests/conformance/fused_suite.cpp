@@ -89,7 +89,7 @@ Verdict run(const CaseSpec& spec, Session& session) {
         if (!expected || !got) return verdict_of(expected ? got.status() : expected.status());
         const auto differs = std::mismatch(expected->begin(), expected->end(), got->begin());
         if (differs.first == expected->end()) continue;
-        const auto at = static_cast<int>(differs.first - expected->begin());
+        const auto at = static_cast<int>(differs.first - expected->begin()) + GHOST - LEAD;
         const int pitch = apart.layout().pitch();
         return failed(field.name + " differs, first at (" + std::to_string(at % pitch - GHOST) + ", " +
                       std::to_string(at / pitch - GHOST) + ")");

@@ -86,6 +86,7 @@ FUSED_FAULTS = [
     (6, "KEEP(rise_x, rise_y)\nLEAN_WITHOUT(EFFECT_SAND, depth)", 7, "no part reads depth from memory"),
     (6, "KEEP(rise_x, rise_y)\nEMPTY_WITHOUT(height)\nEMPTY_COPIES(rise_x, height)", 8, '"rise_x" is not kept field = field'),
     (6, "KEEP(rise_x, rise_y)\nEMPTY_WITHOUT(height)\nEMPTY_COPIES(height = height)", 7, "height is not kept"),
+    (6, "KEEP(rise_x, rise_y)\nSTAGED(height, depth)", 7, "no part reads depth from memory"),
     (2, "", 1, "no FUSED(Name)"),
 ]
 
