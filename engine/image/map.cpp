@@ -1,4 +1,5 @@
 #include "engine/image/map.hpp"
+#include "engine/threads/bands.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -94,23 +95,26 @@ std::vector<float> resample(const Map& map, int nx, int ny) {
     const std::vector<Tap> columns = taps(map.nx, nx * static_cast<int>(width));
     const std::vector<Tap> rows = taps(map.ny, ny * static_cast<int>(depth));
     const auto share = 1.0 / static_cast<double>(width * depth);
-    std::vector<float> result;
-    result.reserve(static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny));
-    std::vector<double> sums(static_cast<std::size_t>(nx));
-    for (std::size_t j = 0; j < rows.size(); ++j) {
-        const Tap& row = rows[j];
-        const std::size_t south = row.low * static_cast<std::size_t>(map.nx);
-        const std::size_t north = row.high * static_cast<std::size_t>(map.nx);
-        const auto along = [&](std::size_t start, const Tap& column) {
-            return static_cast<double>(map.values[start + column.low]) * (1 - column.weight) +
-                   static_cast<double>(map.values[start + column.high]) * column.weight;
-        };
-        if (j % depth == 0) std::fill(sums.begin(), sums.end(), 0.0);
-        for (std::size_t i = 0; i < columns.size(); ++i)
-            sums[i / width] += along(south, columns[i]) * (1 - row.weight) + along(north, columns[i]) * row.weight;
-        if ((j + 1) % depth > 0) continue;
-        for (const double sum : sums) result.push_back(static_cast<float>(sum * share));
-    }
+    const auto length = static_cast<std::size_t>(nx);
+    std::vector<float> result(length * static_cast<std::size_t>(ny));
+    const auto along = [&](std::size_t start, const Tap& column) {
+        return static_cast<double>(map.values[start + column.low]) * (1 - column.weight) +
+               static_cast<double>(map.values[start + column.high]) * column.weight;
+    };
+    in_bands(static_cast<std::size_t>(ny), row_band(length), [&](std::size_t, std::size_t begin, std::size_t end) {
+        std::vector<double> sums(length);
+        for (std::size_t j = begin; j < end; ++j) {
+            std::fill(sums.begin(), sums.end(), 0.0);
+            for (std::size_t n = j * depth; n < (j + 1) * depth; ++n) {
+                const Tap& row = rows[n];
+                const std::size_t south = row.low * static_cast<std::size_t>(map.nx);
+                const std::size_t north = row.high * static_cast<std::size_t>(map.nx);
+                for (std::size_t i = 0; i < columns.size(); ++i)
+                    sums[i / width] += along(south, columns[i]) * (1 - row.weight) + along(north, columns[i]) * row.weight;
+            }
+            for (std::size_t i = 0; i < length; ++i) result[j * length + i] = static_cast<float>(sums[i] * share);
+        }
+    });
     return result;
 }
 

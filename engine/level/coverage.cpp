@@ -15,11 +15,12 @@ bool has_edges(const Layer& layer) { return !layer.map && has_rim(layer.shape); 
 
 bool is_vertical(const Shape& shape) { return !std::isfinite(shape.side_slope); }
 
-/// Distance from the rim to where the sides end [m]; infinite where the ground decides it.
-double foot_of(const Layer& layer) {
+/// Distance from the rim to where the sides end [m]; infinite where the ground decides it. `lowest`: no ground is lower.
+double foot_of(const Layer& layer, double lowest = NOWHERE) {
     if (is_vertical(layer.shape)) return 0;
-    if (layer.amount != Amount::height) return std::numeric_limits<double>::infinity();
-    return layer.top / layer.shape.side_slope;
+    if (layer.amount == Amount::wet) return std::numeric_limits<double>::infinity();
+    const double bottom = layer.amount == Amount::surface ? std::min(lowest, layer.top) : 0;
+    return (layer.top - bottom) / layer.shape.side_slope;
 }
 
 double half_diagonal(const LevelGrid& grid, int cells) {
@@ -59,13 +60,14 @@ double covered_share(double inside, const Point& normal, const Point& size) {
 
 } // namespace
 
-Point cell_center(const LevelGrid& grid, int i, int j) { return {(i + 0.5) * grid.dx, (j + 0.5) * grid.dx / grid.stretch_y}; }
+Point cell_center(const LevelGrid& grid, int i, int j) { return {column_center(grid, i), (j + 0.5) * grid.dx / grid.stretch_y}; }
 
-CellRange reach_of(const Layer& layer, const LevelGrid& grid) {
+CellRange reach_of(const Layer& layer, const LevelGrid& grid, double lowest) {
     const CellRange all = {0, grid.nx, 0, grid.ny};
-    if (!has_edges(layer) || !std::isfinite(foot_of(layer))) return all;
+    if (!has_edges(layer)) return all;
+    const double foot = foot_of(layer, lowest);
+    if (!std::isfinite(foot)) return all;
     const auto [west, south, east, north] = rim_bounds(layer.shape);
-    const double foot = foot_of(layer);
     // A cell more on either side, so that rounding leaves none out.
     const auto low = [](double position, double cell, int most) {
         return static_cast<int>(std::clamp(std::floor(position / cell) - 1, 0.0, static_cast<double>(most)));
@@ -92,7 +94,7 @@ std::vector<std::size_t> cut_cells(const std::vector<const Layer*>& layers, cons
 }
 
 CellSamples::CellSamples(std::vector<const Layer*> layers, const LevelGrid& grid)
-    : layers_(std::move(layers)), grid_(grid), map_heights_(layers_.size()), noise_(layers_.size()), near_(layers_.size()),
+    : layers_(std::move(layers)), grid_(grid), map_heights_(layers_.size()), noise_(layers_.size()), segments_(layers_.size()),
       inside_(layers_.size()), covers_(layers_.size()) {}
 
 /// Edges of the parts along an axis, in cells from the cell's low side.
@@ -101,9 +103,9 @@ void CellSamples::part_axis(std::size_t axis, int cell) {
     edges.clear();
     for (int n = 0; n <= PARTS; ++n) edges.push_back(static_cast<double>(n) / PARTS);
     const double size = axis == 0 ? grid_.dx : grid_.dx / grid_.stretch_y;
-    for (std::size_t n = 0; n < layers_.size(); ++n) {
+    for (const std::size_t n : near_) {
         const Shape& shape = layers_[n]->shape;
-        if (!near_[n] || !has_edges(*layers_[n]) || shape.kind != ShapeKind::box) continue;
+        if (!has_edges(*layers_[n]) || shape.kind != ShapeKind::box) continue;
         for (const double side : {shape.from[axis], shape.to[axis]}) {
             const double edge = side / size - cell;
             const auto close = [&](double other) { return std::fabs(edge - other) < SLIVER; };
@@ -115,20 +117,21 @@ void CellSamples::part_axis(std::size_t axis, int cell) {
 
 void CellSamples::sample_part(const Point& center, const Point& size, double share) {
     slices_.assign({0.0, 1.0});
-    for (std::size_t n = 0; n < layers_.size(); ++n) {
+    for (const std::size_t n : near_) {
         const Layer& layer = *layers_[n];
         const Shape& shape = layer.shape;
-        covers_[n] = near_[n] ? 1 : 0;
+        covers_[n] = 1;
         if (layer.map) {
             inside_[n] = map_heights_[n];
         } else if (shape.kind == ShapeKind::noise) {
             inside_[n] = noise_[n];
-        } else if (near_[n] && is_vertical(shape) && (shape.kind == ShapeKind::cylinder || shape.kind == ShapeKind::ridge)) {
+        } else if (is_vertical(shape) && (shape.kind == ShapeKind::cylinder || shape.kind == ShapeKind::ridge)) {
             inside_[n] = 0;
-            covers_[n] = covered_share(-rim_distance(shape, center[0], center[1]), rim_normal(shape, center[0], center[1]), size);
+            covers_[n] = covered_share(-rim_distance(shape, center[0], center[1], segments_[n]),
+                                       rim_normal(shape, center[0], center[1], segments_[n]), size);
             slices_.push_back(covers_[n]);
-        } else if (near_[n]) {
-            inside_[n] = relative_height(shape, center[0], center[1]);
+        } else {
+            inside_[n] = relative_height(shape, center[0], center[1], segments_[n]);
         }
     }
     std::sort(slices_.begin(), slices_.end());
@@ -136,19 +139,24 @@ void CellSamples::sample_part(const Point& center, const Point& size, double sha
         const double width = slices_[slice + 1] - slices_[slice];
         if (width < SLIVER) continue;
         shares_.push_back(share * width);
-        for (std::size_t n = 0; n < layers_.size(); ++n) relatives_.push_back(covers_[n] > slices_[slice] ? inside_[n] : NOWHERE);
+        for (const std::size_t n : near_) relatives_.push_back(covers_[n] > slices_[slice] ? inside_[n] : NOWHERE);
     }
 }
 
 void CellSamples::sample(int i, int j) {
     shares_.clear();
     relatives_.clear();
+    near_.clear();
     const Point middle = cell_center(grid_, i, j);
+    const double reach = half_diagonal(grid_, 1);
     for (std::size_t n = 0; n < layers_.size(); ++n) {
         const Layer& layer = *layers_[n];
-        near_[n] =
-            !has_edges(layer) || rim_distance(layer.shape, middle[0], middle[1]) <= foot_of(layer) + half_diagonal(grid_, 1);
-        if (!layer.map && layer.shape.kind == ShapeKind::noise) noise_[n] = relative_height(layer.shape, middle[0], middle[1]);
+        if (!layer.map) segments_[n] = segments_near(layer.shape, middle, reach);
+        const bool outside =
+            has_edges(layer) && rim_distance(layer.shape, middle[0], middle[1], segments_[n]) > foot_of(layer) + reach;
+        if (!outside) near_.push_back(n);
+        if (!layer.map && layer.shape.kind == ShapeKind::noise)
+            noise_[n] = relative_height(layer.shape, middle[0], middle[1], {});
     }
     part_axis(0, i);
     part_axis(1, j);

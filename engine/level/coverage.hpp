@@ -3,15 +3,19 @@
 #pragma once
 #include "engine/level/layers.hpp"
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 namespace wadi {
 
-/// Cells [begin, end) of columns and rows outside which the layer changes nothing.
+/// Cells [begin, end) of columns and rows outside which the layer changes nothing. `lowest`: no terrain is lower [m].
 struct CellRange {
     int begin_x = 0, end_x = 0, begin_y = 0, end_y = 0;
 };
-CellRange reach_of(const Layer& layer, const LevelGrid& grid);
+CellRange reach_of(const Layer& layer, const LevelGrid& grid, double lowest = -std::numeric_limits<double>::infinity());
+
+/// Middle of a column of cells [m].
+inline double column_center(const LevelGrid& grid, int i) { return (i + 0.5) * grid.dx; }
 
 /// Middle of a cell, in the level's own coordinates.
 Point cell_center(const LevelGrid& grid, int i, int j);
@@ -33,8 +37,10 @@ class CellSamples {
 
     std::size_t count() const { return shares_.size(); }
     double share(std::size_t sample) const { return shares_[sample]; }
-    /// As relative_height(): of the layer in this sample; of a map its height.
-    double relative(std::size_t sample, std::size_t layer) const { return relatives_[sample * layers_.size() + layer]; }
+    /// The layers that are not wholly outside the cell, in their order.
+    const std::vector<std::size_t>& near() const { return near_; }
+    /// As relative_height(): of the layer near()[place] in this sample; of a map its height.
+    double relative(std::size_t sample, std::size_t place) const { return relatives_[sample * near_.size() + place]; }
 
   private:
     void part_axis(std::size_t axis, int cell);
@@ -43,7 +49,8 @@ class CellSamples {
     std::vector<const Layer*> layers_;
     LevelGrid grid_;
     std::vector<double> map_heights_, noise_;
-    std::vector<char> near_; // layers that are not wholly outside the cell
+    std::vector<std::size_t> near_;
+    std::vector<std::vector<std::size_t>> segments_; // of ridges, near the cell
     std::vector<double> edges_[2];
     std::vector<double> relatives_, shares_, inside_, covers_, slices_;
 };

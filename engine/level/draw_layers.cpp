@@ -5,9 +5,15 @@
 #include "engine/settings/messages.hpp"
 #include "engine/settings/quanta.hpp"
 #include "engine/settings/setting_table.hpp"
+#include "engine/threads/bands.hpp"
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <mutex>
+#include <span>
 #include <utility>
 
 namespace wadi {
@@ -19,7 +25,7 @@ double value_at(const std::vector<float>& field, std::size_t cell) {
     return field.empty() ? 0 : static_cast<double>(field[cell]);
 }
 
-double combined(double current, double value, Combine combine) {
+inline double combined(double current, double value, Combine combine) {
     switch (combine) {
     case Combine::add:
         return current + value;
@@ -57,15 +63,18 @@ Result<std::vector<float>> values_of(const Map& map, const MapSource& source, co
     std::vector<float> values = resample(map, nx, ny);
     const double scale = source.grey_range ? source.max - source.min : source.scale;
     const double offset = source.grey_range ? source.min : source.offset;
-    for (std::size_t cell = 0; cell < values.size(); ++cell) {
-        const double value = static_cast<double>(values[cell]) * scale + offset;
-        const auto& [name, least, most] = source.meaning;
-        if (!(value >= least && value <= most))
-            return error(Code::bad_file, outside_text(path + ": " + name, value, least, most) + " in cell (" +
-                                             std::to_string(cell % static_cast<std::size_t>(nx)) + ", " +
-                                             std::to_string(cell / static_cast<std::size_t>(nx)) + ")");
-        values[cell] = static_cast<float>(value);
-    }
+    const MapMeaning& meaning = source.meaning;
+    const auto value_at_cell = [&](std::size_t cell) { return static_cast<double>(values[cell]) * scale + offset; };
+    const std::size_t wrong = first_cell(values.size(), [&](std::size_t cell) {
+        const double value = value_at_cell(cell);
+        const bool outside = !(value >= meaning.least && value <= meaning.most);
+        if (!outside) values[cell] = static_cast<float>(value);
+        return outside;
+    });
+    if (wrong < values.size())
+        return error(Code::bad_file, outside_text(path + ": " + meaning.name, value_at_cell(wrong), meaning.least, meaning.most) +
+                                         " in cell (" + std::to_string(wrong % static_cast<std::size_t>(nx)) + ", " +
+                                         std::to_string(wrong / static_cast<std::size_t>(nx)) + ")");
     return values;
 }
 
@@ -76,7 +85,7 @@ struct Below {
     double sand_here = 0; // in a part of the cell: what a share of the sand's depth counts from
 };
 
-double layer_height(const Layer& layer, double relative, const Below& below) {
+inline double layer_height(const Layer& layer, double relative, const Below& below) {
     if (layer.amount == Amount::wet) return layer.top * below.sand_here;
     const double value = layer.top + relative;
     const double ground = below.terrain + below.sand;
@@ -87,8 +96,8 @@ double layer_height(const Layer& layer, double relative, const Below& below) {
 }
 
 /// The field at a place, whose height relative to the layer's top is given, after the layer.
-double after_layer(const Layer& layer, LayerTarget target, const LevelGrid& grid, double current, double relative,
-                   const Below& below) {
+inline double after_layer(const Layer& layer, LayerTarget target, const LevelGrid& grid, double current, double relative,
+                          const Below& below) {
     if (std::isinf(relative) || (layer.only_present && !(current > 0))) return current;
     const double height = layer_height(layer, relative, below);
     // Beyond the line where a sloping side meets the ground, the shape is over.
@@ -126,24 +135,31 @@ class Drawing {
             if (!changed) return changed.status();
             warn_unchanged(layer, *changed);
         }
+        lowest_ = lowest_terrain();
         return ok_status();
+    }
+
+    /// [m]
+    double lowest_terrain() const {
+        const std::vector<float>& terrain = fields_.terrain;
+        if (terrain.empty()) return 0;
+        std::vector<float> parts(bands_of(terrain.size(), CELL_BAND));
+        in_bands(terrain.size(), CELL_BAND, [&](std::size_t n, std::size_t begin, std::size_t end) {
+            parts[n] = *std::min_element(&terrain[begin], &terrain[begin] + (end - begin));
+        });
+        return static_cast<double>(*std::min_element(parts.begin(), parts.end()));
     }
 
     Status draw_sand() {
         std::vector<char> changed;
         if (Status status = draw_list(lists_.sand, LayerTarget::sand, fields_.sand, 0, changed); !status) return status;
-        CellSamples samples(pointers(lists_.sand), grid_);
         const auto cells = cut_cells(pointers(lists_.sand), grid_);
-        std::size_t at = 0; // of the cell in cut_, which holds it
-        for (const std::size_t cell : cells) {
-            while (cut_[at] != cell) ++at;
-            sample_cell(samples, at);
-            const Below below = below_of(cell, false);
-            values_.assign(samples.count(), 0.0);
-            for (std::size_t n = 0; n < values_.size(); ++n)
-                values_[n] = stack(lists_.sand, LayerTarget::sand, samples, n, 0, below, changed);
-            store(fields_.sand, cell, mean_of(values_, samples, terms_));
-        }
+        in_cut_cells(cells, pointers(lists_.sand), changed, [&](CutCell& at) {
+            const Below below = below_of(at.cell, false);
+            for (std::size_t n = 0; n < at.values.size(); ++n)
+                at.values[n] = stack(lists_.sand, LayerTarget::sand, at.samples, n, 0, below, at.changed);
+            store(fields_.sand, at.cell, mean_of(at.values, at.samples, at.terms));
+        });
         warn_unchanged(lists_.sand, changed);
         return ok_status();
     }
@@ -153,28 +169,52 @@ class Drawing {
         if (Status status = draw_list(lists_.water, LayerTarget::water, fields_.water, lists_.sand.size(), changed); !status)
             return status;
         if (lists_.water.empty()) return ok_status();
-        CellSamples samples(pointers(lists_.sand, lists_.water), grid_);
-        std::vector<char> sand_changed(lists_.sand.size());
-        std::vector<double> sand;
-        for (std::size_t at = 0; at < cut_.size(); ++at) {
-            const std::size_t cell = cut_[at];
-            sample_cell(samples, at);
-            sand.assign(samples.count(), 0.0);
-            for (std::size_t n = 0; n < sand.size(); ++n)
-                sand[n] = stack(lists_.sand, LayerTarget::sand, samples, n, 0, below_of(cell, false), sand_changed);
+        in_cut_cells(cut_, pointers(lists_.sand, lists_.water), changed, [&](CutCell& at) {
+            at.sand_changed.resize(lists_.sand.size());
+            at.sand.assign(at.samples.count(), 0.0);
+            for (std::size_t n = 0; n < at.sand.size(); ++n)
+                at.sand[n] = stack(lists_.sand, LayerTarget::sand, at.samples, n, 0, below_of(at.cell, false), at.sand_changed);
             // The sides of water's boxes part the cell further: in the mean its sand stays what was drawn.
-            const double mean = mean_of(sand, samples, terms_);
-            Below below = below_of(cell, true);
+            const double mean = mean_of(at.sand, at.samples, at.terms);
+            Below below = below_of(at.cell, true);
             const double scale = mean > 0 ? below.sand / mean : 0;
-            values_.assign(samples.count(), 0.0);
-            for (std::size_t n = 0; n < values_.size(); ++n) {
-                below.sand_here = mean == sand[n] ? below.sand : sand[n] * scale;
-                values_[n] = stack(lists_.water, LayerTarget::water, samples, n, lists_.sand.size(), below, changed);
+            for (std::size_t n = 0; n < at.values.size(); ++n) {
+                below.sand_here = mean == at.sand[n] ? below.sand : at.sand[n] * scale;
+                at.values[n] = stack(lists_.water, LayerTarget::water, at.samples, n, lists_.sand.size(), below, at.changed);
             }
-            store(fields_.water, cell, mean_of(values_, samples, terms_));
-        }
+            store(fields_.water, at.cell, mean_of(at.values, at.samples, at.terms));
+        });
         warn_unchanged(lists_.water, changed);
         return ok_status();
+    }
+
+    /// A cut cell and its samples, with room for what is computed of them; a band of cells uses it again and again.
+    struct CutCell {
+        CellSamples samples;
+        std::size_t cell = 0;
+        std::vector<char> changed, sand_changed; // by each layer
+        std::vector<double> values, sand, terms; // values: 0 for each sample
+    };
+
+    /// Calls draw() for each of `cells`, some of cut_ in their order, sampled for `layers`; `changed` collects what draw() says.
+    template <class Draw>
+    void in_cut_cells(const std::vector<std::size_t>& cells, const std::vector<const Layer*>& layers, std::vector<char>& changed,
+                      const Draw& draw) {
+        constexpr std::size_t band = 256;
+        std::mutex collecting;
+        in_bands(cells.size(), band, [&](std::size_t, std::size_t begin, std::size_t end) {
+            CutCell at{CellSamples(layers, grid_), 0, std::vector<char>(changed.size()), {}, {}, {}, {}};
+            auto place = std::lower_bound(cut_.begin(), cut_.end(), cells[begin]);
+            for (std::size_t n = begin; n < end; ++n) {
+                place = std::find(place, cut_.end(), cells[n]);
+                at.cell = cells[n];
+                sample_cell(at.samples, static_cast<std::size_t>(place - cut_.begin()));
+                at.values.assign(at.samples.count(), 0.0);
+                draw(at);
+            }
+            const std::lock_guard lock(collecting);
+            for (std::size_t n = 0; n < changed.size(); ++n) changed[n] = changed[n] != 0 || at.changed[n] != 0;
+        });
     }
 
     Below below_of(std::size_t cell, bool with_sand) const {
@@ -210,22 +250,45 @@ class Drawing {
             if (at_cut != nullptr)
                 for (const std::size_t cell : cut_) at_cut->push_back(heights[cell]);
         }
+        const CellRange range = reach_of(layer, grid_, lowest_);
+        const auto rows = static_cast<std::size_t>(std::max(range.end_y - range.begin_y, 0));
+        std::atomic<bool> changed = false;
+        in_bands(rows, row_band(static_cast<std::size_t>(std::max(range.end_x - range.begin_x, 0))),
+                 [&](std::size_t, std::size_t begin, std::size_t end) {
+                     for (std::size_t row = begin; row < end; ++row)
+                         if (draw_row(layer, target, field, heights, range, range.begin_y + static_cast<int>(row)))
+                             changed = true;
+                 });
+        return changed.load();
+    }
+
+    /// Draws a layer at the middles of a row of its range; `heights`: its map. Whether it changed anything.
+    bool draw_row(const Layer& layer, LayerTarget target, std::vector<float>& field, const std::vector<float>& heights,
+                  const CellRange& range, int j) const {
+        constexpr int piece = 64;
+        std::array<double, piece> x, relative;
+        const double y = cell_center(grid_, 0, j)[1];
         bool changed = false;
-        const CellRange range = reach_of(layer, grid_);
-        for (int j = range.begin_y; j < range.end_y; ++j)
-            for (int i = range.begin_x; i < range.end_x; ++i) {
-                const std::size_t cell =
-                    static_cast<std::size_t>(j) * static_cast<std::size_t>(grid_.nx) + static_cast<std::size_t>(i);
-                const double current = static_cast<double>(field[cell]);
-                if (layer.only_present && !(current > 0)) continue;
-                const Point center = cell_center(grid_, i, j);
-                const double relative =
-                    layer.map ? static_cast<double>(heights[cell]) : relative_height(layer.shape, center[0], center[1]);
-                const double next =
-                    after_layer(layer, target, grid_, current, relative, below_of(cell, target == LayerTarget::water));
-                field[cell] = static_cast<float>(next);
-                changed = changed || field[cell] != static_cast<float>(current);
+        for (int first = range.begin_x; first < range.end_x; first += piece) {
+            const auto count = static_cast<std::size_t>(std::min(piece, range.end_x - first));
+            const std::size_t start =
+                static_cast<std::size_t>(j) * static_cast<std::size_t>(grid_.nx) + static_cast<std::size_t>(first);
+            const std::span<float> cells(&field[start], count);
+            const auto empty = [](float current) { return !(current > 0); };
+            if (layer.only_present && std::all_of(cells.begin(), cells.end(), empty)) continue;
+            if (layer.map) {
+                std::copy_n(&heights[start], count, relative.begin());
+            } else {
+                for (std::size_t k = 0; k < count; ++k) x[k] = column_center(grid_, first + static_cast<int>(k));
+                relative_heights(layer.shape, {x.data(), count}, y, {relative.data(), count});
             }
+            for (std::size_t k = 0; k < count; ++k) {
+                const float current = cells[k];
+                cells[k] = static_cast<float>(after_layer(layer, target, grid_, static_cast<double>(current), relative[k],
+                                                          below_of(start + k, target == LayerTarget::water)));
+                changed = changed || cells[k] != current;
+            }
+        }
         return changed;
     }
 
@@ -248,7 +311,7 @@ class Drawing {
         return ok_status();
     }
 
-    void sample_cell(CellSamples& samples, std::size_t at) {
+    void sample_cell(CellSamples& samples, std::size_t at) const {
         for (std::size_t n = 0; n < samples.map_heights().size(); ++n)
             if (!map_heights_[n].empty()) samples.map_heights()[n] = static_cast<double>(map_heights_[n][at]);
         const auto width = static_cast<std::size_t>(grid_.nx);
@@ -259,8 +322,10 @@ class Drawing {
     double stack(const std::vector<Layer>& layers, LayerTarget target, const CellSamples& samples, std::size_t sample,
                  std::size_t first, const Below& below, std::vector<char>& changed) const {
         double value = 0;
-        for (std::size_t n = 0; n < layers.size(); ++n) {
-            const double next = after_layer(layers[n], target, grid_, value, samples.relative(sample, first + n), below);
+        for (std::size_t place = 0; place < samples.near().size(); ++place) {
+            const std::size_t n = samples.near()[place] - first;
+            if (n >= layers.size()) continue; // also those before the first: n has wrapped
+            const double next = after_layer(layers[n], target, grid_, value, samples.relative(sample, place), below);
             if (next != value) changed[n] = 1;
             value = next;
         }
@@ -288,9 +353,9 @@ class Drawing {
     const FileReader& files_;
     InitialFields& fields_;
     std::vector<std::string>& warnings_;
-    const std::vector<std::size_t> cut_;          // by the edges of sand and water
-    std::vector<std::vector<float>> map_heights_; // of the maps among sand's layers, then water's, in cut_
-    std::vector<double> values_, terms_;
+    const std::vector<std::size_t> cut_;                       // by the edges of sand and water
+    double lowest_ = -std::numeric_limits<double>::infinity(); // terrain, once it is drawn [m]
+    std::vector<std::vector<float>> map_heights_;              // of the maps among sand's layers, then water's, in cut_
 };
 
 } // namespace
@@ -323,9 +388,9 @@ Status draw_velocities(const std::vector<VelocityLayer>& layers, bool of_sand, c
         if (layer.of_sand != of_sand) continue;
         x.resize(cell_count(grid), 0.0f);
         y.resize(cell_count(grid), 0.0f);
-        bool changed = false;
+        std::atomic<bool> changed = false;
         const auto set = [&changed](float& velocity, float to) {
-            changed = changed || velocity != to;
+            if (velocity != to) changed = true;
             velocity = to;
         };
         if (layer.map) {
@@ -335,15 +400,22 @@ Status draw_velocities(const std::vector<VelocityLayer>& layers, bool of_sand, c
             if (!values) return values.status();
             std::vector<float>& along = layer.map_along_y ? y : x;
             for (std::size_t cell = 0; cell < along.size(); ++cell) set(along[cell], (*values)[cell]);
+        } else {
+            const auto width = static_cast<std::size_t>(grid.nx);
+            std::vector<double> columns(width);
+            for (std::size_t i = 0; i < width; ++i) columns[i] = column_center(grid, static_cast<int>(i));
+            in_bands(static_cast<std::size_t>(grid.ny), row_band(width), [&](std::size_t, std::size_t begin, std::size_t end) {
+                std::vector<double> relative(width);
+                for (std::size_t j = begin; j < end; ++j) {
+                    relative_heights(layer.shape, columns, cell_center(grid, 0, static_cast<int>(j))[1], relative);
+                    for (std::size_t i = 0; i < width; ++i) {
+                        if (std::isinf(relative[i])) continue;
+                        set(x[j * width + i], static_cast<float>(layer.velocity[0]));
+                        set(y[j * width + i], static_cast<float>(layer.velocity[1]));
+                    }
+                }
+            });
         }
-        std::size_t cell = 0;
-        for (int j = 0; j < grid.ny && !layer.map; ++j)
-            for (int i = 0; i < grid.nx; ++i, ++cell) {
-                const Point center = cell_center(grid, i, j);
-                if (std::isinf(relative_height(layer.shape, center[0], center[1]))) continue;
-                set(x[cell], static_cast<float>(layer.velocity[0]));
-                set(y[cell], static_cast<float>(layer.velocity[1]));
-            }
         const bool meant_as_nothing = !layer.map && layer.velocity == Point{0, 0};
         if (!changed && !meant_as_nothing)
             warnings.push_back(layer.path +

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <ranges>
 
 namespace wadi {
 namespace {
@@ -16,16 +17,29 @@ Point offset_from_segment(double x, double y, const Point& a, const Point& b) {
     return {x - a[0] - along * dx, y - a[1] - along * dy};
 }
 
-/// From the nearest point of the shape's middle (centre or crest line) to (x, y).
-Point offset_from_middle(const Shape& shape, double x, double y) {
+/// From the nearest point of the shape's middle (centre or crest line) to (x, y). `segments`: those of a ridge that may hold it,
+/// by the numbers of their ends.
+template <class Segments> Point offset_from_middle(const Shape& shape, double x, double y, const Segments& segments) {
     if (shape.kind != ShapeKind::ridge) return {x - shape.center[0], y - shape.center[1]};
     const auto square = [](const Point& p) { return p[0] * p[0] + p[1] * p[1]; };
     Point nearest = {x - shape.points[0][0], y - shape.points[0][1]};
-    for (std::size_t n = 1; n < shape.points.size(); ++n) {
+    for (const std::size_t n : segments) {
         const Point offset = offset_from_segment(x, y, shape.points[n - 1], shape.points[n]);
         if (square(offset) < square(nearest)) nearest = offset;
     }
     return nearest;
+}
+
+auto all_segments(const Shape& shape) { return std::views::iota(std::size_t{1}, std::max<std::size_t>(shape.points.size(), 1)); }
+
+template <class Segments> double distance_from_rim(const Shape& shape, double x, double y, const Segments& segments) {
+    if (shape.kind == ShapeKind::box) {
+        const double dx = std::max(shape.from[0] - x, x - shape.to[0]);
+        const double dy = std::max(shape.from[1] - y, y - shape.to[1]);
+        return dx > 0 || dy > 0 ? length(std::max(dx, 0.0), std::max(dy, 0.0)) : std::max(dx, dy);
+    }
+    const Point offset = offset_from_middle(shape, x, y, segments);
+    return length(offset[0], offset[1]) - (shape.kind == ShapeKind::ridge ? shape.width / 2 : shape.radius);
 }
 
 /// A well-mixed 32-bit hash of a lattice point ("lowbias32" of C. Wellons), as a number in -1 ... 1.
@@ -41,38 +55,94 @@ double lattice_value(std::int64_t i, std::int64_t j, std::uint32_t seed) {
     return h / 2147483647.5 - 1;
 }
 
+/// Values of noise at the corners of one cell of its lattice.
+struct LatticeCell {
+    double south_west, south_east, north_west, north_east;
+
+    LatticeCell(std::int64_t i, std::int64_t j, std::uint32_t seed)
+        : south_west(lattice_value(i, j, seed)), south_east(lattice_value(i + 1, j, seed)),
+          north_west(lattice_value(i, j + 1, seed)), north_east(lattice_value(i + 1, j + 1, seed)) {}
+
+    /// u, v: shares of the east and of the north.
+    double blend(double u, double v) const {
+        const double south = south_west * (1 - u) + south_east * u;
+        const double north = north_west * (1 - u) + north_east * u;
+        return south * (1 - v) + north * v;
+    }
+};
+
+double smooth(double t) { return t * t * (3 - 2 * t); }
+
+/// Adds `part` of value_noise() at (x * scale, y * scale) for every x of a row.
+void add_noise(std::span<const double> x, double y, double scale, std::uint32_t seed, double part, std::span<double> sums) {
+    const double y0 = std::floor(y * scale);
+    const double v = smooth(y * scale - y0);
+    const auto j = static_cast<std::int64_t>(y0);
+    double column = std::floor(x[0] * scale);
+    LatticeCell cell(static_cast<std::int64_t>(column), j, seed);
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        const double x0 = std::floor(x[k] * scale);
+        if (x0 != column) cell = LatticeCell(static_cast<std::int64_t>(x0), j, seed);
+        column = x0;
+        sums[k] += part * cell.blend(smooth(x[k] * scale - x0), v);
+    }
+}
+
+void noise_heights(const Shape& noise, std::span<const double> x, double y, std::span<double> heights) {
+    // Each octave has half the wavelength and half the amplitude of the one before; together they stay within +-amplitude.
+    double total = 0;
+    double part = 1;
+    double scale = 1 / noise.wavelength;
+    std::fill(heights.begin(), heights.end(), 0.0);
+    for (int octave = 0; octave < noise.octaves; ++octave) {
+        add_noise(x, y, scale, noise.seed + static_cast<std::uint32_t>(octave), part, heights);
+        total += part;
+        part /= 2;
+        scale *= 2;
+    }
+    for (double& height : heights) height = noise.amplitude * height / total;
+}
+
+/// Height at this distance from the rim, relative to the top.
+double beyond_rim(const Shape& shape, double distance) {
+    if (distance <= 0) return 0;
+    return std::isfinite(shape.side_slope) ? -shape.side_slope * distance : -std::numeric_limits<double>::infinity();
+}
+
 } // namespace
 
 double value_noise(double x, double y, std::uint32_t seed) {
-    const double x0 = std::floor(x);
-    const double y0 = std::floor(y);
-    const auto i = static_cast<std::int64_t>(x0);
-    const auto j = static_cast<std::int64_t>(y0);
-    const auto smooth = [](double t) { return t * t * (3 - 2 * t); };
-    const double u = smooth(x - x0);
-    const double v = smooth(y - y0);
-    const double south = lattice_value(i, j, seed) * (1 - u) + lattice_value(i + 1, j, seed) * u;
-    const double north = lattice_value(i, j + 1, seed) * (1 - u) + lattice_value(i + 1, j + 1, seed) * u;
-    return south * (1 - v) + north * v;
+    double value = 0;
+    add_noise({&x, 1}, y, 1, seed, 1, {&value, 1});
+    return value;
 }
 
-double rim_distance(const Shape& shape, double x, double y) {
-    if (shape.kind == ShapeKind::box) {
-        const double dx = std::max(shape.from[0] - x, x - shape.to[0]);
-        const double dy = std::max(shape.from[1] - y, y - shape.to[1]);
-        return dx > 0 || dy > 0 ? length(std::max(dx, 0.0), std::max(dy, 0.0)) : std::max(dx, dy);
+std::vector<std::size_t> segments_near(const Shape& shape, const Point& middle, double reach) {
+    std::vector<std::size_t> near;
+    if (shape.kind != ShapeKind::ridge) return near;
+    // Both distances change by no more than the reach; and what rounding adds, far more than it does.
+    double margin = 2 * reach + 1e-9 * (std::fabs(middle[0]) + std::fabs(middle[1]));
+    for (const Point& point : shape.points) margin += 1e-9 * (std::fabs(point[0]) + std::fabs(point[1]));
+    const auto distance = [](const Point& offset) { return length(offset[0], offset[1]); };
+    const double nearest = distance(offset_from_middle(shape, middle[0], middle[1], all_segments(shape)));
+    for (const std::size_t n : all_segments(shape)) {
+        const Point offset = offset_from_segment(middle[0], middle[1], shape.points[n - 1], shape.points[n]);
+        if (distance(offset) <= nearest + margin) near.push_back(n);
     }
-    const Point offset = offset_from_middle(shape, x, y);
-    return length(offset[0], offset[1]) - (shape.kind == ShapeKind::ridge ? shape.width / 2 : shape.radius);
+    return near;
 }
 
-Point rim_normal(const Shape& shape, double x, double y) {
-    const Point offset = offset_from_middle(shape, x, y);
+double rim_distance(const Shape& shape, double x, double y) { return distance_from_rim(shape, x, y, all_segments(shape)); }
+
+double rim_distance(const Shape& shape, double x, double y, std::span<const std::size_t> segments) {
+    return distance_from_rim(shape, x, y, segments);
+}
+
+Point rim_normal(const Shape& shape, double x, double y, std::span<const std::size_t> segments) {
+    const Point offset = offset_from_middle(shape, x, y, segments);
     const double size = length(offset[0], offset[1]);
     return size > 0 ? Point{offset[0] / size, offset[1] / size} : Point{0, 0};
 }
-
-bool has_rim(const Shape& shape) { return shape.kind != ShapeKind::plane && shape.kind != ShapeKind::noise; }
 
 std::array<double, 4> rim_bounds(const Shape& shape) {
     if (shape.kind == ShapeKind::box) return {shape.from[0], shape.from[1], shape.to[0], shape.to[1]};
@@ -88,27 +158,19 @@ std::array<double, 4> rim_bounds(const Shape& shape) {
     return {low[0] - reach, low[1] - reach, high[0] + reach, high[1] + reach};
 }
 
-bool has_sloping_sides(const Shape& shape) { return has_rim(shape) && std::isfinite(shape.side_slope); }
-
-double relative_height(const Shape& shape, double x, double y) {
+double relative_height(const Shape& shape, double x, double y, std::span<const std::size_t> segments) {
     if (shape.kind == ShapeKind::plane) return shape.slope[0] * x + shape.slope[1] * y;
-    if (shape.kind == ShapeKind::noise) {
-        // Each octave has half the wavelength and half the amplitude of the one before; together they stay within +-amplitude.
-        double sum = 0;
-        double total = 0;
-        double part = 1;
-        double scale = 1 / shape.wavelength;
-        for (int octave = 0; octave < shape.octaves; ++octave) {
-            sum += part * value_noise(x * scale, y * scale, shape.seed + static_cast<std::uint32_t>(octave));
-            total += part;
-            part /= 2;
-            scale *= 2;
-        }
-        return shape.amplitude * sum / total;
-    }
-    const double distance = rim_distance(shape, x, y);
-    if (distance <= 0) return 0;
-    return std::isfinite(shape.side_slope) ? -shape.side_slope * distance : -std::numeric_limits<double>::infinity();
+    if (shape.kind != ShapeKind::noise) return beyond_rim(shape, rim_distance(shape, x, y, segments));
+    double height = 0;
+    noise_heights(shape, {&x, 1}, y, {&height, 1});
+    return height;
+}
+
+void relative_heights(const Shape& shape, std::span<const double> x, double y, std::span<double> heights) {
+    if (x.empty()) return;
+    if (shape.kind == ShapeKind::noise) return noise_heights(shape, x, y, heights);
+    const auto segments = segments_near(shape, {(x.front() + x.back()) / 2, y}, (x.back() - x.front()) / 2);
+    for (std::size_t k = 0; k < x.size(); ++k) heights[k] = relative_height(shape, x[k], y, segments);
 }
 
 } // namespace wadi

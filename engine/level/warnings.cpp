@@ -4,6 +4,7 @@
 #include "engine/level/level.hpp"
 #include "engine/settings/messages.hpp"
 #include "engine/settings/setting_table.hpp"
+#include "engine/threads/bands.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -117,16 +118,18 @@ class Columns {
     const InitialFields& fields_;
 };
 
-/// The face between the cell (i, j) and its neighbour to the east or north.
-void survey_face(const Settings& settings, const Columns& columns, int i, int j, bool north, Survey& survey) {
-    const Column a = columns.at(i, j);
-    const Column b = columns.at(i + (north ? 0 : 1), j + (north ? 1 : 0));
+/// The face between the cell (i, j), whose column is `a`, and its neighbour to the east or north, `b`.
+void survey_face(const Settings& settings, const Columns& columns, const Column& a, const Column& b, int i, int j, bool north,
+                 Survey& survey) {
     const double eps = settings.method.dry_threshold;
-    for (const auto& [wet, other] : {std::pair{a, b}, std::pair{b, a}}) {
+    if (std::max(a.water, b.water) <= 0) return; // and no sand is wet
+    const auto find_front = [&](const Column& wet, const Column& other) {
         const double pure = wet.water - wet.sand;
         if (pure > eps && other.water <= eps)
             survey.dry_front = std::max(survey.dry_front, std::min(pure, wet.surface() - other.ground()));
-    }
+    };
+    find_front(a, b);
+    find_front(b, a);
     const Column& high = a.ground() >= b.ground() ? a : b;
     const Column& low = a.ground() >= b.ground() ? b : a;
     if (high.water <= WET_SHARE * high.sand || high.sand <= eps) return;
@@ -154,19 +157,56 @@ void survey_face(const Settings& settings, const Columns& columns, int i, int j,
     }
 }
 
-Survey survey_fields(const Settings& settings, const InitialFields& fields) {
-    const Columns columns(settings, fields);
+/// The rows from `begin` on, with the faces to the row behind them.
+Survey survey_rows(const Settings& settings, const Columns& columns, int begin, int end) {
     Survey survey;
-    for (int j = 0; j < settings.grid.ny; ++j)
-        for (int i = 0; i < settings.grid.nx; ++i) {
-            const Column here = columns.at(i, j);
+    const int nx = settings.grid.nx;
+    for (int j = begin; j < end; ++j) {
+        Column east = columns.at(0, j);
+        for (int i = 0; i < nx; ++i) {
+            const Column here = east;
             survey.highest_column = std::max(survey.highest_column, here.ground() + here.water);
             survey.deepest_water = std::max(survey.deepest_water, here.water);
             if (here.water - here.sand <= settings.method.dry_threshold) ++survey.dry_cells;
             survey.deepest_sand = std::max(survey.deepest_sand, here.sand);
-            if (i + 1 < settings.grid.nx) survey_face(settings, columns, i, j, false, survey);
-            if (j + 1 < settings.grid.ny) survey_face(settings, columns, i, j, true, survey);
+            if (i + 1 < nx) {
+                east = columns.at(i + 1, j);
+                survey_face(settings, columns, here, east, i, j, false, survey);
+            }
+            if (j + 1 < settings.grid.ny) survey_face(settings, columns, here, columns.at(i, j + 1), i, j, true, survey);
         }
+    }
+    return survey;
+}
+
+/// Adds what later rows hold; of equals the earlier one stays.
+void join(Survey& all, const Survey& later) {
+    all.highest_column = std::max(all.highest_column, later.highest_column);
+    all.deepest_water = std::max(all.deepest_water, later.deepest_water);
+    all.deepest_sand = std::max(all.deepest_sand, later.deepest_sand);
+    all.dry_cells += later.dry_cells;
+    all.dry_front = std::max(all.dry_front, later.dry_front);
+    if (later.wet_wall > all.wet_wall) {
+        all.wet_wall = later.wet_wall;
+        all.wet_wall_ratio = later.wet_wall_ratio;
+    }
+    if (later.steepest_wet > all.steepest_wet) {
+        all.steepest_wet = later.steepest_wet;
+        all.steepest_limit = later.steepest_limit;
+    }
+    all.steep_faces += later.steep_faces;
+}
+
+Survey survey_fields(const Settings& settings, const InitialFields& fields) {
+    const Columns columns(settings, fields);
+    const auto rows = static_cast<std::size_t>(settings.grid.ny);
+    const std::size_t band = row_band(static_cast<std::size_t>(settings.grid.nx));
+    std::vector<Survey> parts(bands_of(rows, band));
+    in_bands(rows, band, [&](std::size_t n, std::size_t begin, std::size_t end) {
+        parts[n] = survey_rows(settings, columns, static_cast<int>(begin), static_cast<int>(end));
+    });
+    Survey survey;
+    for (const Survey& part : parts) join(survey, part);
     return survey;
 }
 

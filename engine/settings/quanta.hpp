@@ -14,11 +14,18 @@ inline constexpr std::int64_t MOST_QUANTA = std::int64_t{1} << 60;
 /// that a host gives go to the `even` one. Either rule for both would change the bits of worlds made the other way.
 enum class Halves { even, away };
 
+/// std::round(), without the call that it is on processors of the base instruction set.
+inline double round_away(double x) {
+    if (!(std::fabs(x) < 4503599627370496.0)) return x; // 2^52: whole already, or not a number
+    const double whole = static_cast<double>(static_cast<std::int64_t>(x)), rest = x - whole;
+    return std::copysign(whole + static_cast<double>((rest >= 0.5) - (rest <= -0.5)), x);
+}
+
 /// The nearest whole quantum [m] to a height [m]; the height itself where `quantum` is 0.
 inline double nearest_quantum(double height, double quantum, Halves halves) {
     if (quantum <= 0) return height;
     const double count = height / quantum;
-    return (halves == Halves::even ? std::nearbyint(count) : std::round(count)) * quantum;
+    return (halves == Halves::even ? std::nearbyint(count) : round_away(count)) * quantum;
 }
 
 /// Height [m] in quanta [m], to the nearest; +-MOST_QUANTA beyond them, 0 for NaN.

@@ -4,6 +4,7 @@
 #include "engine/settings/method_presets.hpp"
 #include "engine/settings/scripted_edits.hpp"
 #include "engine/settings/setting_table.hpp"
+#include "engine/threads/bands.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -164,12 +165,15 @@ Status check_field(const char* name, const std::vector<float>& field, const Grid
     if (!field.empty() && field.size() != cells)
         return refuse(std::string(name) + ": " + std::to_string(field.size()) + " values for a grid of " +
                       std::to_string(grid.nx) + " x " + std::to_string(grid.ny));
-    for (std::size_t n = 0; n < field.size(); ++n) {
-        const double value = static_cast<double>(field[n]);
-        if (value >= least && value <= most) continue;
+    const std::size_t wrong = first_cell(field.size(), [&](std::size_t cell) {
+        const double value = static_cast<double>(field[cell]);
+        return !(value >= least && value <= most);
+    });
+    if (wrong < field.size()) {
+        const double value = static_cast<double>(field[wrong]);
         const auto width = static_cast<std::size_t>(grid.nx);
         return refuse(outside_text(name, value, least, most) + (std::fabs(value) > most ? limit : "") + " in cell (" +
-                      std::to_string(n % width) + ", " + std::to_string(n / width) + ")");
+                      std::to_string(wrong % width) + ", " + std::to_string(wrong / width) + ")");
     }
     return ok_status();
 }
@@ -252,15 +256,18 @@ Status validate(const InitialFields& fields, const Settings& settings) {
     if (Status status = check_field("roughness", settings.roughness, grid, 0, MANNING_MOST, ""); !status) return status;
 
     const std::size_t cells = static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny);
-    for (std::size_t n = 0; n < cells; ++n) {
-        double column = 0;
+    const auto column = [&](std::size_t cell) {
+        double height = 0;
         for (const std::vector<float>* part : {&fields.terrain, &fields.sand, &fields.water})
-            if (!part->empty()) column += static_cast<double>((*part)[n]);
-        if (column <= most) continue;
+            if (!part->empty()) height += static_cast<double>((*part)[cell]);
+        return height;
+    };
+    const std::size_t highest = first_cell(cells, [&](std::size_t cell) { return !(column(cell) <= most); });
+    if (highest < cells) {
         const auto width = static_cast<std::size_t>(grid.nx);
-        return refuse("the column of terrain, sand and water in cell (" + std::to_string(n % width) + ", " +
-                      std::to_string(n / width) + ") is " + number_text(column) + " m high, above method.largest_height, " +
-                      number_text(most) + " m");
+        return refuse("the column of terrain, sand and water in cell (" + std::to_string(highest % width) + ", " +
+                      std::to_string(highest / width) + ") is " + number_text(column(highest)) +
+                      " m high, above method.largest_height, " + number_text(most) + " m");
     }
     return ok_status();
 }

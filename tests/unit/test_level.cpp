@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <doctest/doctest.h>
+#include <random>
 
 using namespace wadi;
 using namespace level_text;
@@ -108,6 +109,53 @@ TEST_CASE("level: noise is bounded, seeded and repeatable") {
     CHECK(value_noise(-3.25, 7.5, 42) == doctest::Approx(-0.2082546954));
     // Continuous across lattice lines.
     CHECK(value_noise(2 - 1e-9, 0.3, 5) == doctest::Approx(value_noise(2 + 1e-9, 0.3, 5)).epsilon(1e-6));
+}
+
+TEST_CASE("level: a ridge's segments near a place give the bits of all its segments") {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> place(-5, 25);
+    std::size_t near_ones = 0, all = 0;
+    for (int n = 0; n < 300; ++n) {
+        Shape ridge;
+        ridge.kind = ShapeKind::ridge;
+        ridge.width = 0.5;
+        ridge.side_slope = 1;
+        for (int k = 0; k < 1 + n % 12; ++k) ridge.points.push_back({std::round(place(random)), std::round(place(random))});
+        const double reach = n % 3 == 0 ? 4 : 0.3;
+        const Point middle = {place(random), place(random)};
+        const auto segments = segments_near(ridge, middle, reach);
+        near_ones += segments.size();
+        all += ridge.points.size() - 1;
+        std::vector<double> x, heights(50);
+        for (int k = 0; k < 50; ++k) {
+            const double along = reach * (k / 24.5 - 1), across = std::sqrt(std::max(reach * reach - along * along, 0.0));
+            x.push_back(middle[0] + along);
+            for (const double y : {middle[1], middle[1] - across, middle[1] + across})
+                REQUIRE(rim_distance(ridge, x.back(), y, segments) == rim_distance(ridge, x.back(), y));
+        }
+        relative_heights(ridge, x, middle[1], heights);
+        for (std::size_t k = 0; k < x.size(); ++k) REQUIRE(heights[k] == std::min(-rim_distance(ridge, x[k], middle[1]), 0.0));
+    }
+    CHECK(near_ones < all / 2);
+}
+
+TEST_CASE("level: a row of noise has the bits of its places") {
+    Shape noise;
+    noise.kind = ShapeKind::noise;
+    noise.amplitude = 2;
+    noise.wavelength = 0.7;
+    noise.octaves = 3;
+    noise.seed = 9;
+    std::vector<double> x, row(200);
+    for (int k = 0; k < 200; ++k) x.push_back(-1 + 0.013 * k);
+    relative_heights(noise, x, 3.3, row);
+    for (std::size_t k = 0; k < x.size(); ++k) {
+        const double by_octave = value_noise(x[k] * (1 / 0.7), 3.3 * (1 / 0.7), 9) +
+                                 0.5 * value_noise(x[k] * (1 / 0.7 * 2), 3.3 * (1 / 0.7 * 2), 10) +
+                                 0.25 * value_noise(x[k] * (1 / 0.7 * 4), 3.3 * (1 / 0.7 * 4), 11);
+        REQUIRE(row[k] == 2 * by_octave / 1.75);
+        REQUIRE(row[k] == relative_height(noise, x[k], 3.3, {}));
+    }
 }
 
 TEST_CASE("level: layers combine in order and sand never goes below zero") {
