@@ -2,9 +2,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#define STB_IMAGE_WRITE_IMPLEMENTATION
-#define STBI_WRITE_NO_STDIO
-#include <stb/stb_image_write.h>
 
 namespace recorder {
 namespace {
@@ -98,16 +95,6 @@ Image Image::reduced(int factor) const {
         }
     }
     return result;
-}
-
-std::string encode_png(const Image& image) {
-    std::string bytes;
-    const auto append = [](void* context, void* data, int size) {
-        static_cast<std::string*>(context)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
-    };
-    stbi_write_force_png_filter = 2; // "up" in every row: trying all five takes longer than compressing, and gains little
-    if (stbi_write_png_to_func(append, &bytes, image.width(), image.height(), 3, image.data(), image.width() * 3) == 0) return {};
-    return bytes;
 }
 
 } // namespace recorder

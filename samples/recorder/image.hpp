@@ -2,7 +2,6 @@
 #pragma once
 #include <cstddef>
 #include <cstdint>
-#include <string>
 #include <vector>
 
 namespace recorder {
@@ -46,8 +45,5 @@ class Image {
     int width_ = 0, height_ = 0;
     std::vector<std::uint8_t> pixels_;
 };
-
-/// The image as the bytes of a PNG file; empty when memory runs out.
-std::string encode_png(const Image& image);
 
 } // namespace recorder

@@ -2,6 +2,7 @@
 #include "files.hpp"
 #include "frame.hpp"
 #include "platform.hpp"
+#include "png.hpp"
 #include "points.hpp"
 #include "progress.hpp"
 #include "report.hpp"
@@ -158,7 +159,7 @@ Failure Recording::sample_frame(bool last) {
     const Image frame = compose_frame(map, *look_, caption_, time_, metres_per_pixel_);
     char name[32];
     std::snprintf(name, sizeof name, "frame_%05d.png", report_.frames);
-    if (std::string error = write_file(out_ / name, encode_png(frame)); !error.empty()) return {EXIT_BAD_INPUT, error};
+    if (std::string error = write_file(out_ / name, encode_png(frame.data(), frame.width(), frame.height())); !error.empty()) return {EXIT_BAD_INPUT, error};
     ++report_.frames;
     sheet_->add(map, time_, last);
     return {};
@@ -208,7 +209,7 @@ Failure Recording::finish() {
     }
     if (sheet_ && !sheet_->empty()) {
         const Image sheet = sheet_->compose(*look_, caption_, metres_per_pixel_);
-        const std::string error = write_file(out_ / "contact_sheet.png", encode_png(sheet));
+        const std::string error = write_file(out_ / "contact_sheet.png", encode_png(sheet.data(), sheet.width(), sheet.height()));
         if (!error.empty()) return {EXIT_BAD_INPUT, error};
     }
     if (options_.mp4 && report_.frames > 0) {

@@ -13,6 +13,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import zlib
 from pathlib import Path
 
 OK, BAD_INPUT = 0, 2
@@ -59,6 +60,29 @@ def png_size(path):
     assert data[:8] == b"\x89PNG\r\n\x1a\n", path
     assert data[-8:-4] == b"IEND", f"{path} is cut off"
     return struct.unpack(">II", data[16:24])
+
+
+def png_pixels(path):
+    """Rows of (r, g, b), by the PNG specification and zlib; every checksum must fit."""
+    data = path.read_bytes()
+    at, packed = 8, b""
+    while at < len(data):
+        (length,) = struct.unpack(">I", data[at : at + 4])
+        name, body = data[at + 4 : at + 8], data[at + 8 : at + 8 + length]
+        assert zlib.crc32(name + body) == struct.unpack(">I", data[at + 8 + length : at + 12 + length])[0], f"{path}: {name}"
+        packed += body if name == b"IDAT" else b""
+        at += 12 + length
+    width, height = png_size(path)
+    assert data[24:29] == b"\x08\x02\x00\x00\x00", f"{path}: not 8-bit RGB"
+    lines = zlib.decompress(packed)
+    assert len(lines) == height * (1 + 3 * width), path
+    rows, above = [], bytes(3 * width)
+    for y in range(height):
+        line = lines[y * (1 + 3 * width) : (y + 1) * (1 + 3 * width)]
+        assert line[0] in (0, 2), f"{path}: filter {line[0]} in row {y}"
+        above = bytes((a + b) & 255 for a, b in zip(line[1:], above)) if line[0] == 2 else line[1:]
+        rows.append([tuple(above[k : k + 3]) for k in range(0, 3 * width, 3)])
+    return rows
 
 
 def read_npy(path):
@@ -129,6 +153,10 @@ def test_frames(recorder):
         width, height = png_size(folder / name)
         assert width >= 800 and height > 240, (name, width, height)
     assert png_size(folder / "contact_sheet.png")[0] > 0
+    frame, later = png_pixels(folder / names[1]), png_pixels(folder / names[3])
+    assert frame[0][0] == frame[-1][-1] == (24, 27, 31), "the caption and the legend have another background"
+    changed = [y for y, (a, b) in enumerate(zip(frame, later)) if a != b]
+    assert len(frame) == len(later) and changed and changed[-1] < len(frame) - 60, "only caption and map change, not the legend"
     assert "hash" in done.stdout and "ledger" in done.stdout
     assert "100 %" in done.stderr
     recorder.record("--seconds", "0", "--out", "frames")

@@ -26,7 +26,7 @@ RULES = {
     "backends": ["backends/", "engine/compute/"],
     "plugin": ["plugin/", "engine/", "wadi/", "backends/registry.hpp"],
     "samples/recorder": ["wadi/", "samples/recorder/", ""],
-    "samples/viewer": ["wadi/", "../recorder/levels.hpp", "shaders/", "viewer_shaders/"],
+    "samples/viewer": ["wadi/", "../recorder/files.hpp", "../recorder/levels.hpp", "../recorder/png.hpp", "shaders/", "viewer_shaders/"],
     "samples": ["wadi/"],
 }
 # A folder of backends/ may include itself, what all backends share, the interface, how the stages compiled for the host's processor
@@ -39,7 +39,8 @@ BACKENDS = {
 # Libraries only some folders may use.
 LIBRARIES = {
     "nlohmann/": ["engine/level", "samples", "tests"],
-    "stb/": ["engine/image", "samples", "tests"],
+    "stb/": ["engine/image", "tests"],
+    "libdeflate.h": ["samples/recorder"],
     "vulkan/": ["backends/vulkan", "plugin/include", "samples", "tests"],
     "volk.h": ["backends/vulkan"],
     "cuda": ["backends/cuda"],
