@@ -1,5 +1,6 @@
 // What every file of the C ABI uses: handles and sizes checked, Status turned into codes, exceptions caught.
 #pragma once
+#include "engine/threads/bands.hpp"
 #include "plugin/include/wadi/wadi.h"
 #include "plugin/world_table.hpp"
 #include <algorithm>
@@ -44,6 +45,7 @@ template <class Call> wadi_result with_world(const char* function, wadi_world_id
         HostedWorld* hosted = entered.hosted();
         if (hosted == nullptr) return refused(function, entered.entry());
         if (hosted->spoiled) return report_out_of_memory(function);
+        const ThreadLimit limit(hosted->threads);
         try {
             return call(*hosted);
         } catch (const std::bad_alloc&) {

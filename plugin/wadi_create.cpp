@@ -41,6 +41,8 @@ Result<std::unique_ptr<compute::Device>> open(const wadi_device_options* options
     return backends::open_device(options->backend != nullptr ? options->backend : "auto", options->device, o);
 }
 
+int threads_of(const wadi_device_options* options) { return options != nullptr ? options->threads : 0; }
+
 LevelOverrides to_overrides(const wadi_level_overrides* o) {
     LevelOverrides overrides;
     if (o == nullptr) return overrides;
@@ -94,7 +96,7 @@ wadi_result host(Result<Level> level, const wadi_device_options* options, wadi_w
         log(2, level->name + ": " + std::to_string(grid.nx) + " x " + std::to_string(grid.ny) + " cells on " +
                    (*world)->device().capabilities().name + ", effects " + effect_names((*world)->state().effects().mask));
     }
-    *id = plugin::worlds().add({std::move(*world), level->name, level->duration, level->warnings, {}});
+    *id = plugin::worlds().add({std::move(*world), level->name, level->duration, level->warnings, threads_of(options), {}});
     return report(ok_status());
 }
 
@@ -168,6 +170,7 @@ wadi_result wadi_create_world_from_level(const char* path, const wadi_level_over
             return wrong_struct<wadi_device_options>("wadi_create_world_from_level", "options");
         if (!known_fused_stages(overrides))
             return bad_argument("wadi_create_world_from_level" + std::string(unknown_fused_stages));
+        const ThreadLimit limit(threads_of(options));
         const bool json = std::string(path).ends_with(".json");
         return host(json ? load_level(path, to_overrides(overrides)) : level_from_terrain(path, to_overrides(overrides)), options,
                     world);
@@ -185,6 +188,7 @@ wadi_result wadi_create_world_from_level_text(const char* json, wadi_read_file_c
             return wrong_struct<wadi_device_options>("wadi_create_world_from_level_text", "options");
         if (!known_fused_stages(overrides))
             return bad_argument("wadi_create_world_from_level_text" + std::string(unknown_fused_stages));
+        const ThreadLimit limit(threads_of(options));
         return host(parse_level(json, host_files(read_file, user), to_overrides(overrides)), options, world);
     });
 }
@@ -197,6 +201,7 @@ wadi_result wadi_create_world_from_arrays(const wadi_world_arrays* arrays, const
             return wrong_struct<wadi_device_options>("wadi_create_world_from_arrays", "options");
         if (arrays->settings_json == nullptr || world == nullptr)
             return bad_argument("wadi_create_world_from_arrays: settings_json or world is NULL");
+        const ThreadLimit limit(threads_of(options));
         auto level = parse_level(arrays->settings_json, "", {});
         if (!level) return report(level.status());
         const auto& grid = level->settings.grid;

@@ -2,6 +2,7 @@
 #include "engine/settings/quanta.hpp"
 #include "engine/step/active_count.hpp"
 #include "engine/step/world_params.hpp"
+#include "engine/threads/bands.hpp"
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -20,13 +21,54 @@ std::uint64_t mix(std::uint64_t x) {
 
 bool is_velocity(const FieldRow& field) { return field.place != FieldPlace::cell; }
 
+/// Of a row of field number n.
+std::uint64_t hash_of_row(std::uint64_t n, int j, std::span<const float> row) {
+    const std::uint64_t place = (n << 56) ^ (static_cast<std::uint64_t>(j) << 28);
+    std::uint64_t hash = 0;
+    for (std::size_t i = 0; i < row.size(); ++i) hash += mix(mix(place ^ i) + std::bit_cast<std::uint32_t>(row[i]));
+    return hash;
+}
+
 } // namespace
 
-Result<std::vector<float>> StateReader::read_buffer(compute::Buffer from) {
-    std::vector<float> raw(state_.layout().size());
-    if (auto status = state_.device().read(from, 0, std::as_writable_bytes(std::span(raw))); !status) return status;
-    return raw;
-}
+struct StateReader::Figures {
+    std::uint64_t hash = 0, not_finite = 0, clamped_faces = 0, capped_faces = 0, limited_cells = 0;
+    std::int64_t quanta = 0;
+    double largest = 0, smallest = 0; // finite values; of velocities the largest absolute one
+
+    void add(const Figures& other) {
+        hash += other.hash;
+        not_finite += other.not_finite;
+        clamped_faces += other.clamped_faces;
+        capped_faces += other.capped_faces;
+        limited_cells += other.limited_cells;
+        quanta = add_quanta(quanta, other.quanta);
+        largest = std::max(largest, other.largest);
+        smallest = std::min(smallest, other.smallest);
+    }
+    void add_heights(std::span<const float> row, double quantum) {
+        for (const float value : row) {
+            const double height = static_cast<double>(value);
+            if (!std::isfinite(value)) continue;
+            quanta = add_quanta(quanta, to_quanta(height, quantum));
+            largest = std::max(largest, height);
+            smallest = std::min(smallest, height);
+        }
+    }
+    void add_speeds(std::span<const float> row) {
+        for (const float value : row)
+            if (std::isfinite(value)) largest = std::max(largest, std::abs(static_cast<double>(value)));
+    }
+    void add_marks(std::span<const float> row) {
+        for (const float& value : row) { // not a float: its bits are three counts
+            std::uint32_t mark;
+            std::memcpy(&mark, &value, sizeof mark);
+            clamped_faces += mark & 255u;
+            capped_faces += mark >> 8 & 255u;
+            limited_cells += mark >> 16;
+        }
+    }
+};
 
 Result<std::vector<float>> StateReader::read_raw(const std::string& field) {
     if (auto status = stepper_.finish_step(); !status) return status;
@@ -41,14 +83,40 @@ StateReader::Rows StateReader::rows_of(compute::Buffer from) {
     };
 }
 
+StateReader::Rows StateReader::rows_of(const std::string& field) {
+    return [this, field](std::size_t first, std::span<float> rows) { return state_.fields().read(field, first, rows); };
+}
+
 Status StateReader::read_cells(const Rows& rows_from, const Region& region, std::span<float> values) {
     const auto& layout = state_.layout();
-    const std::size_t first = layout.index(region.i0, region.j0), pitch = static_cast<std::size_t>(layout.pitch()),
-                      width = static_cast<std::size_t>(region.nx);
-    std::vector<float> rows(pitch * static_cast<std::size_t>(region.ny - 1) + width);
-    if (auto status = rows_from(first, rows); !status) return status;
-    for (std::size_t j = 0; j < static_cast<std::size_t>(region.ny); ++j)
-        std::memcpy(values.data() + j * width, rows.data() + j * pitch, width * sizeof(float));
+    const std::size_t pitch = static_cast<std::size_t>(layout.pitch()), width = static_cast<std::size_t>(region.nx),
+                      height = static_cast<std::size_t>(region.ny), most = std::min(rows_at_once(layout), height);
+    std::vector<float> rows(pitch * (most - 1) + width);
+    for (std::size_t first = 0; first < height; first += most) {
+        const std::size_t count = std::min(most, height - first);
+        const auto part = std::span(rows).first(pitch * (count - 1) + width);
+        if (auto status = rows_from(layout.index(region.i0, region.j0) + first * pitch, part); !status) return status;
+        for (std::size_t j = 0; j < count; ++j)
+            std::memcpy(values.data() + (first + j) * width, part.data() + j * pitch, width * sizeof(float));
+    }
+    return ok_status();
+}
+
+Status StateReader::look_at(const Rows& rows_from, int nx, int ny, const Look& look, Figures& figures) {
+    const auto& layout = state_.layout();
+    const std::size_t pitch = static_cast<std::size_t>(layout.pitch()), width = static_cast<std::size_t>(nx),
+                      height = static_cast<std::size_t>(ny), most = std::min(rows_at_once(layout), height);
+    std::vector<float> rows(pitch * (most - 1) + width);
+    for (std::size_t first = 0; first < height; first += most) {
+        const std::size_t count = std::min(most, height - first), band = row_band(width);
+        const auto part = std::span(rows).first(pitch * (count - 1) + width);
+        if (auto status = rows_from(layout.index(0, 0) + first * pitch, part); !status) return status;
+        std::vector<Figures> found(bands_of(count, band));
+        in_bands(count, band, [&](std::size_t n, std::size_t begin, std::size_t end) {
+            for (std::size_t j = begin; j < end; ++j) look(static_cast<int>(first + j), part.subspan(j * pitch, width), found[n]);
+        });
+        for (const Figures& of_band : found) figures.add(of_band);
+    }
     return ok_status();
 }
 
@@ -99,32 +167,45 @@ Status StateReader::read(const std::string& name, const Region& region, std::spa
             return status;
         return read_cells(rows_of(output_[name.back() == 'x' ? 0 : 1]), region, values);
     }
-    return read_cells([&](std::size_t first, std::span<float> rows) { return state_.fields().read(name, first, rows); }, region,
-                      values);
+    return read_cells(rows_of(name), region, values);
 }
 
 Status StateReader::read(const std::string& name, std::span<float> values) {
     return read(name, {0, 0, state_.layout().nx, state_.layout().ny}, values);
 }
 
-Result<std::uint64_t> StateReader::hash_fields(const Look& look) {
+Result<std::uint64_t> StateReader::hash_fields(WorldStats* stats) {
     std::uint64_t hash = 0, number = 0;
     for (const FieldRow& field : field_table()) {
         if (!field.hashed) continue;
         const std::uint64_t n = number++;
         const std::string name(field.name);
         if (state_.plan().find(name) == nullptr) continue;
-        auto raw = read_raw(name);
-        if (!raw) return raw.status();
+        const bool height = name.ends_with("_height"), velocity = is_velocity(field);
+        const auto look = [&](int j, std::span<const float> row, Figures& figures) {
+            figures.hash += hash_of_row(n, j, row);
+            if (stats == nullptr) return;
+            figures.not_finite += static_cast<std::uint64_t>(
+                std::count_if(row.begin(), row.end(), [](float value) { return !std::isfinite(value); }));
+            if (height) figures.add_heights(row, stats->quantum);
+            if (velocity) figures.add_speeds(row);
+        };
         // Velocities have one more face than cells along their own axis.
         const int nx = state_.layout().nx + (field.place == FieldPlace::west_face ? 1 : 0),
                   ny = state_.layout().ny + (field.place == FieldPlace::south_face ? 1 : 0);
-        for (int j = 0; j < ny; ++j) {
-            const auto row = std::span<const float>(*raw).subspan(state_.layout().index(0, j), static_cast<std::size_t>(nx));
-            for (std::size_t i = 0; i < row.size(); ++i) {
-                hash += mix(mix((n << 56) ^ (static_cast<std::uint64_t>(j) << 28) ^ i) + std::bit_cast<std::uint32_t>(row[i]));
-            }
-            if (look) look(field, row);
+        Figures figures;
+        if (auto status = look_at(rows_of(name), nx, ny, look, figures); !status) return status;
+        hash += figures.hash;
+        if (stats == nullptr) continue;
+        const bool sand = name.starts_with("sand_");
+        stats->not_finite += figures.not_finite;
+        if (height) {
+            (sand ? stats->sand_quanta : stats->water_quanta) = figures.quanta;
+            (sand ? stats->largest_sand : stats->largest_water) = figures.largest;
+            stats->smallest_height = std::min(stats->smallest_height, figures.smallest);
+        } else if (velocity) {
+            auto& largest = sand ? stats->largest_sand_speed : stats->largest_water_speed;
+            largest = std::max(largest, figures.largest);
         }
     }
     return hash;
@@ -132,7 +213,7 @@ Result<std::uint64_t> StateReader::hash_fields(const Look& look) {
 
 Result<std::uint64_t> StateReader::hash() {
     auto status = stepper_.finish_step();
-    return status ? hash_fields({}) : Result<std::uint64_t>(status);
+    return status ? hash_fields(nullptr) : Result<std::uint64_t>(status);
 }
 
 Result<WorldStats> StateReader::stats() {
@@ -145,25 +226,7 @@ Result<WorldStats> StateReader::stats() {
     auto ledger = read_ledger(state_);
     if (!ledger) return ledger.status();
     s.ledger = *ledger;
-    auto hash = hash_fields([&](const FieldRow& field, std::span<const float> row) {
-        const bool sand = field.name.starts_with("sand_"), height = field.name.ends_with("_height"),
-                   velocity = is_velocity(field);
-        for (const float value : row) {
-            const double x = static_cast<double>(value);
-            if (!std::isfinite(value)) {
-                ++s.not_finite;
-            } else if (height) {
-                auto& sum = sand ? s.sand_quanta : s.water_quanta;
-                sum = add_quanta(sum, to_quanta(x, quantum));
-                auto& largest = sand ? s.largest_sand : s.largest_water;
-                largest = std::max(largest, x);
-                s.smallest_height = std::min(s.smallest_height, x);
-            } else if (velocity) {
-                auto& largest = sand ? s.largest_sand_speed : s.largest_water_speed;
-                largest = std::max(largest, std::abs(x));
-            }
-        }
-    });
+    auto hash = hash_fields(&s);
     if (!hash) return hash.status();
     s.hash = *hash;
     if (state_.plan().active_tiles) {
@@ -174,17 +237,13 @@ Result<WorldStats> StateReader::stats() {
         s.active_sand_tiles = counts->back();
     }
     if (auto status = publish("mark_limits", {}, {"limit_marks"}); !status) return status;
-    auto marks = read_buffer(output_[0]);
-    if (!marks) return marks.status();
-    for (int j = 0; j <= state_.layout().ny; ++j) {
-        for (int i = 0; i <= state_.layout().nx; ++i) {
-            std::uint32_t mark;
-            std::memcpy(&mark, &(*marks)[state_.layout().index(i, j)], 4);
-            s.clamped_faces += mark & 255u;
-            s.capped_faces += mark >> 8 & 255u;
-            s.limited_cells += mark >> 16;
-        }
-    }
+    Figures marks;
+    const auto look = [](int, std::span<const float> row, Figures& figures) { figures.add_marks(row); };
+    if (auto status = look_at(rows_of(output_[0]), state_.layout().nx + 1, state_.layout().ny + 1, look, marks); !status)
+        return status;
+    s.clamped_faces = marks.clamped_faces;
+    s.capped_faces = marks.capped_faces;
+    s.limited_cells = marks.limited_cells;
     return s;
 }
 

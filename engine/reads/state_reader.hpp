@@ -42,11 +42,15 @@ class StateReader {
     /// Reads numbers from element `first` on.
     using Rows = std::function<Status(std::size_t first, std::span<float> rows)>;
     Rows rows_of(compute::Buffer from);
+    Rows rows_of(const std::string& field);
     Status read_cells(const Rows& rows_from, const Region& region, std::span<float> values);
-    Result<std::vector<float>> read_buffer(compute::Buffer from);
-    /// Reads every hashed field and hashes it; `look` sees each of its rows as well, ghosts excluded.
-    using Look = std::function<void(const FieldRow& field, std::span<const float> row)>;
-    Result<std::uint64_t> hash_fields(const Look& look);
+    /// Figures of values, summed up in any order.
+    struct Figures;
+    /// Adds what look(j, row, figures) finds in the first `nx` values of the rows 0 ... ny - 1, on several threads.
+    using Look = std::function<void(int j, std::span<const float> row, Figures& figures)>;
+    Status look_at(const Rows& rows_from, int nx, int ny, const Look& look, Figures& figures);
+    /// Reads every hashed field; returns the hash, and adds the other figures to `stats` if there is one.
+    Result<std::uint64_t> hash_fields(WorldStats* stats);
 
     WorldState& state_;
     Stepper& stepper_;

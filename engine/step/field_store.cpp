@@ -1,5 +1,6 @@
 #include "engine/step/field_store.hpp"
 #include "engine/step/half.hpp"
+#include "engine/threads/bands.hpp"
 #include <algorithm>
 
 namespace wadi {
@@ -10,17 +11,22 @@ std::string scratch_label(int block) { return "scratch " + std::to_string(block)
 
 } // namespace
 
+void fill_row(const FieldLayout& layout, const std::vector<float>& cells, bool repeat_edges, int j, std::span<float> row) {
+    const int y = std::clamp(j, 0, layout.ny - 1);
+    if (cells.empty() || (y != j && !repeat_edges)) return;
+    const auto from = cells.begin() + static_cast<std::ptrdiff_t>(y) * layout.nx;
+    std::copy_n(from, layout.nx, row.begin() + GHOST);
+    if (!repeat_edges) return;
+    std::fill_n(row.begin(), GHOST, *from);
+    std::fill_n(row.begin() + GHOST + layout.nx, 1 + GHOST, from[layout.nx - 1]);
+}
+
 std::vector<float> with_ghosts(const FieldLayout& layout, const std::vector<float>& cells, bool repeat_edges) {
     std::vector<float> field(layout.size(), 0.0F);
-    if (cells.empty()) return field;
-    for (int j = -GHOST; j < layout.ny + 1 + GHOST; ++j) {
-        for (int i = -GHOST; i < layout.nx + 1 + GHOST; ++i) {
-            const int x = std::clamp(i, 0, layout.nx - 1), y = std::clamp(j, 0, layout.ny - 1);
-            if (repeat_edges || (x == i && y == j))
-                field[layout.index(i, j)] =
-                    cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(layout.nx) + static_cast<std::size_t>(x)];
-        }
-    }
+    const auto pitch = static_cast<std::size_t>(layout.pitch());
+    for (int row = 0; row < layout.rows(); ++row)
+        fill_row(layout, cells, repeat_edges, row - GHOST,
+                 std::span(field).subspan(static_cast<std::size_t>(row) * pitch, pitch));
     return field;
 }
 
@@ -108,6 +114,25 @@ Status FieldStore::write(const std::string& name, std::size_t first, std::span<c
     std::vector<std::uint16_t> halves(values.size());
     std::transform(values.begin(), values.end(), halves.begin(), to_half);
     return device_.write(buffer(name), first * 2, std::as_bytes(std::span(halves)));
+}
+
+Status FieldStore::write_rows(const std::string& name, const std::function<void(int j, std::span<float> row)>& fill) {
+    if (find(name) == nullptr) return ok_status();
+    const auto pitch = static_cast<std::size_t>(layout_.pitch()), rows = static_cast<std::size_t>(layout_.rows());
+    const std::size_t most = rows_at_once(layout_);
+    std::vector<float> part(std::min(rows, most) * pitch);
+    for (std::size_t first = 0; first < rows; first += most) {
+        const std::size_t count = std::min(most, rows - first);
+        in_bands(count, row_band(pitch), [&](std::size_t, std::size_t begin, std::size_t end) {
+            for (std::size_t n = begin; n < end; ++n) {
+                const std::span<float> row(&part[n * pitch], pitch);
+                std::fill(row.begin(), row.end(), 0.0F);
+                fill(static_cast<int>(first + n) - GHOST, row);
+            }
+        });
+        if (auto status = write(name, first * pitch, std::span(part).first(count * pitch)); !status) return status;
+    }
+    return ok_status();
 }
 
 } // namespace wadi

@@ -4,8 +4,11 @@
 #include "engine/settings/settings.hpp"
 #include "engine/step/named_buffers.hpp"
 #include "engine/step/step_plan.hpp"
+#include <algorithm>
 #include <array>
+#include <functional>
 #include <set>
+#include <span>
 #include <vector>
 
 namespace wadi {
@@ -21,6 +24,14 @@ struct KeptField {
 
 /// Numbers of cells, row 0 in the south, in a field's layout: ghosts hold 0 or repeat the edge's. All 0 for none.
 std::vector<float> with_ghosts(const FieldLayout& layout, const std::vector<float>& cells, bool repeat_edges);
+
+/// One row of them, -GHOST ... ny + GHOST, into `row`, a pitch long and all 0.
+void fill_row(const FieldLayout& layout, const std::vector<float>& cells, bool repeat_edges, int j, std::span<float> row);
+
+/// Rows of a field that the host copies to or from a device at a time: 16 MiB, so that a large field needs no memory of its size.
+inline std::size_t rows_at_once(const FieldLayout& layout) {
+    return std::max<std::size_t>((std::size_t{4} << 20) / static_cast<std::size_t>(layout.pitch()), 1);
+}
 
 class FieldStore {
   public:
@@ -41,6 +52,8 @@ class FieldStore {
     /// where there is no such field. Both wait for the device.
     Status read(const std::string& name, std::size_t first, std::span<float> values);
     Status write(const std::string& name, std::size_t first, std::span<const float> values);
+    /// Writes a whole field, some rows at a time: fill(j, row) gets each row -GHOST ... ny + GHOST, all 0, on several threads.
+    Status write_rows(const std::string& name, const std::function<void(int j, std::span<float> row)>& fill);
     /// The fields that are kept, and what a plan would keep.
     std::vector<KeptField> kept() const { return kept(fields_); }
     std::vector<KeptField> kept(const std::vector<PlanField>& fields) const;

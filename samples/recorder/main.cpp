@@ -147,7 +147,7 @@ int main_checked(int argc, char** argv) {
     app.add_option("--backend", options.backend, "auto, or one of --list-backends")->capture_default_str();
     app.add_option("--device", options.device, "device number within the backend (--list-backends); -1 = best")
         ->capture_default_str();
-    app.add_option("--threads", options.threads, "threads of the cpu backend; 0 = all cores")
+    app.add_option("--threads", options.threads, "threads of the cpu backend, and to load, count and draw on; 0 = all cores")
         ->check(CLI::Range(0, 256))
         ->capture_default_str();
     app.add_flag("--validate", options.validate, "switch the Vulkan validation layers on");

@@ -70,7 +70,7 @@ typedef struct wadi_device_options {
     uint32_t struct_size;
     const char* backend;       /* "auto" (a real GPU first, else the CPU), or one that wadi_list_devices names: "cpu", "vulkan" ... */
     int32_t device;            /* index from wadi_list_devices, -1 = the backend's best */
-    int32_t threads;           /* CPU backend: threads, 0 = all cores */
+    int32_t threads;           /* of the CPU backend, and for any to load levels and to count and hash states; 0 = all cores */
     int32_t validate;          /* 1 = Vulkan validation layers; messages go to the log callback */
     wadi_log_callback log;     /* may be NULL */
     void* log_user;
