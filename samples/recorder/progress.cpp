@@ -1,8 +1,30 @@
 #include "progress.hpp"
 #include "platform.hpp"
 #include <cstdio>
+#include <system_error>
 
 namespace recorder {
+
+LoadingNote::LoadingNote(const std::string& level) {
+    const auto wait = [this, level] {
+        std::unique_lock lock(mutex_);
+        if (!ended_.wait_for(lock, std::chrono::seconds(1), [this] { return over_; }))
+            std::fprintf(stderr, "note: %s: loading the level and making its world ...\n", level.c_str());
+    };
+    try {
+        waiting_ = std::thread(wait);
+    } catch (const std::system_error&) {
+    }
+}
+
+LoadingNote::~LoadingNote() {
+    {
+        const std::lock_guard lock(mutex_);
+        over_ = true;
+    }
+    ended_.notify_all();
+    if (waiting_.joinable()) waiting_.join();
+}
 
 Progress::Progress(double seconds, std::uint64_t steps)
     : seconds_(seconds), steps_(steps), terminal_(error_stream_is_terminal()) {}

@@ -1,10 +1,28 @@
 // One progress line on standard error: redrawn on a terminal, a plain line every 10 % elsewhere.
 #pragma once
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
+#include <mutex>
 #include <string>
+#include <thread>
 
 namespace recorder {
+
+/// Says on standard error that a level is still being loaded, if it lives for more than a second.
+class LoadingNote {
+  public:
+    explicit LoadingNote(const std::string& level);
+    ~LoadingNote();
+    LoadingNote(const LoadingNote&) = delete;
+    LoadingNote& operator=(const LoadingNote&) = delete;
+
+  private:
+    std::mutex mutex_;
+    std::condition_variable ended_;
+    bool over_ = false;
+    std::thread waiting_; // none where the system refuses it
+};
 
 class Progress {
   public:

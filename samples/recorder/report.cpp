@@ -86,6 +86,8 @@ std::string format_table(const Report& report) {
            stats.time, report.ms_per_step(), report.passes_per_step());
     append(text, "time      %.2f s stepping (%.3g times real time), %.2f s in all, %d frames\n", report.stepping_seconds,
            report.stepping_seconds > 0 ? stats.time / report.stepping_seconds : 0.0, report.wall_seconds, report.frames);
+    append(text, "beside it %.2f s loading before, %.2f s figures, %.2f s pictures\n", report.loading_seconds,
+           report.figures_seconds, report.picture_seconds);
 
     if (!report.stages.empty()) {
         double sum = 0;
@@ -134,6 +136,9 @@ std::string format_summary(const Report& report) {
     json["simulated_seconds"] = stats.time;
     json["wall_seconds"] = report.wall_seconds;
     json["stepping_seconds"] = report.stepping_seconds;
+    json["loading_seconds"] = report.loading_seconds;
+    json["figures_seconds"] = report.figures_seconds;
+    json["picture_seconds"] = report.picture_seconds;
     json["ms_per_step"] = report.ms_per_step();
     json["frames"] = report.frames;
     json["stages"] = nlohmann::ordered_json::array();

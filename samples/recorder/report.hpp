@@ -22,7 +22,10 @@ struct Report {
     bool interrupted = false;
     std::string fault;             // not empty: the device failed in mid-run
     double wall_seconds = 0;       // everything after creation: steps, pictures, files
+    double loading_seconds = 0;    // the level and its world
     double stepping_seconds = 0;   // steps alone
+    double figures_seconds = 0;    // ledger, extremes and hash at the frames' times
+    double picture_seconds = 0;    // frames: read, drawn and written
     std::uint64_t timed_steps = 0; // steps that stepping_seconds covers
     int frames = 0;
 

@@ -146,12 +146,15 @@ Failure Recording::advance(std::uint64_t target) {
 
 Failure Recording::sample_frame(bool last) {
     wadi_world_stats stats;
+    Clock::time_point start = Clock::now();
     if (Failure failure = world_.read_stats(stats)) return failure;
     report_.sample(stats);
+    report_.figures_seconds += seconds_since(start);
     for (PointTable& table : tables_) {
         if (Failure failure = table.sample(world_, time_)) return failure;
     }
     if (!options_.frames) return {};
+    start = Clock::now();
     MapFields fields;
     if (Failure failure = world_.read_map(scaling_.reduce, fields)) return failure;
     if (!look_) look_ = choose_look(fields, options_.water_scale);
@@ -159,9 +162,11 @@ Failure Recording::sample_frame(bool last) {
     const Image frame = compose_frame(map, *look_, caption_, time_, metres_per_pixel_);
     char name[32];
     std::snprintf(name, sizeof name, "frame_%05d.png", report_.frames);
-    if (std::string error = write_file(out_ / name, encode_png(frame.data(), frame.width(), frame.height())); !error.empty()) return {EXIT_BAD_INPUT, error};
+    if (std::string error = write_file(out_ / name, encode_png(frame.data(), frame.width(), frame.height())); !error.empty())
+        return {EXIT_BAD_INPUT, error};
     ++report_.frames;
     sheet_->add(map, time_, last);
+    report_.picture_seconds += seconds_since(start);
     return {};
 }
 
@@ -226,7 +231,12 @@ int Recording::run() {
     if (options_.mp4) {
         if (Failure failure = check_video_program()) return complain(failure);
     }
-    if (Failure failure = world_.create(options_)) return complain(failure);
+    {
+        const LoadingNote note(options_.level_name);
+        const Clock::time_point start = Clock::now();
+        if (Failure failure = world_.create(options_)) return complain(failure);
+        report_.loading_seconds = seconds_since(start);
+    }
     if (options_.print_plan) {
         std::printf("%s", world_.describe_plan().c_str());
         return EXIT_DONE;

@@ -19,7 +19,8 @@ from pathlib import Path
 OK, BAD_INPUT = 0, 2
 LEVEL = "dam_break"
 SUMMARY_KEYS = {
-    "level", "completed", "steps", "simulated_seconds", "wall_seconds", "ms_per_step", "stages", "ledger", "extremes", "counts",
+    "level", "completed", "steps", "simulated_seconds", "wall_seconds", "loading_seconds", "figures_seconds", "picture_seconds",
+    "ms_per_step", "stages", "ledger", "extremes", "counts",
     "hash", "passes", "bytes_per_cell", "device", "warnings",
 }
 
