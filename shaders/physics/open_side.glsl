@@ -16,13 +16,14 @@ FN float radiated(float next, float depth, float rise, float gravity) {
 
 
 // Outward velocity of a side that holds a level (NUMERICS 2.9) beside water about as deep: u - 2 sqrt(g h) changes only with the level.
-// own: the face's last velocity; gained: what the cell's faces would add to its depth in the step; push: what one cell of water between
-// the side and its level would gain; wave_in: the height of the wave that the level's change sends in.
-FN float absorbed(float own, float depth, float gained, float push, float wave_in, float gravity, float k, float inv_hold) {
+// own: the face's last velocity; lag: the same where fluxes take the upwind cell's depth, 0 where they take the face's; gained: what the
+// cell's faces would add to its depth in the step; push: what one cell of water between the side and its level would gain; wave_in: the
+// height of the wave that the level's change sends in.
+FN float absorbed(float own, float lag, float depth, float gained, float push, float wave_in, float gravity, float k, float inv_hold) {
     float wave = wsqrt(gravity * depth);
     float per_height = divide_or_zero(wave, depth);
     float change = per_height * (gained - 2.0f * wave_in) + push * inv_hold;
-    return own + wdiv(change, 1.0f + k * wmax(wave + own, 0.0f));
+    return own + wdiv(change, 1.0f + k * wmax(wave + lag, 0.0f));
 }
 
 // Outward velocity of the water inside sand at such a side: push is that of the level in a step, free the relative permeability of

@@ -118,18 +118,21 @@ template <class Real> void Solver<Real>::level_face(const Axis& ax, int a, int b
         if (b > 0) low = upwind(v[ax.cross(inner, b)], pure[ax.cell(inner, b - 1)], h);
         if (b + 1 < ax.across()) high = upwind(v[ax.cross(inner, b + 1)], h, pure[ax.cell(inner, b + 1)]);
         velocity = outward * own; // for face_depth
+        const bool second = has(EFFECT_SECOND_ORDER_WATER);
         const auto leaves = [&](int face, Real speed, Real behind, Real ahead) {
             // Of two cells the further one lies beside the other side and counts as flat.
             const bool flat = cells == 2 && face != a && speed > Real(0);
-            if (!has(EFFECT_SECOND_ORDER_WATER) || flat) return upwind(speed, behind, ahead);
+            if (!second || flat) return upwind(speed, behind, ahead);
             return P.k * speed * face_depth(Layer::pure, ax, face, b, outward * speed);
         };
-        const Real along = leaves(far_end ? cells - 1 : 1, next, pure[M], h) - leaves(a, own, h, ghost);
+        Real out = leaves(a, own, h, ghost);
+        if (second) out = whole_quanta(out, P.quantum, false);
+        const Real along = leaves(far_end ? cells - 1 : 1, next, pure[M], h) - out;
         const Real enters = along + (low - high);
         const Real risen = ghost - std::max(level_before - terrain[N], Real(0));
         const Real pull = P.k * g * (eta_in - eta_out) / (Real(4) * Real(cells));
         const Real incoming = pull + (h > Real(0) ? c / h : Real(0)) * (enters - Real(2) * risen);
-        u += alike * (own + incoming / (Real(1) + P.k * std::max(c + own, Real(0))) - held);
+        u += alike * (own + incoming / (Real(1) + P.k * std::max(second ? c : c + own, Real(0))) - held);
     }
     if (std::abs(eta_in - eta_out) <= P.rest_surface && std::abs(u) <= P.rest_velocity) u = Real(0);
     if (blocked(pure[N], ghost, eta_in, eta_out, P.eps)) u = Real(0);

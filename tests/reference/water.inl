@@ -189,8 +189,8 @@ template <class Real> void Solver<Real>::center_water_velocity() {
         const Real push = P.k * water_gravity(std::abs(u), std::max(water[L], water[R])) * (eta_R - eta_L);
         const auto eta = [&](int cell) { return terrain[ax.cell(cell, b)] + water[ax.cell(cell, b)]; };
         const Real rise = eta_R - eta_L;
-        const Real rise_low = a > 1 ? eta_L - eta(a - 2) : Real(0);
-        const Real rise_high = a + 1 < ax.along() ? eta(a + 1) - eta_R : Real(0);
+        const Real rise_low = a > 1 ? eta_L - eta(a - 2) : rise;
+        const Real rise_high = a + 1 < ax.along() ? eta(a + 1) - eta_R : rise;
         if (rise == Real(0)) return;
         const Real share = minmod(minmod(rise_low, rise), rise_high) / rise;
         const Real pushed = rubbed(u - push / Real(2), across, std::hypot(u, across), P.dt / Real(2) * friction_rate(L, R));
