@@ -2,6 +2,7 @@
 #pragma once
 #include "engine/level/level.hpp"
 #include <cstddef>
+#include <doctest/doctest.h>
 #include <filesystem>
 #include <string>
 
@@ -20,6 +21,12 @@ inline wadi::Result<wadi::Level> parse(const std::string& rest, const std::strin
 
 template <class T> std::string message(const wadi::Result<T>& result) {
     return result ? std::string("no error") : result.status().message;
+}
+
+/// The level, or a failed check and an empty one.
+inline wadi::Level must(const wadi::Result<wadi::Level>& result) {
+    CHECK_MESSAGE(result, message(result));
+    return result ? result.value() : wadi::Level{};
 }
 
 inline bool says(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }

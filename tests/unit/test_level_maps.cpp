@@ -1,0 +1,161 @@
+// engine/level: maps of every kind, velocities and roughness by shapes and maps, levels from a terrain map alone.
+#include "engine/level/level.hpp"
+#include "tests/unit/level_text.hpp"
+#include "tests/unit/map_files.hpp"
+#include <doctest/doctest.h>
+
+using namespace wadi;
+using namespace level_text;
+using map_files::Folder;
+
+TEST_CASE("level: velocities by shape") {
+    const Level level = must(parse(R"("velocities": [
+        {"of": "water", "shape": "box", "from": [0, 0], "to": [5, 8], "velocity": [1, -2]},
+        {"of": "sand", "shape": "cylinder", "center": [5, 4], "radius": 1, "velocity": [0, 3]}])"));
+    CHECK(at(level, level.fields.velocity_x, 4, 4) == 1);
+    CHECK(at(level, level.fields.velocity_y, 4, 4) == -2);
+    CHECK(at(level, level.fields.velocity_x, 5, 4) == 0);
+    CHECK(at(level, level.fields.sand_velocity_y, 5, 4) == 3);
+    CHECK(at(level, level.fields.sand_velocity_x, 5, 4) == 0);
+}
+
+TEST_CASE("level: roughness by shapes and maps, added to that of the material and unrounded") {
+    const Level level = must(parse(R"("material": {"manning": 0.02}, "roughness": [{"shape": "plane", "manning": 0.01},
+        {"shape": "box", "from": [0, 0], "to": [5, 8], "manning": 0.05},
+        {"shape": "cylinder", "center": [5, 4], "radius": 1, "manning": 0.1, "combine": "set"}])"));
+    CHECK(at(level, level.settings.roughness, 8, 4) == doctest::Approx(0.01));
+    CHECK(at(level, level.settings.roughness, 2, 2) == doctest::Approx(0.06));
+    CHECK(at(level, level.settings.roughness, 4, 4) == doctest::Approx(0.1));
+    CHECK(must(parse(R"("material": {"manning": 0.02})")).settings.roughness.empty());
+
+    const Folder folder;
+    folder.write("grey.png", map_files::png16(2, 2, {0, 65535, 65535, 0}));
+    folder.write("n.npy", map_files::npy(map_files::dictionary("<f4", "(2, 2)"), std::vector<float>{0.03f, 0, 0.011f, 1}));
+    const auto mapped = [&](const std::string& layer) {
+        const auto text = level_text::level("\"roughness\": [" + layer + "]", R"({"nx": 2, "ny": 2, "dx": 1})");
+        return must(parse_level(text, folder.path(), {})).settings.roughness;
+    };
+    CHECK(mapped(R"({"file": "n.npy"})") == std::vector<float>{0.03f, 0, 0.011f, 1});
+    CHECK(mapped(R"({"file": "grey.png", "min": 0.25, "max": 0.5})") == std::vector<float>{0.5f, 0.25f, 0.25f, 0.5f});
+    const auto refused = [&](const std::string& numbers) {
+        const auto text =
+            level_text::level(R"("roughness": [{"file": "n.npy", )" + numbers + "}]", R"({"nx": 2, "ny": 2, "dx": 1})");
+        const auto parsed = parse_level(text, folder.path(), {});
+        return parsed ? "" : parsed.status().message;
+    };
+    CHECK(refused(R"("scale": 1)").empty());
+    CHECK_MESSAGE(says(refused(R"("offset": 0.5)"), "roughness[0]: manning: 1.5 is outside 0 ... 1 in cell (1, "),
+                  refused(R"("offset": 0.5)"));
+    CHECK_MESSAGE(says(refused(R"("offset": -0.25)"), "roughness[0]: manning: -0.2"), refused(R"("offset": -0.25)"));
+}
+
+TEST_CASE("level: velocities from maps, each of one component") {
+    Folder folder;
+    std::vector<double> wave;
+    for (int n = 0; n < 80; ++n) wave.push_back(0.25 * n);
+    folder.write("wave.npy", map_files::npy(map_files::dictionary("<f8", "(8, 10)"), wave));
+    const std::string maps = R"("velocities": [
+        {"of": "water", "shape": "plane", "velocity": [7, 8]},
+        {"of": "water", "component": "x", "file": "wave.npy"},
+        {"of": "sand", "component": "y", "file": "wave.npy", "scale": -2, "offset": 1},
+        {"of": "water", "shape": "box", "from": [0, 0], "to": [1, 1], "velocity": [-1, -1]}])";
+    const Level level = must(parse(maps, folder.path()));
+    CHECK(at(level, level.fields.velocity_x, 3, 2) == 0.25 * 23);
+    CHECK(at(level, level.fields.velocity_y, 3, 2) == 8); // the map is of x alone
+    CHECK(at(level, level.fields.velocity_x, 0, 0) == -1);
+    CHECK(at(level, level.fields.sand_velocity_x, 9, 7) == 0);
+    CHECK(at(level, level.fields.sand_velocity_y, 9, 7) == 1 - 2 * 0.25 * 79);
+    CHECK(level.warnings.empty());
+
+    LevelOverrides half;
+    half.size = {5, 4};
+    const Level coarse = must(parse(maps, folder.path(), half));
+    CHECK(at(coarse, coarse.fields.velocity_x, 1, 1) == 0.25 * (22 + 23 + 32 + 33) / 4);
+
+    folder.write("fast.npy", map_files::npy(map_files::dictionary("<f8", "(1, 1)"), std::vector<double>{10001}));
+    CHECK(says(message(parse(R"("velocities": [{"of": "water", "component": "x", "file": "fast.npy"}])", folder.path())),
+               "velocities[0]: velocity: 10001 is outside -10000 ... 10000 in cell (0, 0)"));
+    CHECK(says(message(parse(R"("velocities": [{"of": "water", "file": "wave.npy"}])", folder.path())),
+               "velocities[0].component: missing"));
+}
+
+TEST_CASE("level: maps") {
+    const Folder folder;
+    folder.write("grey.png", map_files::png16(2, 2, {0, 65535, 65535, 0})); // north row first
+    folder.write("grey.r16", map_files::words({0, 65535, 65535, 0}, false));
+    folder.write("row.raw", map_files::words({0, 32768, 65535}, false));
+    folder.write("heights.npy", map_files::npy(map_files::dictionary("<f8", "(1, 2)"), std::vector<double>{1.5, -2}));
+    const auto terrain = [&](const std::string& layer) {
+        const auto level =
+            parse_level(level_text::level("\"terrain\": [{" + layer + "}]", R"({"nx": 2, "ny": 2, "dx": 1})"), folder.path(), {});
+        return must(level).fields.terrain;
+    };
+    CHECK(terrain(R"("file": "grey.png", "max": 4)") == std::vector<float>{4, 0, 0, 4});
+    CHECK(terrain(R"("file": "grey.png", "min": 5, "max": 1)") == std::vector<float>{1, 5, 5, 1});
+    CHECK(terrain(R"("file": "grey.r16", "scale": 2, "offset": 1)") == std::vector<float>{3, 1, 1, 3});
+    CHECK(terrain(R"("file": "heights.npy")") == std::vector<float>{1.5, -2, 1.5, -2});
+    CHECK(terrain(R"("file": "heights.npy", "scale": 2, "offset": -1)") == std::vector<float>{2, -5, 2, -5});
+    CHECK(terrain(R"("file": "row.raw", "size": [3, 1], "max": 4)").size() == 4);
+    folder.write("heights.asc", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 30\n1 2\n3 4\n");
+    CHECK(terrain(R"("file": "heights.asc")") == std::vector<float>{3, 4, 1, 2});
+    CHECK(terrain(R"("file": "heights.asc", "scale": 2, "offset": -1)") == std::vector<float>{5, 7, 1, 3});
+
+    const auto level = parse_level(level_text::level(R"("terrain": [{"shape": "plane", "height": 1}],
+        "water": [{"file": "grey.png", "max": 4, "absolute": true}])",
+                                                     R"({"nx": 2, "ny": 2, "dx": 1})"),
+                                   folder.path(), {});
+    CHECK(must(level).fields.water == std::vector<float>{3, 0, 0, 3});
+}
+
+TEST_CASE("level: from a terrain map alone") {
+    const Folder folder;
+    std::vector<std::uint16_t> grey(32 * 16, 100);
+    grey[5 * 32 + 20] = 300; // row 5 from the north
+    const auto path = folder.write("hill.png", map_files::png16(32, 16, grey));
+    const Level level = must(level_from_terrain(path, {}));
+    CHECK(level.name == "hill");
+    CHECK(level.settings.grid.nx == 32);
+    CHECK(level.settings.grid.dx == 1);
+    CHECK(at(level, level.fields.terrain, 20, 10) == 4); // an eighth of the longer side
+    CHECK(at(level, level.fields.terrain, 0, 0) == 0);
+    REQUIRE(level.settings.sources.size() == 1);
+    CHECK(level.settings.sources[0].center == std::array<double, 2>{20.5, 10.5});
+    for (const Side& side : level.settings.sides) CHECK(side.kind == SideKind::outflow);
+    CHECK(level.warnings.empty());
+
+    LevelOverrides overrides;
+    overrides.size = {16, 8};
+    CHECK(must(level_from_terrain(path, overrides)).settings.grid.dx == 2);
+
+    const auto heights =
+        folder.write("h.npy", map_files::npy(map_files::dictionary("<f4", "(1, 3)"), std::vector<float>{-5, 700, 2}));
+    const Level tall = must(level_from_terrain(heights, {}));
+    CHECK(at(tall, tall.fields.terrain, 1, 0) == 700);
+    CHECK(at(tall, tall.fields.terrain, 0, 0) == doctest::Approx(-5).epsilon(1e-4));
+    CHECK(tall.settings.method.largest_height >= 1050);
+
+    CHECK(level_from_terrain(folder.file("none.png"), {}).status().code == Code::not_found);
+    // Real sizes: 30 m cells in projected coordinates, heights in metres.
+    const std::string header = "NCOLS 3\nNROWS 2\nXLLCENTER 512345.5\nYLLCENTER 5400000\nCELLSIZE 30\n";
+    const Level real = must(level_from_terrain(folder.write("real.asc", header + "1400 1500 1450\n1300 1350 1250.5\n"), {}));
+    CHECK(real.settings.grid.dx == 30);
+    CHECK(real.settings.dt == doctest::Approx(1.5));
+    CHECK(real.duration == doctest::Approx(1800));
+    CHECK(real.settings.method.largest_height == 4096);
+    CHECK(at(real, real.fields.terrain, 1, 1) == 1500); // the file's first row is the north
+    CHECK(at(real, real.fields.terrain, 2, 0) == 1250.5);
+    CHECK(real.settings.sources[0].center == std::array<double, 2>{45, 30}); // clamped to the middle of so small a grid
+    CHECK(real.warnings.empty());
+    const std::string grid = "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize ";
+    const Level hole = must(level_from_terrain(folder.write("hole.asc", grid + "1\n7 -9999\n"), {}));
+    CHECK(at(hole, hole.fields.terrain, 1, 0) == 7);
+    REQUIRE(hole.warnings.size() == 1);
+    CHECK(says(hole.warnings[0], "1 of 2 cells hold NODATA_value"));
+    const Level degrees = must(level_from_terrain(folder.write("degrees.asc", grid + "0.000277\n7 8\n"), {}));
+    CHECK_MESSAGE(says(degrees.warnings.back(), "0.000277 looks like degrees"), degrees.warnings.back());
+    CHECK(says(message(level_from_terrain(folder.write("wide.asc", grid + "20000\n7 8\n"), {})),
+               "cellsize: 20000 is outside 0.0001 ... 10000 m"));
+
+    const auto huge = folder.write("huge.npy", map_files::npy(map_files::dictionary("<f4", "(1, 1)"), std::vector<float>{1e30f}));
+    CHECK(says(message(level_from_terrain(huge, {})), "more than a world holds"));
+}
