@@ -43,24 +43,26 @@ FN FaceLine face_line(float far_low, float low, float high, float far_high, bool
 }
 
 // What `inflow` through one side of u's control volume brings beyond u itself (NUMERICS 2.16): from `near`, whose other neighbour is
-// `far`, or, where negative, out of u's own slope towards `near`.
-FN float side_gain(float inflow, float u, float near, float far, float inside, float own_slope, float inv_height) {
+// `far`, or, where negative, out of u's own slope towards `near`. near_courant: how many cells `near` moves in the step.
+FN float side_gain(float inflow, float u, float near, float far, float inside, float own_slope, float inv_height, float near_courant) {
     float share = 0.5f * (1.0f - wmin(wabs(inflow) * inv_height, 1.0f));
-    float brought = (near - u) + share * (inside * central_slope(far, near, u));
+    float near_share = 0.5f * (1.0f - wmin(near_courant, 1.0f));
+    float brought = (near - u) + near_share * (inside * central_slope(far, near, u));
     return wmax(inflow, 0.0f) * brought + wmin(inflow, 0.0f) * (share * own_slope);
 }
 
-FN float line_gain(float u, FaceLine at, float flux_low, float flux_high, float inv_height) {
+FN float line_gain(float u, FaceLine at, float flux_low, float flux_high, float inv_height, float low_courant, float high_courant) {
     float own = central_slope(at.low, u, at.high);
-    return side_gain(flux_low, u, at.low, at.far_low, at.inside_low, -own, inv_height) +
-           side_gain(-flux_high, u, at.high, at.far_high, at.inside_high, own, inv_height);
+    return side_gain(flux_low, u, at.low, at.far_low, at.inside_low, -own, inv_height, low_courant) +
+           side_gain(-flux_high, u, at.high, at.far_high, at.inside_high, own, inv_height, high_courant);
 }
 
 // advect_velocity with limited slopes, kept between u and its four neighbours: no new extremum at any time step. `centered` and the lines
 // are the velocities that are advected, at the time of the height; u_*: the face's and its neighbours' own.
 FN float advect_velocity_second_order(float u, float u_low, float u_high, float u_left, float u_right, float centered, FaceLine along, FaceLine across,
-                                      float flux_low, float flux_high, float flux_left, float flux_right, float height, float inv_height, float dry) {
-    float gain = line_gain(centered, along, flux_low, flux_high, inv_height) + line_gain(centered, across, flux_left, flux_right, inv_height);
+                                      float flux_low, float flux_high, float flux_left, float flux_right, float height, float inv_height, float k, float dry) {
+    float gain = line_gain(centered, along, flux_low, flux_high, inv_height, k * wabs(along.low), k * wabs(along.high)) +
+                 line_gain(centered, across, flux_left, flux_right, inv_height, wabs(flux_left) * inv_height, wabs(flux_right) * inv_height);
     float least = wmin(u, wmin(wmin(u_low, u_high), wmin(u_left, u_right)));
     float most = wmax(u, wmax(wmax(u_low, u_high), wmax(u_left, u_right)));
     float moved = wclamp(u + gain * inv_height, least, most);

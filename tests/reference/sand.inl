@@ -84,7 +84,7 @@ template <class Real> void Solver<Real>::add_gravity(const Axis& ax, int a, int 
 
 template <class Real> void Solver<Real>::integrate_sand_velocity() {
     const Faces<Real> old = sand_velocity;
-    if (!has(EFFECT_SEMI_LAGRANGIAN)) advect(EFFECT_SECOND_ORDER_SAND, sand, sand_flux, old, sand_velocity);
+    if (!has(EFFECT_SEMI_LAGRANGIAN)) advect(EFFECT_SECOND_ORDER_SAND, sand, sand_flux, old, P.k_sand, sand_velocity);
     for_inner_faces([&](const Axis& ax, int a, int b) {
         if (has(EFFECT_INTERNAL_FRICTION)) {
             slow_from_within(old, ax, a, b);

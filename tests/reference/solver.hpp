@@ -156,9 +156,9 @@ template <class Real> class Solver {
     Real gain(const Faces<Real>& flux, int i, int j) const;
     const Faces<Real>& velocity_of(Layer layer) const;
     Real face_depth(Layer layer, const Axis& axis, int a, int b, Real u) const;
-    void advect(std::uint32_t second_order, const Field<Real>& height, const Faces<Real>& flux, const Faces<Real>& carried,
+    void advect(std::uint32_t second_order, const Field<Real>& height, const Faces<Real>& flux, const Faces<Real>& carried, Real k,
                 Faces<Real>& velocity) const;
-    void advect_velocity_second_order(const Field<Real>& height, const Faces<Real>& flux, const Faces<Real>& carried,
+    void advect_velocity_second_order(const Field<Real>& height, const Faces<Real>& flux, const Faces<Real>& carried, Real k,
                                       Faces<Real>& velocity) const;
     void advect_velocity(const Field<Real>& height, const Faces<Real>& flux, Faces<Real>& velocity) const;
     template <class Height, class Surface> void update_types(Height height, Surface surface, Faces<Real>& type) const;

@@ -144,7 +144,7 @@ void Solver<Real>::advect_velocity(const Field<Real>& height, const Faces<Real>&
 /// 2.16 in place of 2.3.
 template <class Real>
 void Solver<Real>::advect_velocity_second_order(const Field<Real>& height, const Faces<Real>& flux, const Faces<Real>& carried,
-                                                Faces<Real>& velocity) const {
+                                                Real k, Faces<Real>& velocity) const {
     const Faces<Real> old = velocity;
     for_inner_faces([&](const Axis& ax, int a, int b) {
         const Real hb = mean(height[ax.cell(a - 1, b)], height[ax.cell(a, b)]);
@@ -163,9 +163,12 @@ void Solver<Real>::advect_velocity_second_order(const Field<Real>& height, const
         const Real u = at(0, 0);
         const auto gain = [&](int da, int db) {
             const Real entering = inflow(da, db);
-            const Real share = std::max(Real(0), Real(1) - std::abs(entering) / hb) / Real(2);
+            const auto left = [](Real courant) { return std::max(Real(0), Real(1) - courant) / Real(2); };
+            const Real share = left(std::abs(entering) / hb);
             const Real neighbour = at(da, db);
-            if (entering > Real(0)) return entering * ((neighbour - u) + share * centred_slope(at(2 * da, 2 * db), neighbour, u));
+            const Real theirs = da != 0 ? left(k * std::abs(neighbour)) : share;
+            if (entering > Real(0))
+                return entering * ((neighbour - u) + theirs * centred_slope(at(2 * da, 2 * db), neighbour, u));
             return entering * share * centred_slope(at(-da, -db), u, neighbour);
         };
         const Real moved = in(old, 0, 0) + ((gain(-1, 0) + gain(1, 0)) + (gain(0, -1) + gain(0, 1))) / hb;
@@ -177,8 +180,9 @@ void Solver<Real>::advect_velocity_second_order(const Field<Real>& height, const
 /// A layer's momentum by the order that its effect chooses; `carried` is what advection of second order carries.
 template <class Real>
 void Solver<Real>::advect(std::uint32_t second_order, const Field<Real>& height, const Faces<Real>& flux,
-                          const Faces<Real>& carried, Faces<Real>& velocity) const {
-    has(second_order) ? advect_velocity_second_order(height, flux, carried, velocity) : advect_velocity(height, flux, velocity);
+                          const Faces<Real>& carried, Real k, Faces<Real>& velocity) const {
+    has(second_order) ? advect_velocity_second_order(height, flux, carried, k, velocity)
+                      : advect_velocity(height, flux, velocity);
 }
 
 } // namespace wadi::reference

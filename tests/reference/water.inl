@@ -165,10 +165,10 @@ template <class Real> void Solver<Real>::integrate_water_velocity() {
     const bool traced = has(EFFECT_SEMI_LAGRANGIAN);
     const Faces<Real> before = pure_velocity;
     const Faces<Real> mixed_old = mixed_velocity;
-    if (!traced) advect(EFFECT_SECOND_ORDER_WATER, pure_predicted, pure_flux, centered_velocity, pure_velocity);
+    if (!traced) advect(EFFECT_SECOND_ORDER_WATER, pure_predicted, pure_flux, centered_velocity, P.k, pure_velocity);
     damp_shocks(before);
     if (has(EFFECT_MIXTURE)) {
-        if (!traced) advect(EFFECT_SECOND_ORDER_WATER, mixed_predicted, mixed_flux, mixed_old, mixed_velocity);
+        if (!traced) advect(EFFECT_SECOND_ORDER_WATER, mixed_predicted, mixed_flux, mixed_old, P.k, mixed_velocity);
         exchange_split(mixed_predicted, pure_predicted, mixed);
     }
     for_inner_faces([&](const Axis& ax, int a, int b) { water_face(before, mixed_old, ax, a, b); });
@@ -193,10 +193,14 @@ template <class Real> void Solver<Real>::center_water_velocity() {
         const Real rise_high = a + 1 < ax.along() ? eta(a + 1) - eta_R : rise;
         if (rise == Real(0)) return;
         const Real share = minmod(minmod(rise_low, rise), rise_high) / rise;
+        const Field<Real>& v = pure_velocity.along(ax);
+        const auto slope = [&](Real before, Real after) { return minmod(u - before, after - u); };
+        const Real across_slope = b > 0 && b + 1 < ax.across() ? slope(v[ax.face(a, b - 1)], v[ax.face(a, b + 1)]) : Real(0);
+        const Real carried = P.k * (u * slope(v[ax.face(a - 1, b)], v[ax.face(a + 1, b)]) + across * across_slope);
         const Real pushed = rubbed(u - push / Real(2), across, std::hypot(u, across), P.dt / Real(2) * friction_rate(L, R));
         Real& centered = centered_velocity.along(ax)[f];
         centered += share * (pushed - u);
-        pure_flux.along(ax)[f] += P.k * mean(pure[L], pure[R]) * (centered - u);
+        pure_flux.along(ax)[f] += P.k * mean(pure[L], pure[R]) * share * (pushed - u - carried / Real(2));
     });
 }
 

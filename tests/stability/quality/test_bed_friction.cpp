@@ -135,11 +135,17 @@ TEST_CASE("bed friction: uniform flow is the same at any time step") {
 
 TEST_CASE("bed friction: a stream that turns fast keeps the depth that its bed was made for, to second order") {
     for (const auto& [law, material] : {std::pair{"Chezy", chezy(0.005)}, std::pair{"Manning", manning(0.02)}}) {
+        double coarser = 0;
         for (const int n : {100, 200}) {
             const double first = stream_error(material, 1, n), second = stream_error(material, 2, n);
             MESSAGE(std::string(law) << ", " << n << " cells: order 1 " << 100 * first << " %, order 2 " << 100 * second << " %");
             CHECK(second < 1e-4);
             CHECK(second < first / 10);
+            if (coarser > 0) {
+                MESSAGE("order " << std::log2(coarser / second));
+                CHECK(std::log2(coarser / second) > 1.7);
+            }
+            coarser = second;
         }
     }
 }

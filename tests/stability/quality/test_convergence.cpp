@@ -9,7 +9,8 @@ using namespace wadi::test;
 
 namespace {
 
-// A lake 4 m deep: errors on 512 cells are some quanta, 1 um with the default largest height.
+// A lake 4 m deep: errors on 512 cells are some quanta, 1 um with the default largest height. On 1 m of water they would be two
+// of them, and finer cells would gain less.
 constexpr double hump_gravity = 9.81, hump_width = 160, hump_time = 4; // [m/s2], [m], [s]
 
 double hump(double r) { return 4 + 0.8 * std::exp(-r * r / 144); }
@@ -72,21 +73,25 @@ class Truth {
     Values h_, u_;
 };
 
-/// Mean error of the depth [m] of a world of n cells (1-D) or n x n around that hump.
-double hump_error(const Truth& truth, int dimensions, int n, int order) {
+/// Mean error of the depth [m] of a world of n cells (1-D) or n x n around that hump, or around the same with `share` of all
+/// depths, which takes 1/sqrt(share) of the time.
+double hump_error(const Truth& truth, int dimensions, int n, int order, double share = 1,
+                  double largest_height = Method{}.largest_height) {
     const double dx = hump_width / n, middle = hump_width / 2;
     const int steps = static_cast<int>(std::lround(hump_time / (0.02 * dx)));
-    auto scene = flat_scene(n, dimensions == 1 ? 3 : n, dx, hump_time / steps);
+    auto scene = flat_scene(n, dimensions == 1 ? 3 : n, dx, hump_time / steps / std::sqrt(share));
+    scene.settings.method.largest_height = largest_height;
     scene.settings.method.water_transport_order = order;
     const auto r = [&](double x, double y) {
         return dimensions == 1 ? std::abs(x - middle) : std::hypot(x - middle, y - middle);
     };
-    scene.fill(scene.fields.water, [&](double x, double y) { return hump(r(x, y)); });
+    scene.fill(scene.fields.water, [&](double x, double y) { return share * hump(r(x, y)); });
     auto world = make_world(scene);
     step(*world, steps);
     const auto depth = cells_of(*world, "water_height");
-    return sum_over(depth,
-                    [&](int i, int j) { return std::abs(depth.at(i, j) - truth.depth(r((i + 0.5) * dx, (j + 0.5) * dx))); }) /
+    return sum_over(
+               depth,
+               [&](int i, int j) { return std::abs(depth.at(i, j) - share * truth.depth(r((i + 0.5) * dx, (j + 0.5) * dx))); }) /
            (depth.nx * depth.ny);
 }
 
@@ -107,4 +112,14 @@ TEST_CASE("convergence: a hump on still water, along a line and around a point")
         CHECK(order > least);
         CHECK(errors.back() < hump_error(truth, dimensions, 512, 1) / 3);
     }
+}
+
+TEST_CASE("convergence: a hump on 1 m of water as on 4 m, where the largest height says how shallow it is; else quanta stop it") {
+    const Truth truth(2);
+    const double coarse = hump_error(truth, 2, 128, 2, 0.25, 2), fine = hump_error(truth, 2, 512, 2, 0.25, 2);
+    const double of_16_m = hump_error(truth, 2, 512, 2, 0.25);
+    MESSAGE("error on 128 cells " << coarse << " m, on 512 " << fine << " m, order " << std::log2(coarse / fine) / 2
+                                  << "; largest height 16 m: " << of_16_m << " m, order " << std::log2(coarse / of_16_m) / 2);
+    CHECK(std::log2(coarse / fine) / 2 > 1.9);
+    CHECK(std::log2(coarse / of_16_m) / 2 < 1.7); // control
 }
