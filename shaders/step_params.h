@@ -8,6 +8,7 @@
 #define LEAD 32          // elements ahead of cell 0 of the first row and behind the last row: rows begin at multiples of 32
 #define STRIP 32         // rows of one ledger strip
 #define MAX_SOURCES 32   // sources and sinks of one world
+#define SOURCE_VECTORS (4 * MAX_SOURCES) // vec4 of all shapes and of the boxes that hold them
 #define MAX_EDITS 16     // edits of one submission
 #define EDIT_VECTORS 3   // vec4 per edit
 #define STAMP_PAGE 1024  // floats; the image of a stamp begins at a multiple of it
@@ -52,10 +53,9 @@ struct WorldParams {
     int strips;                 // ledger strips: ceil((ny + 1) / STRIP)
     int substeps;               // T: sand substeps per water step
     int source_count;
-    int source_i0;              // columns [i0, i1) and strips [s0, s1) that hold all sources
-    int source_i1;
-    int source_s0;
-    int source_s1;
+    int source_boxes;           // boxes of cells that hold all sources; no two overlap
+    int source_rows;            // rows of one column in a piece of a box
+    int source_pieces;          // of all boxes
     int side_kind_west;         // SIDE_*
     int side_kind_east;
     int side_kind_south;

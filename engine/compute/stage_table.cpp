@@ -20,8 +20,8 @@ Range2 extent_range(Extent extent, const WorldParams& p, int most_points) {
         return {0, 0, 2 * (p.nx + p.ny), 1};
     case Extent::strips:
         return {0, 0, p.nx + 1, p.strips};
-    case Extent::source_box:
-        return {p.source_i0, p.source_s0, p.source_i1, p.source_s1};
+    case Extent::source_pieces:
+        return {0, 0, POINT_ROW, (p.source_pieces + POINT_ROW - 1) / POINT_ROW};
     case Extent::tiles:
         return {0, 0, p.tile_columns, p.tile_rows};
     case Extent::tile_rows:

@@ -37,7 +37,7 @@ FieldStore::FieldStore(WorldDevice& device, const Settings& settings)
 }
 
 std::uint64_t FieldStore::bytes_of(const PlanField& field) const {
-    if (field.role == FieldRole::shapes) return 2 * MAX_SOURCES * sizeof(vec4);
+    if (field.role == FieldRole::shapes) return SOURCE_VECTORS * sizeof(vec4);
     if (field.role == FieldRole::tiles) {
         const auto columns = static_cast<std::uint64_t>(tile_columns_), rows = static_cast<std::uint64_t>(tile_rows_);
         return 4 * (field.name.starts_with("active_dispatch") ? 8

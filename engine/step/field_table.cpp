@@ -80,7 +80,7 @@ constexpr FieldRow rows[] = {
      "water through the outer faces"},
     {"sand_side_ledger", ledger, none, no_hash, no_host, "", "quanta", EFFECT_SAND | EFFECT_OPEN_SIDES,
      "sand through the outer faces"},
-    {"source_shapes", shapes, none, no_hash, no_host, "", "m", EFFECT_SOURCES, "centres, radii and boxes of the sources"},
+    {"source_shapes", shapes, none, no_hash, no_host, "", "m", EFFECT_SOURCES, "centres, radii and boxes of the sources; boxes of cells that hold them"},
     {"activity", tiles, none, no_hash, no_host, "", "steps", always, "step in which a bit of the tile changed last"},
     {"active_tiles", tiles, none, no_hash, no_host, "", "", always, "which tiles run in this step"},
     {"active_counts", tiles, none, no_hash, no_host, "", "tiles", always, "how many of them in each row of tiles"},

@@ -1,6 +1,6 @@
 #include "engine/step/initial_fields.hpp"
 #include "engine/settings/quanta.hpp"
-#include "engine/step/step_inputs.hpp"
+#include "engine/step/source_shapes.hpp"
 #include "engine/step/world_params.hpp"
 #include "engine/threads/bands.hpp"
 #include <numeric>

@@ -1,6 +1,7 @@
 #include "engine/step/step_inputs.hpp"
 #include "engine/settings/setting_table.hpp"
 #include "engine/step/half.hpp"
+#include "engine/step/source_shapes.hpp"
 #include "engine/step/world_params.hpp"
 #include <algorithm>
 #include <cmath>
@@ -111,31 +112,6 @@ StepInput StepInputs::next(int step) {
     }
     set_sides(input, time);
     return input;
-}
-
-std::vector<vec4> source_shapes(const Settings& settings) {
-    std::vector<vec4> shapes(2 * MAX_SOURCES, vec4{0, 0, 0, 0});
-    const double dx = settings.grid.dx;
-    for (std::size_t n = 0; n < settings.sources.size(); ++n) {
-        const auto& s = settings.sources[n];
-        auto& shape = shapes[2 * n];
-        const auto set = [&](double x, double y, double z, double w) {
-            shape = {static_cast<float>(x), static_cast<float>(y), static_cast<float>(z), static_cast<float>(w)};
-        };
-        float kind = SOURCE_BOX;
-        if (s.shape == SourceShape::disc) {
-            kind = SOURCE_DISC;
-            set(s.center[0], s.center[1], s.radius * s.radius, 0);
-        } else if (s.shape == SourceShape::box) {
-            set(s.box[0], s.box[1], s.box[2], s.box[3]);
-        } else { // the cell that holds the point and its four faces: a quarter cell of margin, clear of every other centre
-            const double x = std::floor(s.center[0] / dx) * dx, y = std::floor(s.center[1] / dx) * dx;
-            set(x - 0.25 * dx, y - 0.25 * dx, x + 1.25 * dx, y + 1.25 * dx);
-        }
-        shapes[2 * n + 1] = {kind, static_cast<float>(s.material == SourceMaterial::water ? MATERIAL_WATER : MATERIAL_SAND), 0,
-                             0};
-    }
-    return shapes;
 }
 
 } // namespace wadi

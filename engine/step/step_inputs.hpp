@@ -37,7 +37,4 @@ class StepInputs {
     Totals totals_, before_;    // before the last next()
 };
 
-/// Shapes as apply_sources reads them: two vec4 per source, MAX_SOURCES of them.
-std::vector<vec4> source_shapes(const Settings& settings);
-
 } // namespace wadi

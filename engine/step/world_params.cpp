@@ -1,5 +1,6 @@
 #include "engine/step/world_params.hpp"
 #include "engine/step/half.hpp"
+#include "engine/step/source_shapes.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -12,25 +13,12 @@ constexpr float off = 1e30F;
 constexpr float gravity_cap_off = 1e9F;
 constexpr double steep = 1e9; // slope of a wedge that limits nothing
 
-int cell_of(double metres, double dx, int cells) { return std::clamp(static_cast<int>(std::floor(metres / dx)), 0, cells - 1); }
-
-// The box of ledger strips that holds every source, one cell more on the high sides for the faces.
-void bound_sources(const Settings& s, WorldParams& p) {
+void set_sources(const Settings& s, WorldParams& p) {
+    const SourcePieces pieces = source_pieces(s);
     p.source_count = static_cast<int>(s.sources.size());
-    if (s.sources.empty()) return;
-    int i0 = s.grid.nx, i1 = 0, j0 = s.grid.ny, j1 = 0;
-    for (const auto& source : s.sources) {
-        const bool box = source.shape == SourceShape::box;
-        const double r = source.shape == SourceShape::disc ? source.radius : 0;
-        i0 = std::min(i0, cell_of(box ? source.box[0] : source.center[0] - r, s.grid.dx, s.grid.nx));
-        j0 = std::min(j0, cell_of(box ? source.box[1] : source.center[1] - r, s.grid.dx, s.grid.ny));
-        i1 = std::max(i1, cell_of(box ? source.box[2] : source.center[0] + r, s.grid.dx, s.grid.nx));
-        j1 = std::max(j1, cell_of(box ? source.box[3] : source.center[1] + r, s.grid.dx, s.grid.ny));
-    }
-    p.source_i0 = i0;
-    p.source_i1 = std::min(i1 + 2, s.grid.nx + 1);
-    p.source_s0 = j0 / STRIP;
-    p.source_s1 = std::min((j1 + 1) / STRIP + 1, p.strips);
+    p.source_boxes = static_cast<int>(pieces.boxes.size());
+    p.source_pieces = pieces.count;
+    p.source_rows = pieces.rows;
 }
 
 // Cohesion of the yield surface per cohesion of the material: its tip then holds cuts up to Rankine's height (NUMERICS 2.7).
@@ -68,7 +56,7 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     p.tile_rings = 1; // WorldState widens it to the plan's reach
     p.tile_columns = s.active_tiles > 0 ? FieldLayout::active_tiles(s.grid.nx, s.active_tiles) : 0;
     p.tile_rows = s.active_tiles > 0 ? FieldLayout::active_tiles(s.grid.ny, s.active_tiles) : 0;
-    bound_sources(s, p);
+    set_sources(s, p);
     p.side_kind_west = static_cast<int>(s.sides[SIDE_WEST].kind);
     p.side_kind_east = static_cast<int>(s.sides[SIDE_EAST].kind);
     p.side_kind_south = static_cast<int>(s.sides[SIDE_SOUTH].kind);

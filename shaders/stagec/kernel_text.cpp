@@ -4,6 +4,10 @@
 
 namespace stagec {
 
+std::string length(const std::string& extent) {
+    return extent == "POINTS" ? "S.point_count" : extent == "SOURCE_PIECES" ? "P.source_pieces" : "";
+}
+
 std::string guard(const std::string& extent) {
     if (extent == "CELLS") return "i < P.nx && j < P.ny";
     if (extent == "FACES") return "i <= P.nx && j <= P.ny";
@@ -12,13 +16,7 @@ std::string guard(const std::string& extent) {
     if (extent == "TILES") return "i < P.tile_columns && j < P.tile_rows";
     if (extent == "TILE_ROWS") return "i < 1 && j < P.tile_rows";
     if (extent == "TILE_LINES") return "i < P.tile_columns && j <= P.ny";
-    if (extent == "POINTS") return "i < POINT_ROW && j * POINT_ROW + i < S.point_count";
-    return "i < P.source_i1 && j < P.source_s1";
-}
-
-std::string origin(const std::string& extent, const char* axis) {
-    if (extent != "SOURCE_BOX") return "";
-    return axis[0] == 'i' ? " + P.source_i0" : " + P.source_s0";
+    return "i < POINT_ROW && j * POINT_ROW + i < " + length(extent);
 }
 
 bool marks(const Stage& s) {

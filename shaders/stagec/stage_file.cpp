@@ -10,7 +10,7 @@
 namespace stagec {
 namespace {
 
-const std::set<std::string> extents = {"CELLS",  "FACES", "RIM",       "STRIPS",    "SOURCE_BOX",
+const std::set<std::string> extents = {"CELLS",  "FACES", "RIM",       "STRIPS",    "SOURCE_PIECES",
                                        "POINTS", "TILES", "TILE_ROWS", "TILE_LINES"};
 const std::set<std::string> types = {"float", "float_or_half", "uint", "int", "vec2", "vec4"};
 

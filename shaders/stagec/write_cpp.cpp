@@ -60,8 +60,9 @@ std::string write_cpp(const Stage& s, const std::string& isa, const Effects& eff
     o << file_head(s, isa) << stage_text(s) << block_head() << "    const " << s.struct_name << "<E> stage{P, S\n"
       << buffer_members(s) << "    };\n    for (int j = j0; j < j1; ++j) {\n        const " << s.struct_name
       << "<E> local = stage;\n"
-      << (s.extent == "POINTS" ? "        const int row = S.point_count - j * POINT_ROW;\n        i1 = row < i1 ? row : i1;\n"
-                               : "")
+      << (length(s.extent).empty()
+              ? ""
+              : "        const int row = " + length(s.extent) + " - j * POINT_ROW;\n        i1 = row < i1 ? row : i1;\n")
       << "#if defined(__GNUC__) && !defined(__clang__)\n#pragma GCC ivdep\n#elif defined(__clang__)\n#pragma clang loop "
          "vectorize(assume_safety)\n#endif\n"
       << "        for (int i = i0; i < i1; ++i) local.kernel(i, j);\n    }\n}\n} // namespace\n"

@@ -132,9 +132,9 @@ std::string write_cuda(const Stage& s, const Effects& effects, bool all_masks) {
     for (const auto& b : s.bindings)
         o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << element_type(b, "E") << "*>(b.at[" << b.slot
           << "])";
-    o << "};\n    const int i = static_cast<int>(blockIdx.x * (X > 0 ? X : blockDim.x) + threadIdx.x)" << origin(s.extent, "i")
-      << ";\n    const int j = static_cast<int>(blockIdx.y * (Y > 0 ? Y : blockDim.y) + threadIdx.y)" << origin(s.extent, "j")
-      << ";\n    if (" << guard(s.extent) << ") stage.kernel(i, j);\n}\n"
+    o << "};\n    const int i = static_cast<int>(blockIdx.x * (X > 0 ? X : blockDim.x) + threadIdx.x);\n"
+      << "    const int j = static_cast<int>(blockIdx.y * (Y > 0 ? Y : blockDim.y) + threadIdx.y);\n"
+      << "    if (" << guard(s.extent) << ") stage.kernel(i, j);\n}\n"
       << "template <unsigned E> static const void* select(int x, int y) {\n";
     for (const auto& g : cuda_groups) {
         if (g.x > 0 && (g.y == 1) != (s.extent == "RIM")) continue; // nobody's default for it

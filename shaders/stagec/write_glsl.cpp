@@ -57,8 +57,7 @@ std::string write_glsl(const Stage& s) {
     std::ostringstream o;
     o << head << converted(s);
     if (marks(s)) o << tile_bindings(s);
-    o << "void main() {\n    int i = int(gl_GlobalInvocationID.x)" << origin(s.extent, "i")
-      << ";\n    int j = int(gl_GlobalInvocationID.y)" << origin(s.extent, "j") << ";\n";
+    o << "void main() {\n    int i = int(gl_GlobalInvocationID.x);\n    int j = int(gl_GlobalInvocationID.y);\n";
     if (!marks(s)) {
         o << "    if (" << guard(s.extent) << ") kernel(i, j);\n}\n";
         return o.str();

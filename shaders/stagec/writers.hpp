@@ -8,7 +8,8 @@ namespace stagec {
 // Pieces of kernels that GLSL and CUDA share (kernel_text.cpp).
 /// The index range of an extent as guards; must agree with extent_range() in engine/compute.
 std::string guard(const std::string& extent);
-std::string origin(const std::string& extent, const char* axis);
+/// How long the list of an extent without a grid is; empty for others.
+std::string length(const std::string& extent);
 /// Stages that run over a list of active tiles, and stages of the rim, which run whole but tell what they changed.
 bool marks(const Stage& stage);
 /// Runs the kernel and stamps its tile with the step if a bit of what it writes is another than before. Once a tile has its stamp

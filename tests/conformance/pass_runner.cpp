@@ -1,7 +1,7 @@
 #include "tests/conformance/pass_runner.hpp"
 #include "engine/step/field_store.hpp"
 #include "engine/step/half.hpp"
-#include "engine/step/step_inputs.hpp"
+#include "engine/step/source_shapes.hpp"
 #include "engine/step/world_params.hpp"
 #include <algorithm>
 #include <cmath>
@@ -55,7 +55,7 @@ PassRunner::~PassRunner() {
 }
 
 std::size_t PassRunner::words_of(const PlanField& field) const {
-    if (field.role == FieldRole::shapes) return std::size_t{2 * MAX_SOURCES * 4};
+    if (field.role == FieldRole::shapes) return std::size_t{SOURCE_VECTORS * 4};
     if (field.role != FieldRole::ledger) return layout().size() * static_cast<std::size_t>(field.element_bytes()) / 4;
     if (field.name != "source_ledger") return 4 * static_cast<std::size_t>(layout().rim());
     return std::size_t{2 * LEDGER_ENTRIES} * static_cast<std::size_t>(params_.strips * params_.pitch);
@@ -142,15 +142,16 @@ double PassRunner::bytes_of(const PlanPass& pass) const {
     const auto& stage = compute::stage_table()[static_cast<std::size_t>(pass.stage)];
     const auto range = compute::extent_range(stage.extent, params_);
     const double threads = static_cast<double>(range.i1 - range.i0) * static_cast<double>(range.j1 - range.j0);
-    const bool columns = stage.extent == compute::Extent::strips || stage.extent == compute::Extent::source_box;
+    const int rows = stage.extent == compute::Extent::strips          ? STRIP
+                     : stage.extent == compute::Extent::source_pieces ? params_.source_rows
+                                                                      : 1;
     double bytes = 0;
     for (std::size_t b = 0; b < pass.fields.size(); ++b) {
         if (pass.fields[b].empty()) continue;
         const auto& binding = stage.bindings[b];
         if (binding.name == "source_shapes") continue; // a few hundred bytes that every thread shares
-        // A strip thread walks STRIP rows of a field, and adds once to its counts in the ledger.
-        const double each =
-            columns && (binding.type == compute::Scalar::f32 || binding.type == compute::Scalar::f32_or_f16) ? STRIP : 1;
+        // A thread that walks rows of a field adds once to its counts in the ledger.
+        const double each = binding.type == compute::Scalar::f32 || binding.type == compute::Scalar::f32_or_f16 ? rows : 1;
         const bool half = binding.type == compute::Scalar::f32_or_f16 && (plan_.effects & EFFECT_HALF_STORAGE) != 0;
         bytes += threads * each * (binding.access == compute::Access::inout ? 2 : 1) * (half ? 2 : 4);
     }

@@ -23,11 +23,19 @@ struct Count {
     }
 };
 
-// The growth of one 64-bit count, kept as a low and a high word, against what it should be.
-Verdict check_count(const BenchBuffer& ledger, std::size_t low, std::size_t high, const Count& expected,
-                    const std::string& what) {
-    const auto at = [](std::uint32_t l, std::uint32_t h) { return std::uint64_t{l} + (std::uint64_t{h} << 32); };
-    const std::uint64_t grown = at(ledger.words()[low], ledger.words()[high]) - at(ledger.before[low], ledger.before[high]);
+/// 64-bit counts, each kept as a low and a high word.
+struct Counters {
+    std::size_t low, high, number = 1; // places of the first
+};
+
+// What counters grew by together against what it should be.
+Verdict check_count(const BenchBuffer& ledger, const Counters& at, const Count& expected, const std::string& what) {
+    const auto count = [](std::uint32_t l, std::uint32_t h) { return std::uint64_t{l} + (std::uint64_t{h} << 32); };
+    std::uint64_t grown = 0;
+    for (std::size_t n = 0; n < at.number; ++n) {
+        const std::size_t low = at.low + n, high = at.high + n;
+        grown += count(ledger.words()[low], ledger.words()[high]) - count(ledger.before[low], ledger.before[high]);
+    }
     if (static_cast<double>(grown) >= expected.least && static_cast<double>(grown) <= expected.most) return {};
     return failed(what + " grew by " + std::to_string(grown) + " quanta, expected " + std::to_string(expected.least) + " to " +
                   std::to_string(expected.most));
@@ -47,8 +55,8 @@ Verdict check_side_ledger(const StageRun& run) {
             in.add(std::max(flux, 0.0), p);
             out.add(std::max(-flux, 0.0), p);
             const std::string face = "face " + std::to_string(b) + " of side " + std::to_string(side);
-            if (auto v = check_count(ledger, n, rim + n, in, "inflow of " + face); v.outcome != Outcome::ok) return v;
-            if (auto v = check_count(ledger, 2 * rim + n, 3 * rim + n, out, "outflow of " + face); v.outcome != Outcome::ok)
+            if (auto v = check_count(ledger, {n, rim + n}, in, "inflow of " + face); v.outcome != Outcome::ok) return v;
+            if (auto v = check_count(ledger, {2 * rim + n, 3 * rim + n}, out, "outflow of " + face); v.outcome != Outcome::ok)
                 return v;
         }
     }
@@ -57,7 +65,7 @@ Verdict check_side_ledger(const StageRun& run) {
 
 using Counts = std::array<Count, LEDGER_ENTRIES>;
 
-// Adds what sources and sinks do to a cell, in their order, to the counts of its strip.
+// Adds what sources and sinks do to a cell, in their order, to the counts.
 void count_sources(const StageRun& run, int i, int j, Counts& counts) {
     const auto& settings = run.scene.settings;
     const double dx = settings.grid.dx, x = (i + 0.5) * dx, y = (j + 0.5) * dx;
@@ -93,26 +101,40 @@ void count_rain(const StageRun& run, int i, int j, Counts& counts) {
     counts[LEDGER_WATER_OUT].add(std::min(water + (fits ? rain : 0.0), evaporation), run.params);
 }
 
-Verdict check_source_ledger(const StageRun& run) {
-    const WorldParams& p = run.params;
-    const bool rain = run.stage.name == "apply_rain";
+// Counts of the row of counters of an entry, `from` to `to`.
+Verdict check_entries(const StageRun& run, const Counts& counts, std::size_t from, std::size_t to, const std::string& where) {
     const BenchBuffer& ledger = run.buffer("source_ledger");
-    const auto row = static_cast<std::size_t>(p.strips * p.pitch);
+    const auto row = static_cast<std::size_t>(run.params.strips * run.params.pitch);
+    for (std::size_t entry = 0; entry < LEDGER_ENTRIES; ++entry) {
+        const std::size_t low = 2 * entry * row, high = low + row;
+        auto v = check_count(ledger, {low + from, high + from, to - from}, counts[entry],
+                             "ledger entry " + std::to_string(entry) + where);
+        if (v.outcome != Outcome::ok) return v;
+    }
+    return {};
+}
+
+Verdict check_rain_ledger(const StageRun& run) {
+    const WorldParams& p = run.params;
     for (int strip = 0; strip < p.strips; ++strip) {
         for (int i = 0; i < p.pitch; ++i) {
             Counts counts;
-            for (int j = strip * STRIP; i < p.nx && j < std::min((strip + 1) * STRIP, p.ny); ++j)
-                rain ? count_rain(run, i, j, counts) : count_sources(run, i, j, counts);
+            for (int j = strip * STRIP; i < p.nx && j < std::min((strip + 1) * STRIP, p.ny); ++j) count_rain(run, i, j, counts);
             const auto at = static_cast<std::size_t>(strip * p.pitch + i);
-            for (std::size_t entry = 0; entry < LEDGER_ENTRIES; ++entry) {
-                const std::string what = "ledger entry " + std::to_string(entry) + " of column " + std::to_string(i) +
-                                         ", strip " + std::to_string(strip);
-                auto v = check_count(ledger, 2 * entry * row + at, (2 * entry + 1) * row + at, counts[entry], what);
-                if (v.outcome != Outcome::ok) return v;
-            }
+            auto v =
+                check_entries(run, counts, at, at + 1, " of column " + std::to_string(i) + ", strip " + std::to_string(strip));
+            if (v.outcome != Outcome::ok) return v;
         }
     }
     return {};
+}
+
+// By all counters together: which of them takes a cell's depth is the stage's choice.
+Verdict check_source_ledger(const StageRun& run) {
+    Counts counts;
+    for (int j = 0; j < run.params.ny; ++j)
+        for (int i = 0; i < run.params.nx; ++i) count_sources(run, i, j, counts);
+    return check_entries(run, counts, 0, static_cast<std::size_t>(run.params.strips * run.params.pitch), "");
 }
 
 // The mean of both velocities, in bits.
@@ -153,7 +175,7 @@ constexpr Definition definitions[] = {
     {"publish_water_depth", check_published},
     {"start_water_velocity", check_start},
     {"account_sides", check_side_ledger},
-    {"apply_rain", check_source_ledger},
+    {"apply_rain", check_rain_ledger},
     {"apply_sources", check_source_ledger},
     {"mark_limits", check_marks},
     {"sample_points", check_samples},
