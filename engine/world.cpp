@@ -8,6 +8,7 @@ World::World(const Settings& settings, std::unique_ptr<compute::Device> device, 
     : state_(settings, std::move(device), group) {
     stepper_.set_hooks({.before_step = [this] { return edits_.before_step(); },
                         .after_step = [this] { return after_step(); },
+                        .undisturbed = [this](std::uint64_t most) { return undisturbed(most); },
                         .finished_early = [this] { frames_.finished_early(); },
                         .jumped = [this] { return jumped(); }});
 }
@@ -29,10 +30,7 @@ Result<std::unique_ptr<World>> World::create(const Settings& settings, const Ini
 
 Status World::step(std::uint32_t count) {
     if (auto status = stepper_.finish_step(); !status) return status;
-    for (std::uint32_t n = 0; n < count; ++n) {
-        if (auto status = stepper_.step(); !status) return status;
-    }
-    return state_.lost();
+    return stepper_.steps(count);
 }
 
 Status World::update(std::uint64_t nanoseconds, Frame& frame) {
@@ -53,6 +51,10 @@ Status World::set_update_settings(const UpdateSettings& settings) {
 Status World::after_step() {
     auto status = roll_back_.after_step();
     return status ? at_boundary() : status;
+}
+
+std::uint64_t World::undisturbed(std::uint64_t most) const {
+    return commands_.undisturbed(roll_back_.undisturbed(edits_.undisturbed(most)));
 }
 
 Status World::jumped() {

@@ -57,6 +57,7 @@ class World {
     World(const Settings& settings, std::unique_ptr<compute::Device> device, compute::GroupSize group);
     /// Stepper::Hooks.
     Status after_step();
+    std::uint64_t undisturbed(std::uint64_t most) const;
     Status jumped();
     /// What waited for a boundary between two steps.
     Status at_boundary();

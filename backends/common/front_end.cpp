@@ -111,7 +111,7 @@ Result<compute::Pipeline> FrontEnd::create_pipeline(int index, std::uint32_t eff
 Result<compute::Program> FrontEnd::compile(const compute::ProgramBuilder& builder, const WorldParams& params) {
     return unless_lost([&]() -> Result<compute::Program> {
         if (auto status = check_program(builder, params, objects_); !status) return status;
-        Program used{builder.label(), {}};
+        Program used{builder.label(), {}, static_cast<std::size_t>(builder.inputs())};
         for (const auto& op : builder.ops())
             for (const auto& use : compute::buffer_uses(op)) used.buffers.insert(use.buffer.id);
         auto row = row_for(programs_, std::move(used));
@@ -125,15 +125,19 @@ void FrontEnd::destroy_program(compute::Program program) {
     if (programs_.erase(program.id) != 0) device_->destroy_program(program);
 }
 
-Result<compute::Ticket> FrontEnd::submit(compute::Program program, const StepInput& input) {
+Result<compute::Ticket> FrontEnd::submit_inputs(compute::Program program, std::span<const StepInput> inputs) {
     return unless_lost([&]() -> Result<compute::Ticket> {
         const auto found = programs_.find(program.id);
         if (found == programs_.end())
             return error(Code::bad_argument, "submit: no program has the handle " + std::to_string(program.id));
-        if (const auto& [label, buffers, gone] = found->second; gone != 0)
-            return error(Code::bad_argument, "submit: program '" + label + "': its buffer with the handle " +
-                                                 std::to_string(gone) + " was destroyed");
-        auto ticket = device_->submit(program, input);
+        const Program& known = found->second;
+        const auto refuse = [&](const std::string& what) {
+            return error(Code::bad_argument, "submit: program '" + known.label + "': " + what);
+        };
+        if (known.gone != 0) return refuse("its buffer with the handle " + std::to_string(known.gone) + " was destroyed");
+        if (inputs.size() != known.inputs)
+            return refuse(std::to_string(inputs.size()) + " inputs for the " + std::to_string(known.inputs) + " that it reads");
+        auto ticket = device_->submit_inputs(program, inputs);
         if (ticket) newest_ = *ticket;
         return ticket;
     });

@@ -32,7 +32,7 @@ class FrontEnd final : public compute::Device, private compute::HostSync {
     Result<compute::Pipeline> create_pipeline(int stage, std::uint32_t effects, compute::GroupSize group) override;
     Result<compute::Program> compile(const compute::ProgramBuilder& builder, const WorldParams& params) override;
     void destroy_program(compute::Program program) override;
-    Result<compute::Ticket> submit(compute::Program program, const StepInput& input) override;
+    Result<compute::Ticket> submit_inputs(compute::Program program, std::span<const StepInput> inputs) override;
     bool finished(compute::Ticket ticket) override;
     Status wait(compute::Ticket ticket) override;
     Result<std::vector<compute::Timing>> timings(compute::Ticket ticket) override;
@@ -55,6 +55,7 @@ class FrontEnd final : public compute::Device, private compute::HostSync {
     struct Program {
         std::string label;
         std::set<std::uint32_t> buffers;
+        std::size_t inputs = 1;
         std::uint32_t gone = 0; // of the buffers, one that was destroyed
     };
     std::map<std::uint32_t, Program> programs_; // those that exist

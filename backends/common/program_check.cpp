@@ -119,6 +119,9 @@ Status check_range(const Objects& objects, compute::Buffer buffer, std::uint64_t
 }
 
 Status check_program(const compute::ProgramBuilder& program, const WorldParams& params, const Objects& objects) {
+    if (program.inputs() > compute::most_inputs)
+        return bad("program '" + program.label() + "'", std::to_string(program.inputs()) + " inputs; a submission has " +
+                                                            std::to_string(compute::most_inputs) + " at most");
     const Checker checker(program, params, objects);
     for (const auto& op : program.ops()) {
         if (auto status = std::visit([&](const auto& o) { return checker.check(o); }, op); !status) return status;

@@ -131,6 +131,7 @@ Result<compute::Program> CpuDevice::compile(const compute::ProgramBuilder& build
                 step.sizes.push_back(memory != nullptr ? memory->bytes : 0);
             }
             step.range = d->range;
+            step.input = static_cast<std::size_t>(d->input);
             step.rows_per_grab = std::max(1, (d->range.j1 - d->range.j0) / (8 * pool_.size()));
             if (d->tiles.on()) {
                 if (auto status = set_active(*d, stage, params, step); !status) return status;
@@ -182,10 +183,11 @@ void CpuDevice::destroy_program(compute::Program program) {
     programs_.take(program.id);
 }
 
-Result<compute::Ticket> CpuDevice::submit(compute::Program program, const StepInput& input) {
+Result<compute::Ticket> CpuDevice::submit_inputs(compute::Program program, std::span<const StepInput> inputs) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return queue_.size() < most_in_flight; });
-    queue_.push_back({submitted_ + 1, programs_.find(program.id), input}); // may throw: nothing is counted then
+    queue_.push_back(
+        {submitted_ + 1, programs_.find(program.id), {inputs.begin(), inputs.end()}}); // may throw: nothing is counted then
     ++submitted_;
     ++counters_.submits;
     lock.unlock();
@@ -215,15 +217,15 @@ void CpuDevice::device_thread() {
     for (;;) {
         changed_.wait(lock, [this] { return stop_ || !queue_.empty(); });
         if (queue_.empty()) return;
-        const Submission next = queue_.front();
+        const Submission& next = queue_.front(); // stays where it is while others are put behind it
         lock.unlock();
         std::vector<compute::Timing> times;
-        execute(*next.program, next.input, times);
+        execute(*next.program, next.inputs, times);
         lock.lock();
-        queue_.pop_front();
         done_ = next.ticket;
+        queue_.pop_front();
         if (!times.empty()) {
-            timings_[next.ticket] = std::move(times);
+            timings_[done_] = std::move(times);
             if (timings_.size() > kept_timings) timings_.erase(timings_.begin());
         }
         changed_.notify_all();
@@ -244,7 +246,7 @@ void CpuDevice::run_rows(Step& step, const WorldParams& params, const StepInput&
 }
 
 // A barrier waits for rows, not for threads: one that the system has put aside holds nothing up but the rows it has taken.
-void CpuDevice::execute(Recorded& program, const StepInput& input, std::vector<compute::Timing>& timings) {
+void CpuDevice::execute(Recorded& program, std::span<const StepInput> inputs, std::vector<compute::Timing>& timings) {
     const std::size_t count = program.steps.size();
     for (std::size_t n = 0; n < count; ++n) {
         program.progress[n].next_row.store(0, std::memory_order_relaxed);
@@ -269,7 +271,7 @@ void CpuDevice::execute(Recorded& program, const StepInput& input, std::vector<c
                 if (stamp) {
                     stamps[static_cast<std::size_t>(step.timestamp)] = std::chrono::steady_clock::now();
                 } else {
-                    run_rows(step, program.params, input, first, last);
+                    run_rows(step, program.params, inputs[step.input], first, last);
                 }
                 progress.rows.finish(last - first);
             }

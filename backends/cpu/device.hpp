@@ -29,7 +29,7 @@ class CpuDevice final : public compute::Device {
     Result<compute::Pipeline> create_pipeline(int stage, std::uint32_t effects, compute::GroupSize group) override;
     Result<compute::Program> compile(const compute::ProgramBuilder& builder, const WorldParams& params) override;
     void destroy_program(compute::Program program) override;
-    Result<compute::Ticket> submit(compute::Program program, const StepInput& input) override;
+    Result<compute::Ticket> submit_inputs(compute::Program program, std::span<const StepInput> inputs) override;
     bool finished(compute::Ticket ticket) override;
     Status wait(compute::Ticket ticket) override;
     Result<std::vector<compute::Timing>> timings(compute::Ticket ticket) override;
@@ -47,6 +47,7 @@ class CpuDevice final : public compute::Device {
         std::vector<void*> buffers;
         std::vector<unsigned long> sizes;
         compute::Range2 range{};
+        std::size_t input = 0; // of the submission
         ActiveStage active;
         int rows_per_grab = 1;
         std::byte* from = nullptr; // copy
@@ -73,13 +74,13 @@ class CpuDevice final : public compute::Device {
     struct Submission {
         std::uint64_t ticket;
         Recorded* program;
-        StepInput input;
+        std::vector<StepInput> inputs;
     };
 
     Memory& at(compute::Buffer buffer) const { return *buffers_.find(buffer.id); }
     void drain();
     void device_thread();
-    void execute(Recorded& program, const StepInput& input, std::vector<compute::Timing>& timings);
+    void execute(Recorded& program, std::span<const StepInput> inputs, std::vector<compute::Timing>& timings);
     /// Errors: internal (more outputs than any stage has).
     Status set_active(const compute::Dispatch& dispatch, const compute::StageInfo& stage, const WorldParams& params, Step& step);
     static void run_rows(Step& step, const WorldParams& params, const StepInput& input, int first, int last);

@@ -63,11 +63,11 @@ class CudaDevice final : public compute::Device {
 
     void destroy_program(compute::Program program) override { programs_.take(program.id); } // waits for the stream
 
-    Result<compute::Ticket> submit(compute::Program program, const StepInput& input) override {
+    Result<compute::Ticket> submit_inputs(compute::Program program, std::span<const StepInput> inputs) override {
         const CurrentContext current(*context_);
         auto slot = submissions_.acquire();
         if (!slot) return slot.status();
-        if (Status s = submissions_.begin(*slot, input); !s) return s;
+        if (Status s = submissions_.begin(*slot, inputs); !s) return s;
         if (Status s = programs_.find(program.id)->launch(*slot); !s) return s;
         return submissions_.finish(*slot, program);
     }

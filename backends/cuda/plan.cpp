@@ -62,7 +62,7 @@ class Planner {
     Result<Call> plan(const compute::Dispatch& d) const {
         const StagePipeline& pipeline = pipelines_.at(d.pipeline);
         const compute::StageInfo& info = compute::stage_table()[static_cast<std::size_t>(d.stage)];
-        KernelCall call{pipeline.kernel, {}, {}, {}, {}};
+        KernelCall call{pipeline.kernel, {}, {}, {}, {}, static_cast<std::size_t>(d.input)};
         for (const auto& binding : info.bindings)
             call.slots.push_back(binding.exists(d.effects) ? at(d.slots[static_cast<std::size_t>(binding.slot)]).data : nullptr);
         if (call.slots.empty()) call.slots.push_back(nullptr); // the kernel's struct of slots holds at least one

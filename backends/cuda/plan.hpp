@@ -14,6 +14,7 @@ struct KernelCall {
     dim3 groups, threads;
     std::vector<void*> slots;           // device addresses; null where the condition is off
     std::array<const void*, 3> tiles{}; // list, count and activity of active tiles; null without
+    std::size_t input = 0;              // of the submission
 };
 struct CopyCall {
     void* to;

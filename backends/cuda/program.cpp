@@ -6,8 +6,9 @@ namespace {
 /// What cudaLaunchKernel and kernel nodes take: the addresses of the arguments, of which only kernels over active tiles and
 /// fused ones have a fourth. They are copied during the call.
 struct Arguments {
-    Arguments(WorldParams& params, const void*& input, KernelCall& call)
-        : addresses{&params, &input, call.slots.data(), call.tiles.data()} {}
+    Arguments(WorldParams& params, const StepInput* inputs, KernelCall& call)
+        : input(inputs + call.input), addresses{&params, &input, call.slots.data(), call.tiles.data()} {}
+    const StepInput* input; // device address
     void* addresses[4];
 };
 
@@ -25,7 +26,7 @@ Result<std::unique_ptr<CompiledProgram>>
 CompiledProgram::compile(const ProgramParts& parts, const compute::ProgramBuilder& builder, const WorldParams& params) {
     auto plan = plan_calls(parts.context, parts.buffers, parts.pipelines, builder);
     if (!plan) return plan.status();
-    std::unique_ptr<CompiledProgram> program(new CompiledProgram(parts.context, params, parts.submissions.input()));
+    std::unique_ptr<CompiledProgram> program(new CompiledProgram(parts.context, params, parts.submissions.inputs()));
     program->label_ = builder.label();
     program->calls_ = std::move(plan->calls);
     for (const compute::Op& op : builder.ops()) {
@@ -85,7 +86,7 @@ Status CompiledProgram::add_nodes(cudaGraph_t graph, const std::vector<std::vect
 Status CompiledProgram::add_node(cudaGraphNode_t& node, cudaGraph_t graph, const std::vector<cudaGraphNode_t>& after, Call& call,
                                  std::size_t slot) {
     if (auto* k = std::get_if<KernelCall>(&call)) {
-        Arguments arguments(params_, input_, *k);
+        Arguments arguments(params_, inputs_, *k);
         cudaKernelNodeParams kernel{};
         kernel.func = const_cast<void*>(k->kernel);
         kernel.gridDim = k->groups;
@@ -130,7 +131,7 @@ Status CompiledProgram::launch(std::size_t slot) {
 // The stream alone keeps the order.
 Status CompiledProgram::run(Call& call, std::size_t slot) {
     if (auto* k = std::get_if<KernelCall>(&call)) {
-        Arguments arguments(params_, input_, *k);
+        Arguments arguments(params_, inputs_, *k);
         const cudaError_t r = cudaLaunchKernel(k->kernel, k->groups, k->threads, arguments.addresses, 0, c_.stream);
         return c_.check(r, "cudaLaunchKernel", label_);
     }

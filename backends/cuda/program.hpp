@@ -28,8 +28,8 @@ class CompiledProgram {
     Result<std::vector<compute::Timing>> timings(std::size_t slot);
 
   private:
-    CompiledProgram(Context& context, const WorldParams& params, const void* input)
-        : c_(context), params_(params), input_(input) {}
+    CompiledProgram(Context& context, const WorldParams& params, const StepInput* inputs)
+        : c_(context), params_(params), inputs_(inputs) {}
     Status create_events();
     Status record_replays(const std::vector<std::vector<int>>& waits);
     Status add_nodes(cudaGraph_t graph, const std::vector<std::vector<int>>& waits, std::size_t slot);
@@ -41,7 +41,7 @@ class CompiledProgram {
     Context& c_;
     std::string label_;
     WorldParams params_;
-    const void* input_; // device address
+    const StepInput* inputs_; // device address
     std::vector<Call> calls_;
     std::vector<cudaGraphExec_t>
         replays_;                         // one, or one per submission slot where each has events of its own; none without replay

@@ -1,14 +1,16 @@
 #include "backends/cuda/submissions.hpp"
+#include <algorithm>
 
 namespace wadi::cuda {
 
 Status Submissions::open() {
     c_.capabilities.queue_depth = most_in_flight;
-    auto input = allocate(c_, sizeof(StepInput), "step input");
-    if (!input) return input.status();
-    input_ = std::move(*input);
+    auto inputs = allocate(c_, compute::most_inputs * sizeof(StepInput), "step inputs");
+    if (!inputs) return inputs.status();
+    inputs_ = std::move(*inputs);
     void* staging = nullptr;
-    const cudaError_t r = cudaHostAlloc(&staging, most_in_flight * sizeof(StepInput), cudaHostAllocDefault);
+    const cudaError_t r =
+        cudaHostAlloc(&staging, most_in_flight * compute::most_inputs * sizeof(StepInput), cudaHostAllocDefault);
     if (Status s = c_.check(r, "cudaHostAlloc", "step inputs"); !s) return s;
     staging_ = static_cast<StepInput*>(staging);
     for (Slot& slot : slots_) {
@@ -24,7 +26,7 @@ Submissions::~Submissions() {
         if (slot.done != nullptr) c_.note(cudaEventDestroy(slot.done), "cudaEventDestroy");
     }
     if (staging_ != nullptr) c_.note(cudaFreeHost(staging_), "cudaFreeHost", "step inputs");
-    release(c_, input_);
+    release(c_, inputs_);
 }
 
 Result<std::size_t> Submissions::acquire() {
@@ -33,10 +35,11 @@ Result<std::size_t> Submissions::acquire() {
     return slot;
 }
 
-Status Submissions::begin(std::size_t slot, const StepInput& input) {
-    staging_[slot] = input;
-    const cudaError_t r = cudaMemcpyAsync(input_.data, &staging_[slot], sizeof(input), cudaMemcpyHostToDevice, c_.stream);
-    return c_.check(r, "cudaMemcpyAsync", input_.label);
+Status Submissions::begin(std::size_t slot, std::span<const StepInput> inputs) {
+    StepInput* staged = staging_ + slot * compute::most_inputs;
+    std::ranges::copy(inputs, staged);
+    const cudaError_t r = cudaMemcpyAsync(inputs_.data, staged, inputs.size_bytes(), cudaMemcpyHostToDevice, c_.stream);
+    return c_.check(r, "cudaMemcpyAsync", inputs_.label);
 }
 
 Result<compute::Ticket> Submissions::finish(std::size_t index, compute::Program program) {

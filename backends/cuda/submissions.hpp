@@ -1,7 +1,9 @@
 // The queue of submissions in flight: tickets, their completion, and the input of each step.
 #pragma once
 #include "backends/cuda/memory.hpp"
+#include "engine/compute/program.hpp"
 #include <array>
+#include <span>
 
 namespace wadi::cuda {
 
@@ -16,12 +18,12 @@ class Submissions {
     Submissions& operator=(const Submissions&) = delete;
     Status open();
 
-    /// Device address of the input of the step that runs.
-    const void* input() const { return input_.data; }
+    /// Device address of the inputs of the submission that runs.
+    const StepInput* inputs() const { return reinterpret_cast<const StepInput*>(inputs_.data); }
     /// The slot of the next submission, once its previous occupant has finished.
     Result<std::size_t> acquire();
-    /// Brings the input to the device, after everything submitted before. The slot's work follows on the stream, then finish().
-    Status begin(std::size_t slot, const StepInput& input);
+    /// Brings the inputs to the device, after everything submitted before. The slot's work follows on the stream, then finish().
+    Status begin(std::size_t slot, std::span<const StepInput> inputs);
     Result<compute::Ticket> finish(std::size_t slot, compute::Program program);
 
     /// Errors: device_lost.
@@ -39,8 +41,8 @@ class Submissions {
     };
 
     Context& c_;
-    Memory input_;
-    StepInput* staging_ = nullptr; // page-locked, one per slot
+    Memory inputs_;
+    StepInput* staging_ = nullptr; // page-locked, most_inputs per slot
     std::array<Slot, most_in_flight> slots_;
     std::uint64_t last_ = 0;     // newest ticket given out
     std::uint64_t finished_ = 0; // newest ticket known to have finished

@@ -71,7 +71,7 @@ class VulkanDevice final : public compute::Device {
         if (recorded_in_flight()) doomed_programs_.push_back(std::move(taken));
     }
 
-    Result<compute::Ticket> submit(compute::Program program, const StepInput& input) override {
+    Result<compute::Ticket> submit_inputs(compute::Program program, std::span<const StepInput> inputs) override {
         if (!submissions_.recording()) {
             if (Status s = submissions_.check_order(); !s) return s;
             destroy_doomed();
@@ -82,7 +82,7 @@ class VulkanDevice final : public compute::Device {
         auto commands = submissions_.recording() ? compiled.secondary_for(*slot)
                                                  : compiled.commands_for(*slot, submissions_.own_commands(*slot));
         if (!commands) return commands.status();
-        return submissions_.submit(*slot, input, *commands, program);
+        return submissions_.submit(*slot, inputs, *commands, program);
     }
 
     bool finished(compute::Ticket ticket) override {

@@ -1,12 +1,18 @@
 #include "backends/vulkan/plan.hpp"
 #include "engine/compute/hazards.hpp"
 #include <algorithm>
+#include <compare>
 #include <map>
 
 namespace wadi::vulkan {
 namespace {
 
-using SetKey = std::pair<int, std::vector<std::uint32_t>>; // stage and the ids of its slots, 0 where nothing is bound
+// Stage, which input, and the ids of the slots, 0 where nothing is bound.
+struct SetKey {
+    int stage, input;
+    std::vector<std::uint32_t> slots;
+    friend auto operator<=>(const SetKey&, const SetKey&) = default;
+};
 
 Kinds kinds_of(const compute::Op& op) {
     return {std::holds_alternative<compute::Dispatch>(op),
@@ -62,21 +68,21 @@ class Planner {
     static bool marks(int stage) { return compute::stage_table()[static_cast<std::size_t>(stage)].marks; }
 
     static SetKey key_of(const compute::Dispatch& d) {
-        SetKey key{d.stage, {}};
+        SetKey key{d.stage, d.input, {}};
         for (const auto& binding : compute::stage_table()[static_cast<std::size_t>(d.stage)].bindings)
-            key.second.push_back(binding.exists(d.effects) ? d.slots[static_cast<std::size_t>(binding.slot)].id : 0);
-        if (marks(d.stage)) key.second.insert(key.second.end(), {d.tiles.list.id, d.tiles.activity.id});
+            key.slots.push_back(binding.exists(d.effects) ? d.slots[static_cast<std::size_t>(binding.slot)].id : 0);
+        if (marks(d.stage)) key.slots.insert(key.slots.end(), {d.tiles.list.id, d.tiles.activity.id});
         return key;
     }
 
-    // Dispatches of one stage with the same buffers share a set.
+    // Dispatches of one stage with the same buffers and input share a set.
     Status create_sets() {
         std::uint32_t storage = 0;
         for (const compute::Op& op : builder_.ops()) {
             const auto* d = std::get_if<compute::Dispatch>(&op);
             if (d == nullptr) continue;
             if (sets_.emplace(key_of(*d), VkDescriptorSet{VK_NULL_HANDLE}).second)
-                storage += static_cast<std::uint32_t>(key_of(*d).second.size());
+                storage += static_cast<std::uint32_t>(key_of(*d).slots.size());
         }
         if (sets_.empty()) return ok_status();
         const auto count = static_cast<std::uint32_t>(sets_.size());
@@ -100,14 +106,15 @@ class Planner {
         auto info = vk_struct<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
         info.descriptorPool = plan_.descriptors;
         info.descriptorSetCount = 1;
-        info.pSetLayouts = &p_.pipelines.stage(key.first).set_layout;
+        info.pSetLayouts = &p_.pipelines.stage(key.stage).set_layout;
         const VkResult r = c_.vk.vkAllocateDescriptorSets(c_.device, &info, &set);
         if (Status s = c_.check(r, "vkAllocateDescriptorSets", builder_.label()); !s) return s;
-        std::vector<VkDescriptorBufferInfo> buffers(first_slot_binding + key.second.size());
+        std::vector<VkDescriptorBufferInfo> buffers(first_slot_binding + key.slots.size());
         buffers[world_binding] = {params_, 0, sizeof(WorldParams)};
-        buffers[input_binding] = {p_.submissions.input_buffer(), 0, sizeof(StepInput)};
-        for (std::size_t slot = 0; slot < key.second.size(); ++slot) {
-            const Memory* memory = p_.buffers.find({key.second[slot]});
+        buffers[input_binding] = {p_.submissions.input_buffer(), static_cast<VkDeviceSize>(key.input) * Submissions::input_stride,
+                                  sizeof(StepInput)};
+        for (std::size_t slot = 0; slot < key.slots.size(); ++slot) {
+            const Memory* memory = p_.buffers.find({key.slots[slot]});
             buffers[first_slot_binding + slot] =
                 memory != nullptr ? VkDescriptorBufferInfo{memory->buffer, 0, VK_WHOLE_SIZE} : absent;
         }

@@ -11,9 +11,11 @@ VkSemaphore semaphore_of(const compute::SyncPoint& point) { return reinterpret_c
 
 Status Submissions::open() {
     c_.capabilities.queue_depth = most_in_flight;
-    auto input = allocate(c_, sizeof(StepInput), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, Place::device, "step input");
-    if (!input) return input.status();
-    input_ = std::move(*input);
+    static_assert(sizeof(StepInput) <= input_stride);
+    auto inputs =
+        allocate(c_, compute::most_inputs * input_stride, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, Place::device, "step inputs");
+    if (!inputs) return inputs.status();
+    inputs_ = std::move(*inputs);
     auto pool = vk_struct<VkCommandPoolCreateInfo>(VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO);
     pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
     pool.queueFamilyIndex = c_.queue_family;
@@ -49,7 +51,7 @@ Submissions::~Submissions() {
         if (slot.fence != VK_NULL_HANDLE) c_.vk.vkDestroyFence(c_.device, slot.fence, nullptr);
     }
     if (pool_ != VK_NULL_HANDLE) c_.vk.vkDestroyCommandPool(c_.device, pool_, nullptr);
-    release(c_, input_);
+    release(c_, inputs_);
 }
 
 Result<std::uint32_t> Submissions::acquire() {
@@ -63,31 +65,32 @@ Result<std::uint32_t> Submissions::acquire() {
 }
 
 // Also the boundary between submissions: all earlier work is done and seen before anything of this one starts.
-void Submissions::record_boundary(VkCommandBuffer commands, const StepInput& input) {
+void Submissions::record_boundary(VkCommandBuffer commands, std::span<const StepInput> inputs) {
     const Kinds all{.compute = true, .transfer = true};
     record_barrier(c_, commands, all, all);
-    c_.vk.vkCmdUpdateBuffer(commands, input_.buffer, 0, sizeof(input), &input);
+    for (std::size_t n = 0; n < inputs.size(); ++n)
+        c_.vk.vkCmdUpdateBuffer(commands, inputs_.buffer, n * input_stride, sizeof(StepInput), &inputs[n]);
     record_barrier(c_, commands, {.transfer = true}, {.compute = true});
 }
 
-Status Submissions::record_input(const Slot& slot, const StepInput& input) {
+Status Submissions::record_inputs(const Slot& slot, std::span<const StepInput> inputs) {
     auto info = vk_struct<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
     info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
     if (Status s = c_.check(c_.vk.vkBeginCommandBuffer(slot.input, &info), "vkBeginCommandBuffer"); !s) return s;
-    record_boundary(slot.input, input);
+    record_boundary(slot.input, inputs);
     return c_.check(c_.vk.vkEndCommandBuffer(slot.input), "vkEndCommandBuffer");
 }
 
-Result<compute::Ticket> Submissions::submit(std::uint32_t index, const StepInput& input, VkCommandBuffer commands,
+Result<compute::Ticket> Submissions::submit(std::uint32_t index, std::span<const StepInput> inputs, VkCommandBuffer commands,
                                             compute::Program program) {
     Slot& slot = slots_[index];
     const std::uint64_t ticket = last_ + 1;
     if (recording()) {
-        record_boundary(host_commands_, input);
+        record_boundary(host_commands_, inputs);
         c_.vk.vkCmdExecuteCommands(host_commands_, 1, &commands);
         last_recorded_ = ticket;
     } else {
-        if (Status s = record_input(slot, input); !s) return s;
+        if (Status s = record_inputs(slot, inputs); !s) return s;
         if (Status s = send(slot, ticket, commands); !s) return s;
     }
     ++c_.counters.submits;

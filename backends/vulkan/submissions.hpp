@@ -18,14 +18,15 @@ class Submissions final : public compute::HostSync {
     Submissions& operator=(const Submissions&) = delete;
     Status open();
 
-    /// The uniform buffer that holds the input of the step that runs.
-    VkBuffer input_buffer() const { return input_.buffer; }
+    /// The uniform buffer that holds the inputs of the submission that runs, input_stride bytes apart.
+    VkBuffer input_buffer() const { return inputs_.buffer; }
+    static constexpr VkDeviceSize input_stride = 2048; // a multiple of every device's minUniformBufferOffsetAlignment
     /// The slot of the next submission, once its previous occupant has finished.
     Result<std::uint32_t> acquire();
     /// The slot's own command buffer, for programs that are recorded anew.
     VkCommandBuffer own_commands(std::uint32_t slot) const { return slots_[slot].own; }
-    /// Brings the input, then runs `commands`, after everything submitted before.
-    Result<compute::Ticket> submit(std::uint32_t slot, const StepInput& input, VkCommandBuffer commands,
+    /// Brings the inputs, then runs `commands`, after everything submitted before.
+    Result<compute::Ticket> submit(std::uint32_t slot, std::span<const StepInput> inputs, VkCommandBuffer commands,
                                    compute::Program program);
 
     Status wait_before(std::span<const compute::SyncPoint> points) override;
@@ -54,16 +55,16 @@ class Submissions final : public compute::HostSync {
         std::uint64_t ticket = 0;
         compute::SyncPoint promise; // of recorded work; semaphore 0 = went to the queue
     };
-    Status record_input(const Slot& slot, const StepInput& input);
+    Status record_inputs(const Slot& slot, std::span<const StepInput> inputs);
     Status send(const Slot& slot, std::uint64_t ticket, VkCommandBuffer commands);
-    void record_boundary(VkCommandBuffer commands, const StepInput& input);
+    void record_boundary(VkCommandBuffer commands, std::span<const StepInput> inputs);
     Status check_timeline() const;
     Result<std::uint64_t> value_of(VkSemaphore semaphore);
 
     Context& c_;
     VkCommandPool pool_ = VK_NULL_HANDLE;
     VkSemaphore timeline_ = VK_NULL_HANDLE; // its value is the newest finished ticket
-    Memory input_;
+    Memory inputs_;
     std::array<Slot, most_in_flight> slots_;
     std::vector<VkSemaphore> wait_semaphores_; // of the next submission
     std::vector<std::uint64_t> wait_values_;

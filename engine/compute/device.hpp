@@ -146,14 +146,18 @@ class Device {
 
     /// Records a program once, with its parameters frozen in. Errors: out_of_memory, not_supported (more than the device can run
     /// at once), bad_argument (a stage, buffer or pipeline that does not exist; too few or too many slots; a pipeline of another
-    /// stage, other tested effects or other active tiles; a buffer bound twice and written; a copy past a buffer's end).
+    /// stage, other tested effects or other active tiles; a buffer bound twice and written; a copy past a buffer's end; more than
+    /// most_inputs).
     virtual Result<Program> compile(const ProgramBuilder& builder, const WorldParams& params) = 0;
     /// Frees a program. Null is ignored. Waits for work in flight.
     virtual void destroy_program(Program program) = 0;
 
-    /// Replays a program with this step's input. Returns at once unless the queue of submissions is full. Tickets count
-    /// up from 1. Errors: bad_argument (no such program, or one of its buffers was destroyed).
-    virtual Result<Ticket> submit(Program program, const StepInput& input) = 0;
+    /// Replays a program with its steps' inputs, ProgramBuilder::inputs() of them. Returns at once unless the queue of
+    /// submissions is full. Tickets count up from 1. Errors: bad_argument (no such program, one of its buffers was destroyed,
+    /// more or fewer inputs).
+    virtual Result<Ticket> submit_inputs(Program program, std::span<const StepInput> inputs) = 0;
+    /// The same for a program with one input.
+    Result<Ticket> submit(Program program, const StepInput& input) { return submit_inputs(program, {&input, 1}); }
     /// False for a ticket that was never given out.
     virtual bool finished(Ticket ticket) = 0;
     /// Errors: bad_argument (a ticket that was never given out).

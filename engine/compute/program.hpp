@@ -37,6 +37,7 @@ struct Dispatch {
     Range2 range{};            // what the kernel covers
     std::string label;         // for errors and profiles
     ActiveTiles tiles{};
+    int input = 0; // which of the submission's inputs it reads
 };
 struct Copy {
     Buffer from, to;
@@ -51,11 +52,20 @@ struct Timestamp {
 };
 using Op = std::variant<Dispatch, Copy, Fill, Timestamp>;
 
+/// Inputs of one submission at most: steps that one program takes.
+inline constexpr int most_inputs = 8;
+
 /// Collects operations in order. Nothing is checked against a device until Device::compile.
 class ProgramBuilder {
   public:
     explicit ProgramBuilder(std::string label) : label_(std::move(label)) {}
-    void dispatch(Dispatch d) { ops_.emplace_back(std::move(d)); }
+    void dispatch(Dispatch d) {
+        d.input = inputs_ - 1;
+        ops_.emplace_back(std::move(d));
+    }
+    /// What follows reads the next of the submission's inputs.
+    void next_input() { ++inputs_; }
+    int inputs() const { return inputs_; }
     void copy(Copy c) { ops_.emplace_back(c); }
     void fill(Fill f) { ops_.emplace_back(f); }
     void timestamp(std::string label) { ops_.emplace_back(Timestamp{std::move(label)}); }
@@ -65,6 +75,7 @@ class ProgramBuilder {
   private:
     std::string label_;
     std::vector<Op> ops_;
+    int inputs_ = 1;
 };
 
 } // namespace wadi::compute

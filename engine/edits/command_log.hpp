@@ -57,6 +57,10 @@ class CommandLog {
 
     /// Runs what was played for this boundary between two steps.
     Status at_boundary();
+    /// `most`, or fewer steps: those to the next boundary for which something was played.
+    std::uint64_t undisturbed(std::uint64_t most) const {
+        return played_.empty() ? most : std::min(most, step_of(played_.front()) - state_.steps);
+    }
     /// The world went to another step: forgets what waits and what was remembered of later steps.
     void went_to(std::uint64_t step);
 

@@ -76,6 +76,17 @@ Status Edits::before_step() {
     return submit();
 }
 
+std::uint64_t Edits::undisturbed(std::uint64_t most) const {
+    const auto later = std::find_if(waiting_.begin(), waiting_.end(), [&](const Edit& edit) { return edit.step > state_.steps; });
+    if (later != waiting_.end()) most = std::min(most, later->step - state_.steps);
+    std::vector<Edit> scripted;
+    for (std::uint64_t n = 1; n < most; ++n) {
+        append_scripted_edits(state_.settings(), state_.steps + n, scripted);
+        if (!scripted.empty()) return n;
+    }
+    return most;
+}
+
 Status Edits::promote() {
     Content content = state_.content;
     vec4 packed[EDIT_VECTORS];

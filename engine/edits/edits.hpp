@@ -33,6 +33,8 @@ class Edits {
     /// Submits what is due ahead of the next step, MAX_EDITS at a time, the level's own edits first; promotes the world where a
     /// material is new.
     Status before_step();
+    /// Of the next `most` steps, how many have no edit ahead of them but those ahead of the first.
+    std::uint64_t undisturbed(std::uint64_t most) const;
 
   private:
     Status promote();

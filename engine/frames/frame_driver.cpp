@@ -58,11 +58,37 @@ Status FrameDriver::take_step(bool& taken) {
     return ok_status();
 }
 
+bool FrameDriver::run_is_due(std::uint32_t taken) {
+    constexpr std::uint32_t steps = Stepper::run_steps;
+    if (ahead_ || stepper_.parts_done() > 0 || settings_.max_steps_per_update - taken < steps) return false;
+    StepClock clock = clock_;
+    for (std::uint32_t n = 0; n < steps; ++n) {
+        if (!clock.due()) return false;
+        clock.take();
+    }
+    return device_keeps_up() &&
+           (settings_.max_steps_in_flight == 0 || newest_ - oldest_ + steps <= settings_.max_steps_in_flight);
+}
+
+Status FrameDriver::take_run() {
+    auto status = stepper_.steps(Stepper::run_steps);
+    for (int n = 0; status && n < Stepper::run_steps; ++n) {
+        clock_.take();
+        if (settings_.max_steps_in_flight != 0) tickets_[newest_++ % most_steps_in_flight] = stepper_.ticket();
+    }
+    return status;
+}
+
 Status FrameDriver::take_steps(std::uint64_t nanoseconds, Frame& frame) {
     if (!state_.lost()) return state_.lost();
     frame = {};
     frame.dropped = clock_.add(nanoseconds);
     while (clock_.due()) {
+        if (run_is_due(frame.steps)) {
+            if (auto status = take_run(); !status) return status;
+            frame.steps += Stepper::run_steps;
+            continue;
+        }
         bool taken = ahead_;
         if (ahead_) {
             ahead_ = false;

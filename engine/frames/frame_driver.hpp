@@ -47,6 +47,9 @@ class FrameDriver {
     bool device_keeps_up();
     bool queue_has_room() const;
     Status take_step(bool& taken);
+    /// Whether so many steps are due at once, and the device may have them, that they go to it as one run.
+    bool run_is_due(std::uint32_t taken);
+    Status take_run();
 
     WorldState& state_;
     Stepper& stepper_;

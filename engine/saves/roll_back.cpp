@@ -115,6 +115,10 @@ Status RollBack::keep() {
 
 Status RollBack::after_step() { return earlier_.empty() || state_.steps % interval_ != 0 ? ok_status() : keep(); }
 
+std::uint64_t RollBack::undisturbed(std::uint64_t most) const {
+    return earlier_.empty() ? most : std::min<std::uint64_t>(most, interval_ - state_.steps % interval_);
+}
+
 Status RollBack::restart() {
     for (auto& earlier : earlier_) earlier.kept = false;
     return keep();

@@ -22,6 +22,8 @@ class RollBack {
     Result<std::uint64_t> go_back(std::uint64_t step);
     /// Keeps the state if its step is due.
     Status after_step();
+    /// `most`, or fewer steps: those to the next boundary that is kept.
+    std::uint64_t undisturbed(std::uint64_t most) const;
     /// The state has another past now: forgets all that was kept and keeps the state as it is.
     Status restart();
 

@@ -11,6 +11,7 @@ void Stepper::drop_programs() {
     };
     drop(programs_);
     drop(timed_programs_);
+    drop(run_programs_);
     drop(start_programs_);
     for (auto& programs : part_programs_) {
         drop(programs);
@@ -18,9 +19,7 @@ void Stepper::drop_programs() {
     }
 }
 
-Result<compute::Program> Stepper::record_step(int turn, Parity& parity, bool timestamps) {
-    compute::ProgramBuilder builder(timestamps ? "timed step" : "step");
-    if (timestamps) builder.timestamp("start");
+Status Stepper::append_step(compute::ProgramBuilder& builder, int turn, Parity& parity, bool timestamps) {
     const auto add = [&](const PlanPass& pass) {
         auto status = state_.append(builder, pass, parity);
         if (status && timestamps)
@@ -37,6 +36,23 @@ Result<compute::Program> Stepper::record_step(int turn, Parity& parity, bool tim
         for (const auto& pass : state_.plan().substep_passes) {
             if (auto status = add(pass); !status) return status;
         }
+    }
+    return ok_status();
+}
+
+Result<compute::Program> Stepper::record_step(int turn, Parity& parity, bool timestamps) {
+    compute::ProgramBuilder builder(timestamps ? "timed step" : "step");
+    if (timestamps) builder.timestamp("start");
+    if (auto status = append_step(builder, turn, parity, timestamps); !status) return status;
+    return state_.device().compile(builder, state_.params());
+}
+
+Result<compute::Program> Stepper::record_run(int turn) {
+    compute::ProgramBuilder builder("run of steps");
+    Parity parity = state_.fields().parity(turn);
+    for (int n = 0; n < run_steps; ++n) {
+        if (n > 0) builder.next_input();
+        if (auto status = append_step(builder, (turn + n) % 2, parity, false); !status) return status;
     }
     return state_.device().compile(builder, state_.params());
 }
@@ -258,6 +274,63 @@ Status Stepper::step() {
         if (auto status = collect_timings(false); !status) return status;
     }
     return complete_step();
+}
+
+bool Stepper::can_run() {
+    return !profiling_ && !starts() && hooks_.undisturbed(run_steps) == run_steps &&
+           !(state_.plan().active_tiles && active_.asleep());
+}
+
+Status Stepper::run(bool& taken) {
+    taken = false;
+    if (auto status = hooks_.before_step(); !status) return status;
+    const auto turn = static_cast<std::size_t>(state_.fields().turn());
+    auto& program = run_programs_[turn];
+    if (program.id == 0) {
+        auto recorded = record_run(static_cast<int>(turn));
+        // Inside a recording into the host's commands nothing new is compiled: single steps do.
+        if (recorded.status().code == Code::not_ready) return ok_status();
+        if (!recorded) return recorded.status();
+        program = *recorded;
+    }
+    const auto before = inputs_.totals();
+    const std::uint64_t first = state_.steps;
+    bool woken = false;
+    for (auto& input : run_inputs_) {
+        input = next_input();
+        woken |= input.wake_count > 0;
+        state_.tiles().submitted();
+        ++state_.steps;
+    }
+    auto ticket = state_.device().submit_inputs(program, run_inputs_);
+    if (!ticket) {
+        state_.steps = first;
+        inputs_.set_totals(before);
+        state_.tiles().wake_all();
+        return ticket.status();
+    }
+    ticket_ = *ticket;
+    input_ = run_inputs_.back();
+    for (const int of_turn : {0, 1}) active_.submitted(of_turn, ticket_, woken);
+    taken = true;
+    return hooks_.after_step();
+}
+
+Status Stepper::steps(std::uint64_t count) {
+    while (count > 0) {
+        if (!state_.lost()) return state_.lost();
+        bool taken = false;
+        if (parts_done_ == 0 && count >= run_steps && can_run()) {
+            if (auto status = run(taken); !status) return status;
+        }
+        if (taken) {
+            count -= run_steps;
+            continue;
+        }
+        if (auto status = step(); !status) return status;
+        --count;
+    }
+    return state_.lost();
 }
 
 Status Stepper::set_profiling(bool on) {

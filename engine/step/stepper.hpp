@@ -1,4 +1,5 @@
-// Runs the step plan: a water step is one program for each of the two buffer parities, or one water part and T sand parts.
+// Runs the step plan: a water step is one program for each of the two buffer parities, or one water part and T sand parts. Many
+// steps with nothing between them go to the device in runs of run_steps.
 #pragma once
 #include "engine/step/active_count.hpp"
 #include "engine/step/step_inputs.hpp"
@@ -32,6 +33,10 @@ class Stepper {
     Status finish_step();
     /// Submits one whole water step, or what is left of one that was begun in parts. Nothing, where the world is asleep.
     Status step();
+    /// Submits `count` whole water steps, in runs where the hooks allow it: the same bits as so many calls of step().
+    Status steps(std::uint64_t count);
+    /// Steps of one submission: even, so that one program does for a turn.
+    static constexpr int run_steps = compute::most_inputs;
     /// Submits the next of a water step's parts: the water passes, then each sand substep. The same bits as step().
     Status step_part();
     /// Parts of a water step: 1 + T, or 1 without sand.
@@ -65,6 +70,8 @@ class Stepper {
         std::function<Status()> before_step;
         /// A step has become whole: work that was asked for in the middle of a step, or that is due every so many.
         std::function<Status()> after_step;
+        /// Of the next `most` steps, how many none of the above would be heard between.
+        std::function<std::uint64_t(std::uint64_t most)> undisturbed;
         /// finish_step() has submitted what was left of a step: the clock of frames is behind it.
         std::function<void()> finished_early;
         /// The world went to another step: what waits belongs to another past.
@@ -81,7 +88,9 @@ class Stepper {
     Result<std::vector<StageTime>> stage_times();
 
   private:
+    Status append_step(compute::ProgramBuilder& builder, int turn, Parity& parity, bool timestamps);
     Result<compute::Program> record_step(int turn, Parity& parity, bool timestamps);
+    Result<compute::Program> record_run(int turn);
     Result<compute::Program> record_part(int part, bool start, Parity& parity);
     Status record_parts(std::size_t turn);
     Status record_start(std::size_t turn);
@@ -89,6 +98,10 @@ class Stepper {
     Status begin();
     /// Whether the present step has the plan's start passes.
     bool starts() const { return state_.steps == 0 && !state_.plan().start_passes.empty(); }
+    /// Whether the next steps can be a run: nothing is between them, none is timed, and the world is awake.
+    bool can_run();
+    /// Submits a run. Takes none, and is ok, where its program cannot be recorded now.
+    Status run(bool& taken);
     Status submit_parts(int parts);
     Status finish(int parts);
     Status complete_step();
@@ -103,7 +116,8 @@ class Stepper {
     StepInputs inputs_;
     ActiveCount active_{state_};
     bool asleep_ = false; // the present step submits nothing
-    std::array<compute::Program, 2> programs_{}, timed_programs_{};
+    std::array<compute::Program, 2> programs_{}, timed_programs_{}, run_programs_{};
+    std::array<StepInput, run_steps> run_inputs_{};
     std::array<std::vector<compute::Program>, 2> part_programs_;
     std::array<compute::Program, 2> start_programs_{}; // the water part of step 0
     int parts_done_ = 0;

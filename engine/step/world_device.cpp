@@ -59,8 +59,8 @@ void WorldDevice::destroy_program(compute::Program& program) {
     program = {};
 }
 
-Result<compute::Ticket> WorldDevice::submit(compute::Program program, const StepInput& input) {
-    return noted(device_->submit(program, input));
+Result<compute::Ticket> WorldDevice::submit_inputs(compute::Program program, std::span<const StepInput> inputs) {
+    return noted(device_->submit_inputs(program, inputs));
 }
 
 Status WorldDevice::wait(compute::Ticket ticket) { return noted(device_->wait(ticket)); }

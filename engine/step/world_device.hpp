@@ -41,7 +41,10 @@ class WorldDevice {
     Result<compute::Program> compile(const compute::ProgramBuilder& builder, const WorldParams& params);
     /// Frees a program and forgets it: null from here on.
     void destroy_program(compute::Program& program);
-    Result<compute::Ticket> submit(compute::Program program, const StepInput& input);
+    Result<compute::Ticket> submit(compute::Program program, const StepInput& input) {
+        return submit_inputs(program, {&input, 1});
+    }
+    Result<compute::Ticket> submit_inputs(compute::Program program, std::span<const StepInput> inputs);
     bool finished(compute::Ticket ticket) { return device_->finished(ticket); }
     Status wait(compute::Ticket ticket);
     Result<std::vector<compute::Timing>> timings(compute::Ticket ticket);

@@ -92,6 +92,37 @@ void replay(Session& session, Device& device, Expect& expect) {
     device.destroy_program(*program);
 }
 
+// Each dispatch of a program reads its own step's input, submission after submission.
+void inputs_of_one_submission(Session&, Device& device, Expect& expect) {
+    Rain rain(device);
+    auto dispatch = rain_dispatch(device, rain.terrain, rain.water, rain.ledger);
+    if (!dispatch) return expect.ok(dispatch.status(), "create_pipeline");
+    const float quantum = small_params().quantum;
+    ProgramBuilder builder("rains");
+    for (int n = 0; n < compute::most_inputs; ++n) {
+        if (n > 0) builder.next_input();
+        for (int times = 0; times <= n; ++times) builder.dispatch(*dispatch);
+    }
+    auto program = device.compile(builder, small_params());
+    expect.ok(program.status(), "compile");
+    if (!program) return;
+    std::vector<StepInput> inputs(compute::most_inputs);
+    float expected = 0;
+    for (int repeat = 0; repeat < 40; ++repeat) {
+        for (int n = 0; n < compute::most_inputs; ++n) {
+            const auto quanta = static_cast<float>((n * 5 + repeat) % 7);
+            inputs[static_cast<std::size_t>(n)].rain = quanta * quantum;
+            expected += static_cast<float>(n + 1) * quanta * quantum;
+        }
+        expect.ok(device.submit_inputs(*program, inputs).status(), "submit_inputs");
+    }
+    expect.that(rain.depth() == expected, "dispatches do not read the inputs of their steps");
+    expect.code(device.submit(*program, inputs[0]).status(), {Code::bad_argument}, "submit with too few inputs");
+    builder.next_input();
+    expect.code(device.compile(builder, small_params()).status(), {Code::bad_argument}, "compile with too many inputs");
+    device.destroy_program(*program);
+}
+
 void frozen_params(Session&, Device& device, Expect& expect) {
     Rain rain(device);
     auto dispatch = rain_dispatch(device, rain.terrain, rain.water, rain.ledger);
@@ -243,6 +274,7 @@ std::span<const Contract> program_contracts() {
         {"transfers", transfers},
         {"order", order},
         {"replay", replay},
+        {"inputs_of_one_submission", inputs_of_one_submission},
         {"frozen_params", frozen_params},
         {"program_handles", program_handles},
         {"pipelines", pipelines},

@@ -66,9 +66,9 @@ class FaultyDevice final : public Device {
         device_.destroy_program(program);
         count();
     }
-    Result<compute::Ticket> submit(compute::Program program, const StepInput& input) override {
+    Result<compute::Ticket> submit_inputs(compute::Program program, std::span<const StepInput> inputs) override {
         if (auto status = fault(); !status) return status;
-        return device_.submit(program, input);
+        return device_.submit_inputs(program, inputs);
     }
     bool finished(compute::Ticket ticket) override { return device_.finished(ticket); }
     Status wait(compute::Ticket ticket) override {

@@ -45,8 +45,8 @@ class BorrowedDevice final : public compute::Device {
         programs_.erase(program.id);
         device_.destroy_program(program);
     }
-    Result<compute::Ticket> submit(compute::Program program, const StepInput& input) override {
-        return device_.submit(program, input);
+    Result<compute::Ticket> submit_inputs(compute::Program program, std::span<const StepInput> inputs) override {
+        return device_.submit_inputs(program, inputs);
     }
     bool finished(compute::Ticket ticket) override { return device_.finished(ticket); }
     Status wait(compute::Ticket ticket) override { return device_.wait(ticket); }
