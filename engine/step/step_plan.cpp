@@ -141,7 +141,7 @@ void plan_water(Builder b) {
     if (traced && b.has(EFFECT_LAPLACE_DIFFUSION)) b.run("diffuse_mixed_velocity", {"mixed_velocity_x", "mixed_velocity_y"});
     plan_water_motion(b);
     if (b.has(EFFECT_BED_SHEAR)) b.run("compute_bed_load");
-    if (b.has(EFFECT_COHESION)) b.run("compute_saturation");
+    if (b.has(EFFECT_COHESION) && !b.fuse("smooth_saturation", {})) b.run("compute_saturation");
 }
 
 // Stretch and sand height move.

@@ -211,8 +211,9 @@ void read_word(FusedStage& fused, const std::string& word, const Arguments& a, c
         fused.needs = bits(a[0]);
     } else if (word == "WITHOUT") {
         fused.without = bits(a[0]);
-    } else if (word == "FOUR_GROUPS_IF") {
-        for (const auto& name : effects_in(a[0])) fused.four_groups |= bits(name);
+    } else if (word == "GROUPS") {
+        if (a[0].size() != 1 || a[0][0] < '2' || a[0][0] > '6') fail(place + ": GROUPS takes a number from 2 to 6");
+        fused.groups = a[0][0] - '0';
     } else if (word == "PHASE") {
         fused.phases.push_back(margins_of(a, place));
     } else if (word == "RUN" || word == "RUN_IF") {

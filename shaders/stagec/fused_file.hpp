@@ -51,7 +51,7 @@ struct Lean : Content {
 struct FusedStage {
     Stage stage; // name, struct name, extent, bindings and tested effects, as of a stage that is written by hand
     unsigned needs = 0, without = 0;
-    unsigned four_groups = 0; // effects under which CUDA has no more than four groups on a multiprocessor
+    int groups = 6; // on a multiprocessor, for which CUDA keeps registers
     std::vector<Margins> phases;
     std::vector<FusedPart> parts;
     std::map<std::string, Keeping> fields; // fields that parts write

@@ -163,10 +163,7 @@ std::string write_cuda(const FusedStage& f, const Effects& effects, bool all_mas
     const Stage& s = f.stage;
     const auto legal = masks(tested_bits(s, effects), f.needs, f.without), chosen = all_masks ? legal : largest(legal);
     const std::string space = "wadi_stage_cuda_" + s.name;
-    // Groups on a multiprocessor, for which the compiler saves registers: these kernels wait for instructions, not for memory.
-    // Before compute capability 8.0 it holds 1024 threads, 4 groups.
     const std::size_t bytes = shared_bytes(f);
-    const int groups = bytes > 40960 ? 4 : bytes > 32768 ? 5 : 6;
     std::ostringstream o;
     o << "// Written by stagec from " << s.name << ".fused.\nnamespace " << space
       << " {\n#pragma nv_diag_suppress 177, 550\n#include \"language/stage_cuda.h\"\n" // places that nobody uses, as in
@@ -188,9 +185,9 @@ std::string write_cuda(const FusedStage& f, const Effects& effects, bool all_mas
       << "#define look (ACTIVE && tile_looked_at)\n"
       << part_functions(f, effects, "EFFECTS") << "__device__ __forceinline__ void window() {\n"
       << phase_loops(f, effects) << "}\n};\n"
-      << "#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ < 800\n#define GROUPS 4\n#else\n#define GROUPS " << groups << "\n#endif\n"
-      << "template <unsigned E, bool ACTIVE> __global__ void __launch_bounds__(" << fused_group_x * fused_group_y << ", (E & "
-      << f.four_groups << "u) != 0 ? 4 : GROUPS)\n"
+      << "#if defined(__CUDA_ARCH__) && __CUDA_ARCH__ < 800 // a multiprocessor holds 1024 threads\n#define GROUPS "
+      << std::min(4, f.groups) << "\n#else\n#define GROUPS " << f.groups << "\n#endif\n"
+      << "template <unsigned E, bool ACTIVE> __global__ void __launch_bounds__(" << fused_group_x * fused_group_y << ", GROUPS)\n"
       << "run(const WorldParams P, const StepInput* __restrict__ input, const Slots b, const Active active) {\n"
       << "    __shared__ __align__(16) float shared[" << std::max<std::size_t>(4, bytes / sizeof(float)) << "];\n    "
       << s.struct_name << "<E, ACTIVE> stage{P, *input";

@@ -74,6 +74,7 @@ FUSED_FAULTS = [
     (3, "NEED(EFFECT_WATER)", 3, "unknown word NEED"),
     (3, "NEEDS(EFFECT_WATR)", 3, "unknown effect EFFECT_WATR"),
     (3, "NEEDS", 3, "NEEDS takes arguments in parentheses"),
+    (4, "GROUPS(7)\nPHASE(0, 0, 0, 0)", 4, "GROUPS takes a number from 2 to 6"),
     (4, "PHASE(0, 0, 0)", 4, "PHASE takes (west, south, east, north)"),
     (4, "PHASE(0, 0, 0, 3)", 4, "PHASE takes (west, south, east, north)"),
     (4, "", 5, "RUN ahead of the first PHASE"),
