@@ -50,6 +50,8 @@ inline constexpr EffectRow choice_rows[] = {
     {EFFECT_HALF_STORAGE, "half_storage", 0, "velocities and stretch lie in memory as 16-bit floats"},
     {EFFECT_SECOND_ORDER_SAND, "second_order_sand", EFFECT_SAND,
      "heights and flux-form velocities of sand move by limited slopes"},
+    {EFFECT_SHOCK_VISCOSITY, "shock_viscosity", EFFECT_WATER,
+     "numerical viscosity of water where it is compressed: bores do not ring"},
 };
 
 inline constexpr std::uint32_t all_effects = (1u << std::size(effect_rows)) - 1;

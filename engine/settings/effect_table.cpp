@@ -124,6 +124,8 @@ constexpr Choice choices[] = {
      [](Method& m) { m.half_storage = true; }},
     {row(EFFECT_SECOND_ORDER_SAND), "sand_transport_order 2", [](const Method& m) { return m.sand_transport_order == 2; },
      [](Method& m) { m.sand_transport_order = 2; }},
+    {row(EFFECT_SHOCK_VISCOSITY), "shock_viscosity > 0", [](const Method& m) { return m.shock_viscosity > 0; },
+     [](Method& m) { m.shock_viscosity = Method{}.shock_viscosity; }},
 };
 
 constexpr bool has_rule(const Effect& effect) { return effect.why != nullptr; }

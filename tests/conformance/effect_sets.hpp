@@ -5,7 +5,8 @@
 
 namespace wadi::conformance {
 
-inline constexpr std::uint32_t WET = EFFECT_WATER | EFFECT_SAND | EFFECT_MIXTURE | EFFECT_DIFFUSION | EFFECT_DRAG;
+inline constexpr std::uint32_t WET =
+    EFFECT_WATER | EFFECT_SAND | EFFECT_MIXTURE | EFFECT_DIFFUSION | EFFECT_DRAG | EFFECT_SHOCK_VISCOSITY;
 inline constexpr std::uint32_t ELASTIC = EFFECT_ELASTOPLASTIC;
 inline constexpr std::uint32_t TRACED = EFFECT_SEMI_LAGRANGIAN;
 inline constexpr std::uint32_t POLAR = EFFECT_WHOLE_STRAIN, DIRECT = EFFECT_WHOLE_STRAIN | EFFECT_DIRECT_STRAIN;
@@ -13,6 +14,6 @@ inline constexpr std::uint32_t PUBLISHED = TRACED | POLAR | EFFECT_EXPLICIT_DRAG
 inline constexpr std::uint32_t SECOND = EFFECT_SECOND_ORDER_WATER, SAND_SECOND = EFFECT_SECOND_ORDER_SAND,
                                HALF = EFFECT_HALF_STORAGE;
 inline constexpr std::uint32_t SLOPES = EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION;
-inline constexpr std::uint32_t ALL = all_effects; // no choices of method
+inline constexpr std::uint32_t ALL = all_effects | EFFECT_SHOCK_VISCOSITY; // the default method
 
 } // namespace wadi::conformance

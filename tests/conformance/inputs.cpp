@@ -173,7 +173,6 @@ bool set_method(Method& method, const std::string& name) {
         method.substeps = 2;
         method.passive_pressure = 0.3;
         method.bulk_viscosity = 0.5;
-        method.shock_viscosity = 0.25;
     } else {
         return false;
     }
@@ -287,6 +286,7 @@ Result<Scene> make_scene(const std::string& grid, const std::string& name, const
     s.material.internal_friction = 0.4;
     s.material.sand_viscosity = 0.05;
     s.material.retention = 0.3;
+    s.method.shock_viscosity = 0; // a choice, on by default
     for (const auto& choice : choice_table())
         if ((effects & choice.bit) != 0) choice.choose(s.method);
     if (!set_method(s.method, method)) return error(Code::bad_argument, "method=" + method + ": no such choice");

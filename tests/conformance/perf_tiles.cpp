@@ -10,8 +10,8 @@ namespace wadi::conformance {
 
 namespace {
 
-constexpr std::uint32_t all_effects = 2047; // without bed load
-constexpr int first_steps = 40;             // until the rock sleeps, and a device at rest has raised its clocks
+constexpr std::uint32_t all_effects = 2047 | EFFECT_SHOCK_VISCOSITY; // without bed load
+constexpr int first_steps = 40; // until the rock sleeps, and a device at rest has raised its clocks
 
 // The random scene in a basin of `share` of the area, 20 m below the rock around it.
 Result<Scene> make_basin(int size, double share) {

@@ -14,10 +14,11 @@ namespace {
 // Laws of sand that are branches of stages that run anyway.
 constexpr std::uint32_t sand_laws = EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION | EFFECT_RETENTION;
 
-// With none of the sand's laws and with all that are legal, a few with some of them. Under sanitizers a few of all.
+// With none of the sand's laws and with all that are legal, a few with some of them or with the water's viscosity, also a branch.
+// Under sanitizers a few of all.
 std::vector<std::uint32_t> legal_masks() {
     std::uint32_t all = all_effects;
-    for (const auto& choice : choice_table()) all |= choice.bit;
+    for (const auto& choice : choice_table()) all |= choice.bit & ~EFFECT_SHOCK_VISCOSITY;
     std::vector<std::uint32_t> masks;
     int between = 0;
     for (std::uint32_t mask = 1; mask <= all; ++mask) {
@@ -26,6 +27,7 @@ std::vector<std::uint32_t> legal_masks() {
         for (const std::uint32_t law : {EFFECT_SLOPE_NORMAL, EFFECT_INTERNAL_FRICTION, EFFECT_RETENTION})
             most = most && ((mask & law) != 0 || !is_legal(mask | law));
         if (most || (mask & sand_laws) == 0 || ++between % 17 == 0) masks.push_back(mask);
+        if (is_legal(mask | EFFECT_SHOCK_VISCOSITY) && ++between % 17 == 0) masks.push_back(mask | EFFECT_SHOCK_VISCOSITY);
     }
     if (!test::few_steps) return masks;
     std::vector<std::uint32_t> few = {masks.back()};
@@ -59,7 +61,8 @@ bool runs(const StepPlan& plan, const char* stage) {
            std::any_of(plan.substep_passes.begin(), plan.substep_passes.end(), is);
 }
 
-constexpr std::uint32_t everything = all_effects;
+constexpr std::uint32_t everything = all_effects | EFFECT_SHOCK_VISCOSITY;
+constexpr std::uint32_t default_water = EFFECT_WATER | EFFECT_SHOCK_VISCOSITY; // of the default method
 
 } // namespace
 
@@ -203,10 +206,10 @@ TEST_CASE("choices of method are passes of their own at their place in the order
     scene.fill(scene.fields.water, [](double, double) { return 1; });
     scene.settings.method.strain_transport = StrainTransport::direct; // no sand: nothing to act on
     scene.settings.method.velocity_transport = VelocityTransport::semi_lagrangian;
-    CHECK(effects_required(scene.settings, content_of(scene.fields))->mask == (EFFECT_WATER | EFFECT_SEMI_LAGRANGIAN));
+    CHECK(effects_required(scene.settings, content_of(scene.fields))->mask == (default_water | EFFECT_SEMI_LAGRANGIAN));
     scene.settings.method = {};
     scene.settings.method.water_transport_order = 2;
-    CHECK(effects_required(scene.settings, content_of(scene.fields))->mask == (EFFECT_WATER | EFFECT_SECOND_ORDER_WATER));
+    CHECK(effects_required(scene.settings, content_of(scene.fields))->mask == (default_water | EFFECT_SECOND_ORDER_WATER));
     // The same passes and one more, which reads the terrain; for water in pores the fluxes read it as well.
     const auto second = make_step_plan(EFFECT_WATER | EFFECT_SECOND_ORDER_WATER, 3), first = make_step_plan(EFFECT_WATER, 3);
     CHECK(order(second.water_passes) == "limit_water_outflow compute_water_flux integrate_water_height center_water_velocity "
@@ -228,7 +231,7 @@ TEST_CASE("choices of method are passes of their own at their place in the order
     constexpr std::uint32_t pores = EFFECT_WATER | EFFECT_SAND | EFFECT_MIXTURE;
     CHECK(reads_terrain(make_step_plan(pores | EFFECT_SECOND_ORDER_WATER, 3)) == reads_terrain(make_step_plan(pores, 3)) + 3);
     scene.settings.method.sand_transport_order = 2; // no sand: nothing to act on
-    CHECK(effects_required(scene.settings, content_of(scene.fields))->mask == (EFFECT_WATER | EFFECT_SECOND_ORDER_WATER));
+    CHECK(effects_required(scene.settings, content_of(scene.fields))->mask == (default_water | EFFECT_SECOND_ORDER_WATER));
     scene.fill(scene.fields.sand, [](double, double) { return 1; });
     CHECK((effects_required(scene.settings, content_of(scene.fields))->mask & EFFECT_SECOND_ORDER_SAND) != 0);
     const auto second_sand = make_step_plan(EFFECT_SAND | EFFECT_SECOND_ORDER_SAND, 3),
@@ -262,15 +265,18 @@ TEST_CASE("effects follow from the scene, with a reason, and a level may force t
     auto scene = flat_scene(8, 8, 1, 0.01);
     CHECK(effects_required(scene.settings, content_of(scene.fields))->mask == 0);
     scene.fill(scene.fields.water, [](double, double) { return 1; });
+    CHECK(effects_required(scene.settings, content_of(scene.fields))->mask == default_water);
+    scene.settings.method.shock_viscosity = 0;
     CHECK(effects_required(scene.settings, content_of(scene.fields))->mask == EFFECT_WATER);
+    scene.settings.method.shock_viscosity = 0.25;
     scene.fill(scene.fields.sand, [](double, double) { return 1; });
     const auto full = effects_required(scene.settings, content_of(scene.fields));
-    CHECK(full->mask == (EFFECT_WATER | EFFECT_SAND | EFFECT_MIXTURE | EFFECT_DIFFUSION | EFFECT_DRAG | EFFECT_ELASTOPLASTIC |
+    CHECK(full->mask == (default_water | EFFECT_SAND | EFFECT_MIXTURE | EFFECT_DIFFUSION | EFFECT_DRAG | EFFECT_ELASTOPLASTIC |
                          EFFECT_COHESION | EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION | EFFECT_RETENTION));
     CHECK(full->reasons[0] == "the world holds water");
     scene.settings.effects = {{"mixture", Force::off}};
     CHECK(effects_required(scene.settings, content_of(scene.fields))->mask ==
-          (EFFECT_WATER | EFFECT_SAND | EFFECT_DRAG | EFFECT_ELASTOPLASTIC | EFFECT_COHESION | EFFECT_SLOPE_NORMAL |
+          (default_water | EFFECT_SAND | EFFECT_DRAG | EFFECT_ELASTOPLASTIC | EFFECT_COHESION | EFFECT_SLOPE_NORMAL |
            EFFECT_INTERNAL_FRICTION));
     scene.settings.effects = {{"mixture", Force::off}, {"diffusion", Force::on}};
     const auto bad = effects_required(scene.settings, content_of(scene.fields));

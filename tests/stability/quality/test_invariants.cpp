@@ -49,7 +49,7 @@ TEST_CASE("initial + in - out = now to the last bit, with every effect on, on ev
     for (const auto& backend : available_backends()) {
         CAPTURE(backend);
         auto world = make_world(everything(48, 40), {.backend = backend, .shared_device = true});
-        CHECK(world->plan().effects == 2 * EFFECT_RETENTION - 1);
+        CHECK(world->plan().effects == ((2 * EFFECT_RETENTION - 1) | EFFECT_SHOCK_VISCOSITY));
         step(*world, backend == "cpu" ? 300 : 100);
         auto stats = world->reader().stats();
         REQUIRE(stats);

@@ -69,6 +69,25 @@ TEST_CASE("shock viscosity removes the ripples behind a bore, along x and along 
     }
 }
 
+TEST_CASE("a shock viscosity of 0 leaves no branch of it, and the bits of one that is next to nothing") {
+    for (const bool sand : {false, true}) {
+        const auto bits = [&](const std::string& backend, double viscosity, bool branch) {
+            auto scene = sand ? mixed_scene(48, 40) : flat_scene(48, 40, 0.2, 0.01);
+            if (!sand) scene.fill(scene.fields.water, [](double x, double y) { return x + y < 6 ? 1 : 0.4; });
+            scene.settings.method.shock_viscosity = viscosity;
+            auto world = make_world(scene, {.backend = backend});
+            CHECK(((world->plan().effects & EFFECT_SHOCK_VISCOSITY) != 0) == branch);
+            step(*world, 60);
+            return hash_of(*world);
+        };
+        for (const auto& backend : available_backends()) {
+            const auto none = bits(backend, 0, false);
+            CHECK(bits(backend, 1e-30, true) == none);
+            CHECK(bits(backend, 0.25, true) != none);
+        }
+    }
+}
+
 TEST_CASE("bulk viscosity keeps a released pile from tearing a pit in its middle") {
     CHECK(let_go(0.5, 2e5).middle > 0.9);
     CHECK(let_go(0, 2e5).middle < 0.75);
