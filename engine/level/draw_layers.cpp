@@ -64,17 +64,18 @@ Result<std::vector<float>> values_of(const Map& map, const MapSource& source, co
     const double scale = source.grey_range ? source.max - source.min : source.scale;
     const double offset = source.grey_range ? source.min : source.offset;
     const MapMeaning& meaning = source.meaning;
-    const auto value_at_cell = [&](std::size_t cell) { return static_cast<double>(values[cell]) * scale + offset; };
+    const auto value_of = [&](std::size_t cell) { return static_cast<double>(values[cell]) * scale + offset; };
     const std::size_t wrong = first_cell(values.size(), [&](std::size_t cell) {
-        const double value = value_at_cell(cell);
-        const bool outside = !(value >= meaning.least && value <= meaning.most);
-        if (!outside) values[cell] = static_cast<float>(value);
-        return outside;
+        const double value = value_of(cell);
+        return !(value >= meaning.least && value <= meaning.most);
     });
     if (wrong < values.size())
-        return error(Code::bad_file, outside_text(path + ": " + meaning.name, value_at_cell(wrong), meaning.least, meaning.most) +
+        return error(Code::bad_file, outside_text(path + ": " + meaning.name, value_of(wrong), meaning.least, meaning.most) +
                                          " in cell (" + std::to_string(wrong % static_cast<std::size_t>(nx)) + ", " +
                                          std::to_string(wrong / static_cast<std::size_t>(nx)) + ")");
+    in_bands(values.size(), CELL_BAND, [&](std::size_t, std::size_t begin, std::size_t end) {
+        for (std::size_t cell = begin; cell < end; ++cell) values[cell] = static_cast<float>(value_of(cell));
+    });
     return values;
 }
 

@@ -78,13 +78,15 @@ void add_noise(std::span<const double> x, double y, double scale, std::uint32_t 
     const double y0 = std::floor(y * scale);
     const double v = smooth(y * scale - y0);
     const auto j = static_cast<std::int64_t>(y0);
-    double column = std::floor(x[0] * scale);
-    LatticeCell cell(static_cast<std::int64_t>(column), j, seed);
+    double x0 = std::floor(x[0] * scale);
+    LatticeCell cell(static_cast<std::int64_t>(x0), j, seed);
     for (std::size_t k = 0; k < x.size(); ++k) {
-        const double x0 = std::floor(x[k] * scale);
-        if (x0 != column) cell = LatticeCell(static_cast<std::int64_t>(x0), j, seed);
-        column = x0;
-        sums[k] += part * cell.blend(smooth(x[k] * scale - x0), v);
+        const double place = x[k] * scale;
+        if (!(place >= x0 && place < x0 + 1)) {
+            x0 = std::floor(place);
+            cell = LatticeCell(static_cast<std::int64_t>(x0), j, seed);
+        }
+        sums[k] += part * cell.blend(smooth(place - x0), v);
     }
 }
 
@@ -102,6 +104,8 @@ void noise_heights(const Shape& noise, std::span<const double> x, double y, std:
     }
     for (double& height : heights) height = noise.amplitude * height / total;
 }
+
+double plane_height(const Shape& plane, double x, double y) { return plane.slope[0] * x + plane.slope[1] * y; }
 
 /// Height at this distance from the rim, relative to the top.
 double beyond_rim(const Shape& shape, double distance) {
@@ -159,7 +163,7 @@ std::array<double, 4> rim_bounds(const Shape& shape) {
 }
 
 double relative_height(const Shape& shape, double x, double y, std::span<const std::size_t> segments) {
-    if (shape.kind == ShapeKind::plane) return shape.slope[0] * x + shape.slope[1] * y;
+    if (shape.kind == ShapeKind::plane) return plane_height(shape, x, y);
     if (shape.kind != ShapeKind::noise) return beyond_rim(shape, rim_distance(shape, x, y, segments));
     double height = 0;
     noise_heights(shape, {&x, 1}, y, {&height, 1});
@@ -169,6 +173,10 @@ double relative_height(const Shape& shape, double x, double y, std::span<const s
 void relative_heights(const Shape& shape, std::span<const double> x, double y, std::span<double> heights) {
     if (x.empty()) return;
     if (shape.kind == ShapeKind::noise) return noise_heights(shape, x, y, heights);
+    if (shape.kind == ShapeKind::plane) {
+        for (std::size_t k = 0; k < x.size(); ++k) heights[k] = plane_height(shape, x[k], y);
+        return;
+    }
     const auto segments = segments_near(shape, {(x.front() + x.back()) / 2, y}, (x.back() - x.front()) / 2);
     for (std::size_t k = 0; k < x.size(); ++k) heights[k] = relative_height(shape, x[k], y, segments);
 }

@@ -65,6 +65,17 @@ bool forced_off(const Settings& settings, const char* effect) {
                        [&](const auto& entry) { return entry.first == effect && entry.second == Force::off; });
 }
 
+/// What of the settings decides whether a wet slope holds.
+struct SlopeLaw {
+    double density_ratio, friction, chi;
+    bool drag;
+
+    explicit SlopeLaw(const Settings& settings)
+        : density_ratio(settings.material.water_density / settings.material.sand_density), friction(settings.material.friction),
+          chi(forced_off(settings, "slope_normal") ? 0 : settings.material.slope_normal),
+          drag(settings.material.exchange_rate > 0 && !forced_off(settings, "drag")) {}
+};
+
 /// What pushes and holds sand on a wet slope, per weight of the sand (section 4).
 struct WetSlope {
     double held = 0;  // by friction, buoyancy taken off
@@ -72,13 +83,11 @@ struct WetSlope {
     double chi = 0;
 
     /// `wetness`: share of the sand's depth that water fills; `fall`: of the water's surface per fall of the sand's.
-    WetSlope(const Settings& settings, double wetness, double fall) {
-        const Material& m = settings.material;
-        const double ratio = m.water_density / m.sand_density * wetness;
-        const bool drag = m.exchange_rate > 0 && !forced_off(settings, "drag");
-        held = std::max(m.friction * (1 - ratio), 0.0);
-        water = drag ? ratio * fall : 0;
-        chi = forced_off(settings, "slope_normal") ? 0 : m.slope_normal;
+    WetSlope(const SlopeLaw& law, double wetness, double fall) {
+        const double ratio = law.density_ratio * wetness;
+        held = std::max(law.friction * (1 - ratio), 0.0);
+        water = law.drag ? ratio * fall : 0;
+        chi = law.chi;
     }
     double push(double slope) const { return slope * (1 + water * (1 + chi * slope * slope)); }
     /// Slope where both are the same.
@@ -92,7 +101,8 @@ struct WetSlope {
 /// The columns of the initial fields.
 class Columns {
   public:
-    Columns(const Settings& settings, const InitialFields& fields) : grid_(settings.grid), fields_(fields) {}
+    Columns(const Settings& settings, const InitialFields& fields) : law(settings), grid_(settings.grid), fields_(fields) {}
+    const SlopeLaw law;
 
     Column at(int i, int j) const {
         const std::size_t cell = static_cast<std::size_t>(j) * static_cast<std::size_t>(grid_.nx) + static_cast<std::size_t>(i);
@@ -137,7 +147,7 @@ void survey_face(const Settings& settings, const Columns& columns, const Column&
     const double slope = step / settings.grid.dx;
     const Material& m = settings.material;
     const double water_step = std::max((high.terrain + high.water) - (low.terrain + low.water), 0.0);
-    const WetSlope balance(settings, high.wetness(), step > 0 ? water_step / step : 0);
+    const WetSlope balance(columns.law, high.wetness(), step > 0 ? water_step / step : 0);
     if (slope <= WALL_SLOPE && balance.push(slope) <= balance.held) return;
     const double fall = std::max(columns.fall_around(i, j), columns.fall_around(i + (north ? 0 : 1), j + (north ? 1 : 0)));
     if (slope > WALL_SLOPE || fall > 2 * WALL_SLOPE * settings.grid.dx) {

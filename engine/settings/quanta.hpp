@@ -16,9 +16,11 @@ enum class Halves { even, away };
 
 /// std::round(), without the call that it is on processors of the base instruction set.
 inline double round_away(double x) {
-    if (!(std::fabs(x) < 4503599627370496.0)) return x; // 2^52: whole already, or not a number
-    const double whole = static_cast<double>(static_cast<std::int64_t>(x)), rest = x - whole;
-    return std::copysign(whole + static_cast<double>((rest >= 0.5) - (rest <= -0.5)), x);
+    constexpr double whole = 4503599627370496; // 2^52: from here on there are no fractions
+    const double size = std::fabs(x);
+    if (!(size < whole)) return x;
+    const double even = (size + whole) - whole; // halves to the even neighbour
+    return std::copysign(even + (size - even == 0.5 ? 1.0 : 0.0), x);
 }
 
 /// The nearest whole quantum [m] to a height [m]; the height itself where `quantum` is 0.

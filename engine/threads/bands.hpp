@@ -36,12 +36,18 @@ constexpr std::size_t row_band(std::size_t length) {
 void in_bands(std::size_t count, std::size_t band,
               const std::function<void(std::size_t n, std::size_t begin, std::size_t end)>& work);
 
-/// The first of `count` cells for which found(cell) is true, else `count`. Of the cells behind it any may be asked as well.
+/// The first of `count` cells for which found(cell) is true, else `count`. Others are asked as well, some twice.
 template <class Found> std::size_t first_cell(std::size_t count, const Found& found) {
+    constexpr std::size_t block = 256; // without a branch within, so that the loop vectorises
     std::vector<std::size_t> first(bands_of(count, CELL_BAND), count);
     in_bands(count, CELL_BAND, [&](std::size_t n, std::size_t begin, std::size_t end) {
-        for (std::size_t cell = begin; cell < end && first[n] == count; ++cell)
-            if (found(cell)) first[n] = cell;
+        for (std::size_t start = begin; start < end && first[n] == count; start += block) {
+            const std::size_t stop = std::min(end, start + block);
+            bool any = false;
+            for (std::size_t cell = start; cell < stop; ++cell) any |= found(cell);
+            for (std::size_t cell = start; any && cell < stop && first[n] == count; ++cell)
+                if (found(cell)) first[n] = cell;
+        }
     });
     return first.empty() ? count : *std::min_element(first.begin(), first.end());
 }
