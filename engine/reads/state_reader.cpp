@@ -235,6 +235,8 @@ Result<WorldStats> StateReader::stats() {
         s.tiles = state_.tiles().count();
         s.active_tiles = *std::max_element(counts->begin(), counts->end());
         s.active_sand_tiles = counts->back();
+    } else if (state_.chooses_tiles()) {
+        s.tiles = s.active_tiles = s.active_sand_tiles = state_.tiles().count();
     }
     if (auto status = publish("mark_limits", {}, {"limit_marks"}); !status) return status;
     Figures marks;

@@ -48,21 +48,27 @@ Status ActiveCount::append(compute::ProgramBuilder& builder, int turn) {
 
 void ActiveCount::submitted(int turn, compute::Ticket ticket, bool woken) {
     slots_[static_cast<std::size_t>(turn)].ticket = ticket;
+    two_lists_ = state_.plan().tiles_by_material;
     if (woken) woken_ = ticket.value;
 }
 
-bool ActiveCount::asleep() {
+ActiveCount::Newest ActiveCount::newest() {
+    const std::size_t lists = two_lists_ ? 2 : 1;
     for (const auto& slot : slots_) {
         // Only where no submission can be writing it.
         if (slot.ticket.value <= seen_ || !state_.device().finished(slot.ticket)) continue;
         Counts counts{};
-        const std::size_t lists = state_.plan().tiles_by_material ? 2 : 1;
         std::memcpy(counts.data(), state_.device().mapped(slot.buffer).data(), lists * sizeof(std::uint32_t));
         newest_ = *std::max_element(counts.begin(), counts.end());
         seen_ = slot.ticket.value;
         report(newest_);
     }
-    return newest_ == 0 && seen_ > woken_;
+    return {seen_, newest_};
+}
+
+bool ActiveCount::asleep() {
+    const auto [seen, count] = newest();
+    return count == 0 && seen > woken_;
 }
 
 void ActiveCount::report(std::uint32_t count) {

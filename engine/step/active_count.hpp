@@ -16,6 +16,12 @@ class ActiveCount {
     Status append(compute::ProgramBuilder& builder, int turn);
     /// A step was submitted, `woken` with tiles that its input wakes.
     void submitted(int turn, compute::Ticket ticket, bool woken);
+    /// The newest submission whose count has arrived, 0 = none, and that count, of the longer list.
+    struct Newest {
+        std::uint64_t ticket;
+        std::uint32_t count;
+    };
+    Newest newest();
     /// A submission that nothing has woken since has finished and ran over no tile. Tells the log where the share of active tiles
     /// passes settings.active_tiles_most.
     bool asleep();
@@ -32,6 +38,7 @@ class ActiveCount {
     std::uint64_t woken_ = 0, seen_ = 0; // tickets: of the newest submission that woke tiles, and of the newest count
     std::uint32_t newest_ = 1;
     bool above_ = false;
+    bool two_lists_ = false; // in the newest submission
 };
 
 } // namespace wadi

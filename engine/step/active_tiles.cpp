@@ -14,7 +14,7 @@ int to_cell(double at, int cells) { return static_cast<int>(std::clamp(std::floo
 } // namespace
 
 ActiveTiles::ActiveTiles(const Settings& settings)
-    : settings_(settings), size_(settings.active_tiles),
+    : settings_(settings), size_(settings.tile_side()),
       columns_(size_ > 0 ? FieldLayout::active_tiles(settings.grid.nx, size_) : 0),
       rows_(size_ > 0 ? FieldLayout::active_tiles(settings.grid.ny, size_) : 0) {}
 

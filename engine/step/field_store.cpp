@@ -32,9 +32,8 @@ std::vector<float> with_ghosts(const FieldLayout& layout, const std::vector<floa
 
 FieldStore::FieldStore(WorldDevice& device, const Settings& settings)
     : device_(device), layout_{settings.grid.nx, settings.grid.ny},
-      tile_columns_(settings.active_tiles > 0 ? FieldLayout::active_tiles(layout_.nx, settings.active_tiles) : 0),
-      tile_rows_(settings.active_tiles > 0 ? FieldLayout::active_tiles(layout_.ny, settings.active_tiles) : 0), buffers_(device) {
-}
+      tile_columns_(settings.tile_side() > 0 ? FieldLayout::active_tiles(layout_.nx, settings.tile_side()) : 0),
+      tile_rows_(settings.tile_side() > 0 ? FieldLayout::active_tiles(layout_.ny, settings.tile_side()) : 0), buffers_(device) {}
 
 std::uint64_t FieldStore::bytes_of(const PlanField& field) const {
     if (field.role == FieldRole::shapes) return SOURCE_VECTORS * sizeof(vec4);
@@ -77,6 +76,7 @@ Status FieldStore::set_plan(const StepPlan& plan) {
     fields_ = plan.fields;
     parities_ = {};
     turn_ = 0;
+    set_way(plan.active_tiles);
     ++recording_;
     return ok_status();
 }

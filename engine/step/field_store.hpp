@@ -62,8 +62,14 @@ class FieldStore {
     int turn() const { return turn_; }
     void end_turn() { turn_ = 1 - turn_; }
     const Parity& parity() const { return parity(turn_); }
-    const Parity& parity(int turn) const { return parities_[static_cast<std::size_t>(turn)]; }
-    void set_parity(int turn, const Parity& parity) { parities_[static_cast<std::size_t>(turn)] = parity; }
+    const Parity& parity(int turn) const { return parities_[way_][static_cast<std::size_t>(turn)]; }
+    void set_parity(int turn, const Parity& parity) { parities_[way_][static_cast<std::size_t>(turn)] = parity; }
+    /// Which plan's programs run, without active tiles or with them. Before turn 0 both have the same current buffers: only there
+    /// may the way change.
+    void set_way(bool tiles) { way_ = tiles ? 1 : 0; }
+    /// Numbers the parities that a program outside the step is recorded for.
+    static constexpr std::size_t places = 3;
+    std::size_t place() const { return turn_ == 0 ? 0 : 1 + way_; }
 
   private:
     const PlanField* find(const std::string& name) const;
@@ -75,7 +81,8 @@ class FieldStore {
     const int tile_columns_, tile_rows_; // of active tiles
     std::vector<PlanField> fields_;
     NamedBuffers buffers_;
-    std::array<Parity, 2> parities_{};
+    std::array<std::array<Parity, 2>, 2> parities_{}; // of both ways, before each turn
+    std::size_t way_ = 0;
     int turn_ = 0;
     std::uint64_t recording_ = 0;
 };

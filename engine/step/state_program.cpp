@@ -14,7 +14,7 @@ Result<compute::Ticket> StateProgram::submit(const StepInput& input) {
     if (!state_.lost()) return state_.lost();
     if (recording_ != fields.recording()) forget();
     recording_ = fields.recording();
-    auto& program = programs_[static_cast<std::size_t>(fields.turn())];
+    auto& program = programs_[fields.place()];
     if (program.id == 0) {
         compute::ProgramBuilder builder(label_);
         if (auto status = build_(builder, fields.parity()); !status) return status;

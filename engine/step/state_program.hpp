@@ -5,7 +5,7 @@
 
 namespace wadi {
 
-/// Recorded once for each of the two buffer parities, when first needed, and anew after the world was re-recorded.
+/// Recorded once for each of the parities of the buffers, when first needed, and anew after the world was re-recorded.
 class StateProgram {
   public:
     /// Appends the operations for a parity.
@@ -26,7 +26,7 @@ class StateProgram {
     WorldState& state_;
     const std::string label_;
     const Build build_;
-    std::array<compute::Program, 2> programs_{};
+    std::array<compute::Program, FieldStore::places> programs_{};
     std::uint64_t recording_ = 0;
 };
 

@@ -329,4 +329,20 @@ StepPlan make_step_plan(std::uint32_t effects, int substeps, PlanChoice choice) 
     return plan;
 }
 
+void share_fields(StepPlan& tiled, StepPlan& whole) {
+    for (const auto& field : whole.fields) {
+        const auto found =
+            std::find_if(tiled.fields.begin(), tiled.fields.end(), [&](const PlanField& f) { return f.name == field.name; });
+        if (found != tiled.fields.end()) {
+            found->ping_pong |= field.ping_pong;
+            continue;
+        }
+        tiled.fields.push_back(field);
+        if (field.role == FieldRole::scratch) tiled.fields.back().memory = tiled.scratch_blocks++;
+    }
+    std::sort(tiled.fields.begin(), tiled.fields.end(), [](const PlanField& a, const PlanField& b) { return a.name < b.name; });
+    whole.fields = tiled.fields;
+    whole.scratch_blocks = tiled.scratch_blocks;
+}
+
 } // namespace wadi

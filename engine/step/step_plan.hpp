@@ -75,4 +75,8 @@ struct PlanChoice {
 /// Throws std::logic_error where a stage binds a field that field_table() lacks.
 StepPlan make_step_plan(std::uint32_t effects, int substeps, PlanChoice choice = {});
 
+/// Gives two plans of the same mask, with and without active tiles, the same fields in the same memory, so that a world can go
+/// from one to the other.
+void share_fields(StepPlan& tiled, StepPlan& whole);
+
 } // namespace wadi

@@ -1,5 +1,6 @@
 #include "engine/step/stepper.hpp"
 #include <algorithm>
+#include <utility>
 
 namespace wadi {
 
@@ -9,13 +10,15 @@ void Stepper::drop_programs() {
     const auto drop = [&](auto& programs) {
         for (auto& program : programs) state_.device().destroy_program(program);
     };
-    drop(programs_);
-    drop(timed_programs_);
-    drop(run_programs_);
-    drop(start_programs_);
-    for (auto& programs : part_programs_) {
-        drop(programs);
-        programs.clear();
+    for (Programs& programs : programs_) {
+        drop(programs.steps);
+        drop(programs.timed);
+        drop(programs.runs);
+        drop(programs.starts);
+        for (auto& parts : programs.parts) {
+            drop(parts);
+            parts.clear();
+        }
     }
 }
 
@@ -58,20 +61,35 @@ Result<compute::Program> Stepper::record_run(int turn) {
 }
 
 // A step flips each ping-pong field a fixed number of times, so two steps bring every field back: two programs suffice.
-Status Stepper::record() {
-    std::array<compute::Program, 2> fresh{};
+Status Stepper::record_way() {
     Parity parity;
     for (int turn = 0; turn < 2; ++turn) {
         state_.fields().set_parity(turn, parity);
         auto program = record_step(turn, parity, false);
-        if (!program) {
-            state_.device().destroy_program(fresh[0]);
-            return program.status();
-        }
-        fresh[static_cast<std::size_t>(turn)] = *program;
+        if (!program) return program.status();
+        programs().steps[static_cast<std::size_t>(turn)] = *program;
     }
+    return ok_status();
+}
+
+Status Stepper::record() {
+    auto before = std::exchange(programs_, {});
+    auto status = record_way();
+    if (status && state_.chooses_tiles()) {
+        const bool tiles = state_.plan().active_tiles;
+        state_.use_tiles(!tiles);
+        status = record_way();
+        state_.use_tiles(tiles);
+    }
+    if (!status) {
+        drop_programs();
+        programs_ = std::move(before);
+        return status;
+    }
+    std::swap(programs_, before);
     drop_programs();
-    programs_ = fresh;
+    programs_ = std::move(before);
+    choice_.restart();
     if (!profiling_) return ok_status();
     profiling_ = false;
     return set_profiling(true);
@@ -154,7 +172,7 @@ Status Stepper::record_parts(std::size_t turn) {
     for (int part = 0; part < parts(); ++part) {
         auto program = record_part(part, false, parity);
         if (!program) return program.status();
-        part_programs_[turn].push_back(*program);
+        programs().parts[turn].push_back(*program);
     }
     return ok_status();
 }
@@ -163,25 +181,25 @@ Status Stepper::record_start(std::size_t turn) {
     Parity parity = state_.fields().parity(static_cast<int>(turn));
     auto program = record_part(0, true, parity);
     if (!program) return program.status();
-    start_programs_[turn] = *program;
+    programs().starts[turn] = *program;
     return ok_status();
 }
 
 Status Stepper::submit_parts(int parts) {
     const auto turn = static_cast<std::size_t>(state_.fields().turn());
     const bool start = starts();
-    if (part_programs_[turn].empty()) {
+    if (programs().parts[turn].empty()) {
         if (auto status = record_parts(turn); !status) return status;
     }
-    if (start && start_programs_[turn].id == 0) {
+    if (start && programs().starts[turn].id == 0) {
         if (auto status = record_start(turn); !status) return status;
     }
     for (; parts_done_ < parts; ++parts_done_) {
         const auto part = static_cast<std::size_t>(parts_done_);
-        auto ticket = state_.device().submit(part == 0 && start ? start_programs_[turn] : part_programs_[turn][part], input_);
+        auto ticket = state_.device().submit(part == 0 && start ? programs().starts[turn] : programs().parts[turn][part], input_);
         if (!ticket) return ticket.status();
         ticket_ = *ticket;
-        if (part == 0) note_submitted(input_);
+        if (part == 0) note_submitted(input_.wake_count > 0, 1);
     }
     return ok_status();
 }
@@ -216,9 +234,20 @@ bool Stepper::may_sleep(const StepInput& input) {
     return state_.plan().active_tiles && !profiling_ && active_.asleep() && input.wake_count == 0;
 }
 
-void Stepper::note_submitted(const StepInput& input) {
-    active_.submitted(state_.fields().turn(), ticket_, input.wake_count > 0);
+void Stepper::note_submitted(bool woken, int steps) {
+    const bool tiles = state_.plan().active_tiles;
+    if (tiles) {
+        for (int n = 0; n < std::min(steps, 2); ++n) active_.submitted((state_.fields().turn() + n) % 2, ticket_, woken);
+    }
+    choice_.submitted(static_cast<std::uint64_t>(steps), tiles, ticket_);
     state_.tiles().submitted();
+}
+
+void Stepper::choose_tiles() {
+    if (!state_.chooses_tiles() || profiling_ || state_.fields().turn() != 0 || starts()) return;
+    const auto [ticket, count] = active_.newest();
+    const double share = static_cast<double>(count) / static_cast<double>(state_.tiles().count());
+    state_.use_tiles(choice_.wants_tiles(state_.steps, {ticket, share}));
 }
 
 HostTotals Stepper::totals() const { return {state_.steps, state_.sand_initial, state_.water_initial, inputs_.totals()}; }
@@ -227,6 +256,7 @@ Status Stepper::go_to(const HostTotals& totals) {
     parts_done_ = 0;
     asleep_ = false;
     state_.tiles().wake_all();
+    choice_.restart();
     state_.steps = totals.steps;
     state_.sand_initial = totals.sand_initial;
     state_.water_initial = totals.water_initial;
@@ -242,6 +272,7 @@ Status Stepper::finish_step() {
 }
 
 Status Stepper::begin() {
+    choose_tiles();
     if (auto status = hooks_.before_step(); !status) return status;
     input_ = next_input();
     asleep_ = may_sleep(input_);
@@ -262,13 +293,13 @@ Status Stepper::step() {
     if (auto status = begin(); !status) return status;
     if (asleep_ || starts()) return finish(parts());
     const auto turn = static_cast<std::size_t>(state_.fields().turn());
-    auto ticket = state_.device().submit(profiling_ ? timed_programs_[turn] : programs_[turn], input_);
+    auto ticket = state_.device().submit(profiling_ ? programs().timed[turn] : programs().steps[turn], input_);
     if (!ticket) {
         inputs_.undo();
         return ticket.status();
     }
     ticket_ = *ticket;
-    note_submitted(input_);
+    note_submitted(input_.wake_count > 0, 1);
     if (profiling_) {
         pending_timings_.push_back(*ticket);
         if (auto status = collect_timings(false); !status) return status;
@@ -277,15 +308,18 @@ Status Stepper::step() {
 }
 
 bool Stepper::can_run() {
+    // From turn 0 to turn 0 where the world may go the other way in between.
+    if (state_.chooses_tiles() && state_.fields().turn() != 0) return false;
     return !profiling_ && !starts() && hooks_.undisturbed(run_steps) == run_steps &&
            !(state_.plan().active_tiles && active_.asleep());
 }
 
 Status Stepper::run(bool& taken) {
     taken = false;
+    choose_tiles();
     if (auto status = hooks_.before_step(); !status) return status;
     const auto turn = static_cast<std::size_t>(state_.fields().turn());
-    auto& program = run_programs_[turn];
+    auto& program = programs().runs[turn];
     if (program.id == 0) {
         auto recorded = record_run(static_cast<int>(turn));
         // Inside a recording into the host's commands nothing new is compiled: single steps do.
@@ -311,7 +345,7 @@ Status Stepper::run(bool& taken) {
     }
     ticket_ = *ticket;
     input_ = run_inputs_.back();
-    for (const int of_turn : {0, 1}) active_.submitted(of_turn, ticket_, woken);
+    note_submitted(woken, run_steps);
     taken = true;
     return hooks_.after_step();
 }
@@ -335,12 +369,12 @@ Status Stepper::steps(std::uint64_t count) {
 
 Status Stepper::set_profiling(bool on) {
     if (auto status = collect_timings(true); !status) return status;
-    if (on && timed_programs_[0].id == 0) {
+    if (on && programs().timed[0].id == 0) {
         for (int turn = 0; turn < 2; ++turn) {
             Parity parity = state_.fields().parity(turn);
             auto program = record_step(turn, parity, true);
             if (!program) return program.status();
-            timed_programs_[static_cast<std::size_t>(turn)] = *program;
+            programs().timed[static_cast<std::size_t>(turn)] = *program;
         }
     }
     if (on && !profiling_) {

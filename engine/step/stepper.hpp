@@ -3,6 +3,7 @@
 #pragma once
 #include "engine/step/active_count.hpp"
 #include "engine/step/step_inputs.hpp"
+#include "engine/step/tile_choice.hpp"
 #include "engine/step/world_state.hpp"
 #include <functional>
 
@@ -88,6 +89,13 @@ class Stepper {
     Result<std::vector<StageTime>> stage_times();
 
   private:
+    /// By turn.
+    struct Programs {
+        std::array<compute::Program, 2> steps{}, timed{}, runs{};
+        std::array<std::vector<compute::Program>, 2> parts;
+        std::array<compute::Program, 2> starts{}; // the water part of step 0
+    };
+
     Status append_step(compute::ProgramBuilder& builder, int turn, Parity& parity, bool timestamps);
     Result<compute::Program> record_step(int turn, Parity& parity, bool timestamps);
     Result<compute::Program> record_run(int turn);
@@ -107,19 +115,23 @@ class Stepper {
     Status complete_step();
     Status collect_timings(bool all);
     void drop_programs();
+    /// Of the plan in force.
+    Programs& programs() { return programs_[state_.plan().active_tiles ? 1 : 0]; }
+    Status record_way();
+    /// In a world that chooses whether steps run over active tiles: goes to the better way where that is possible.
+    void choose_tiles();
     /// The input of the step that comes, with the tiles that it wakes.
     StepInput next_input();
     bool may_sleep(const StepInput& input);
-    void note_submitted(const StepInput& input);
+    void note_submitted(bool woken, int steps);
 
     WorldState& state_;
     StepInputs inputs_;
     ActiveCount active_{state_};
-    bool asleep_ = false; // the present step submits nothing
-    std::array<compute::Program, 2> programs_{}, timed_programs_{}, run_programs_{};
+    bool asleep_ = false;              // the present step submits nothing
+    std::array<Programs, 2> programs_; // of the plan without active tiles and of the one with them
     std::array<StepInput, run_steps> run_inputs_{};
-    std::array<std::vector<compute::Program>, 2> part_programs_;
-    std::array<compute::Program, 2> start_programs_{}; // the water part of step 0
+    TileChoice choice_;
     int parts_done_ = 0;
     compute::Ticket ticket_;
     StepInput input_{}; // of the present step

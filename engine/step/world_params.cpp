@@ -52,10 +52,10 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     p.pitch = layout.pitch();
     p.strips = layout.strips();
     p.substeps = w.substeps;
-    p.tile_size = s.active_tiles;
+    p.tile_size = s.tile_side();
     p.tile_rings = 1; // WorldState widens it to the plan's reach
-    p.tile_columns = s.active_tiles > 0 ? FieldLayout::active_tiles(s.grid.nx, s.active_tiles) : 0;
-    p.tile_rows = s.active_tiles > 0 ? FieldLayout::active_tiles(s.grid.ny, s.active_tiles) : 0;
+    p.tile_columns = s.tile_side() > 0 ? FieldLayout::active_tiles(s.grid.nx, s.tile_side()) : 0;
+    p.tile_rows = s.tile_side() > 0 ? FieldLayout::active_tiles(s.grid.ny, s.tile_side()) : 0;
     set_sources(s, p);
     p.side_kind_west = static_cast<int>(s.sides[SIDE_WEST].kind);
     p.side_kind_east = static_cast<int>(s.sides[SIDE_EAST].kind);

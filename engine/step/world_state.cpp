@@ -13,13 +13,23 @@ void WorldState::tell(int severity, const std::string& text) const {
     if (log) log(severity, "step " + std::to_string(steps) + ": " + text);
 }
 
-StepPlan WorldState::plan_for(std::uint32_t effects) const {
+bool WorldState::fuses() const {
     const auto& device = (*device_).capabilities();
     const std::int64_t cells = std::int64_t{settings_.grid.nx} * settings_.grid.ny;
     const bool gains = device.fused_gain_cells > 0 && cells >= device.fused_gain_cells;
     const bool asked =
         settings_.fused_stages == FusedStages::always || (settings_.fused_stages == FusedStages::automatic && gains);
-    return make_step_plan(effects, settings_.method.substeps, {settings_.active_tiles > 0, asked && device.fused_stages});
+    return asked && device.fused_stages;
+}
+
+// Where a GPU does not fuse, its grid is so small that a step is short passes that wait for each other, whatever they run over;
+// and scratch fields of their own would take memory.
+bool WorldState::may_choose_tiles() const {
+    return settings_.active_tiles == tiles_where_they_gain && ((*device_).capabilities().fused_gain_cells == 0 || fuses());
+}
+
+StepPlan WorldState::plan_for(std::uint32_t effects, bool tiles) const {
+    return make_step_plan(effects, settings_.method.substeps, {tiles, fuses()});
 }
 
 Status WorldState::check_device(std::uint32_t effects) const {
@@ -44,7 +54,10 @@ Status WorldState::check_device(std::uint32_t effects) const {
 
 Status WorldState::set_effects(const EffectChoice& effects) {
     if (auto status = check_device(effects.mask); !status) return status;
-    StepPlan plan = plan_for(effects.mask);
+    const bool chooses = may_choose_tiles();
+    StepPlan plan = plan_for(effects.mask, chooses || settings_.active_tiles > tiles_where_they_gain);
+    std::optional<StepPlan> other;
+    if (chooses) share_fields(plan, other.emplace(plan_for(effects.mask, false)));
     if (auto status = fields_.set_plan(plan); !status) return status;
     if (plan.find("roughness") != nullptr) {
         if (auto status = fields_.write("roughness", 0, with_ghosts(layout_, settings_.roughness, true)); !status) {
@@ -53,6 +66,7 @@ Status WorldState::set_effects(const EffectChoice& effects) {
         }
     }
     plan_ = std::move(plan);
+    other_plan_ = std::move(other);
     effects_ = effects;
     derive();
     return ok_status();
@@ -65,30 +79,41 @@ void WorldState::set_material(const Material& material) {
 
 void WorldState::derive() {
     params_ = derive_params(settings_, plan_.effects);
-    if (plan_.active_tiles) params_.tile_rings = (plan_.reach + params_.tile_size - 1) / params_.tile_size;
+    const StepPlan& tiled = plan_.active_tiles || !other_plan_ ? plan_ : *other_plan_;
+    if (tiled.active_tiles) params_.tile_rings = (tiled.reach + params_.tile_size - 1) / params_.tile_size;
+    tiles_.wake_all();
+}
+
+void WorldState::use_tiles(bool on) {
+    if (plan_.active_tiles == on) return;
+    std::swap(plan_, *other_plan_);
+    fields_.set_way(on);
     tiles_.wake_all();
 }
 
 Status WorldState::prepare(std::uint32_t effects) {
-    const StepPlan plan = plan_for(effects);
-    std::set<int> stages = {compute::find_stage("apply_edits")};
-    for (const auto* passes : {&plan.start_passes, &plan.water_passes, &plan.substep_passes})
-        for (const auto& pass : *passes) stages.insert(pass.stage);
-    for (const int stage : stages) {
-        if (auto made = device_.create_pipeline(stage, effects, group_of(stage)); !made) return made.status();
+    for (const bool tiles : {false, true}) {
+        if (!chooses_tiles() && tiles != plan_.active_tiles) continue;
+        const StepPlan plan = plan_for(effects, tiles);
+        std::set<int> stages = {compute::find_stage("apply_edits")};
+        for (const auto* passes : {&plan.start_passes, &plan.water_passes, &plan.substep_passes})
+            for (const auto& pass : *passes) stages.insert(pass.stage);
+        for (const int stage : stages) {
+            if (auto made = device_.create_pipeline(stage, effects, group_of(stage, tiles)); !made) return made.status();
+        }
     }
     return ok_status();
 }
 
-compute::GroupSize WorldState::group_of(int stage) const {
+compute::GroupSize WorldState::group_of(int stage, bool tiles) const {
     auto group = group_;
-    if (compute::stage_table()[static_cast<std::size_t>(stage)].marks) group.tile = settings_.active_tiles;
+    if (tiles && compute::stage_table()[static_cast<std::size_t>(stage)].marks) group.tile = settings_.tile_side();
     return group;
 }
 
 Status WorldState::append(compute::ProgramBuilder& builder, const PlanPass& pass, Parity& parity) {
     const auto& stage = compute::stage_table()[static_cast<std::size_t>(pass.stage)];
-    auto pipeline = device_.create_pipeline(pass.stage, plan_.effects, group_of(pass.stage));
+    auto pipeline = device_.create_pipeline(pass.stage, plan_.effects, group_of(pass.stage, plan_.active_tiles));
     if (!pipeline) return pipeline.status();
     compute::Dispatch dispatch{
         *pipeline, pass.stage, plan_.effects, {}, compute::extent_range(stage.extent, params_), std::string(stage.name)};

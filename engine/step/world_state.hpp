@@ -4,6 +4,7 @@
 #include "engine/settings/effects.hpp"
 #include "engine/step/active_tiles.hpp"
 #include "engine/step/field_store.hpp"
+#include <optional>
 
 namespace wadi {
 
@@ -33,6 +34,10 @@ class WorldState {
     void set_reasons(const EffectChoice& effects) { effects_.reasons = effects.reasons; }
     const EffectChoice& effects() const { return effects_; }
     const StepPlan& plan() const { return plan_; }
+    /// Whether steps may run with active tiles or without: Settings::active_tiles where that may gain on this device.
+    bool chooses_tiles() const { return other_plan_.has_value(); }
+    /// Goes to the plan with active tiles or to the one without; before turn 0 only.
+    void use_tiles(bool on);
     /// Stepper::set_tile_rings().
     void set_tile_rings(int rings) { params_.tile_rings = rings; }
 
@@ -65,9 +70,12 @@ class WorldState {
   private:
     /// ok, or not_supported.
     Status check_device(std::uint32_t effects) const;
-    StepPlan plan_for(std::uint32_t effects) const;
+    StepPlan plan_for(std::uint32_t effects, bool tiles) const;
+    /// Whether the plan has fused stages.
+    bool fuses() const;
+    bool may_choose_tiles() const;
     /// Of a pass of the plan.
-    compute::GroupSize group_of(int stage) const;
+    compute::GroupSize group_of(int stage, bool tiles) const;
     /// Numbers that follow from the plan.
     void derive();
 
@@ -77,6 +85,7 @@ class WorldState {
     const std::uint64_t level_;
     EffectChoice effects_;
     StepPlan plan_;
+    std::optional<StepPlan> other_plan_; // with the other choice of active tiles
     const compute::GroupSize group_;
     WorldDevice device_;
     FieldStore fields_{device_, settings_};
