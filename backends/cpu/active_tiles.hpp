@@ -26,17 +26,6 @@ struct ActiveStage {
     std::vector<Output> outputs;
 };
 
-/// What a run of a stage hands to its block.
-struct StageCall {
-    StageBlock block;
-    void* const* buffers;
-    const unsigned long* sizes;
-    const WorldParams& params;
-    const StepInput& input;
-    compute::Range2 range;
-    void operator()(int i0, int i1, int j0, int j1) const { block(buffers, sizes, &params, &input, i0, i1, j0, j1); }
-};
-
 /// Rows [first, last) of the call's range, where they lie in active tiles. Threads may share a tile.
 void run_active(const ActiveStage& stage, const StageCall& call, int first, int last);
 

@@ -61,11 +61,10 @@ Result<compute::Buffer> CpuDevice::create_buffer(const compute::BufferDesc& desc
     buffers_.reserve();
     auto owner = std::make_unique<Memory>();
     auto& memory = *owner;
-    memory.block.reset(new (std::nothrow) std::byte[desc.bytes + 64 + stagger]());
+    memory.block = pages_.take(desc.bytes, stagger);
     if (!memory.block)
         return error(Code::out_of_memory, "buffer '" + desc.label + "': no memory for " + std::to_string(desc.bytes) + " bytes");
-    const auto address = reinterpret_cast<std::uintptr_t>(memory.block.get());
-    memory.data = memory.block.get() + ((64 - address % 64) % 64) + stagger;
+    memory.data = memory.block.get();
     memory.bytes = desc.bytes;
     allocated_ += desc.bytes;
     ++counters_.allocations;
@@ -75,14 +74,21 @@ Result<compute::Buffer> CpuDevice::create_buffer(const compute::BufferDesc& desc
 std::span<std::byte> CpuDevice::mapped(compute::Buffer buffer) { return {at(buffer).data, at(buffer).bytes}; }
 
 Result<compute::NativeBuffer> CpuDevice::native(compute::Buffer buffer) {
-    const auto& memory = at(buffer);
+    auto& memory = at(buffer);
+    if (memory.content && !memory.exposed) {
+        drain();
+        memory.content->expose();
+    }
+    memory.exposed = true;
     return compute::NativeBuffer{compute::NativeBuffer::Kind::host_pointer, reinterpret_cast<std::uintptr_t>(memory.data),
                                  memory.bytes};
 }
 
 void CpuDevice::destroy_buffer(compute::Buffer buffer) {
     drain();
-    allocated_ -= at(buffer).bytes;
+    const auto& memory = at(buffer);
+    allocated_ -= memory.bytes;
+    Pages::forget(memory.data, memory.bytes);
     buffers_.take(buffer.id);
 }
 
@@ -93,7 +99,9 @@ void CpuDevice::drain() {
 
 Status CpuDevice::write(compute::Buffer buffer, std::uint64_t offset, std::span<const std::byte> bytes) {
     drain();
-    std::ranges::copy(bytes, at(buffer).data + offset);
+    const auto& memory = at(buffer);
+    std::ranges::copy(bytes, memory.data + offset);
+    if (memory.content) memory.content->look_everywhere();
     return ok_status();
 }
 
@@ -126,13 +134,16 @@ Result<compute::Program> CpuDevice::compile(const compute::ProgramBuilder& build
             const auto& stage = compute::stage_table()[static_cast<std::size_t>(d->stage)];
             step.block = pipelines_[d->pipeline.id - 1];
             for (const auto& binding : stage.bindings) {
-                const auto* memory = binding.exists(d->effects) ? &at(d->slots[static_cast<std::size_t>(binding.slot)]) : nullptr;
+                auto* memory = binding.exists(d->effects) ? &at(d->slots[static_cast<std::size_t>(binding.slot)]) : nullptr;
                 step.buffers.push_back(memory != nullptr ? memory->data : nullptr);
                 step.sizes.push_back(memory != nullptr ? memory->bytes : 0);
+                if (memory != nullptr && binding.access != compute::Access::in) step.written.push_back(memory);
             }
             step.range = d->range;
             step.input = static_cast<std::size_t>(d->input);
-            step.rows_per_grab = std::max(1, (d->range.j1 - d->range.j0) / (8 * pool_.size()));
+            step.extent = stage.extent;
+            set_content(*d, stage, params, step);
+            step.rows_per_grab = std::max(1, step.rows() / (8 * pool_.size()));
             if (d->tiles.on()) {
                 if (auto status = set_active(*d, stage, params, step); !status) return status;
             }
@@ -141,8 +152,10 @@ Result<compute::Program> CpuDevice::compile(const compute::ProgramBuilder& build
             step.from = at(copy->from).data + copy->from_offset;
             step.to = at(copy->to).data + copy->to_offset;
             step.bytes = copy->bytes;
+            step.written.push_back(&at(copy->to));
         } else if (const auto* fill = std::get_if<compute::Fill>(&op)) {
-            const auto& to = at(fill->buffer);
+            auto& to = at(fill->buffer);
+            step.written.push_back(&to);
             step.to = to.data;
             step.bytes = to.bytes / 4 * 4;
             step.word = fill->word;
@@ -176,6 +189,38 @@ Status CpuDevice::set_active(const compute::Dispatch& d, const compute::StageInf
                      "'" + d.label + "' writes more than " + std::to_string(ActiveStage::most_outputs) + " buffers");
     step.rows_per_grab = std::min(step.rows_per_grab, params.tile_size);
     return ok_status();
+}
+
+Content* CpuDevice::content_of(Memory& memory, FieldLayout layout) {
+    if (memory.bytes < layout.size() * 4) return nullptr;
+    if (!memory.content) {
+        drain(); // what runs may be writing there
+        memory.content = std::make_unique<Content>(layout, reinterpret_cast<const std::uint32_t*>(memory.data));
+        if (memory.exposed) memory.content->expose();
+    }
+    const auto& has = memory.content->blocks().layout;
+    return has.nx == layout.nx && has.ny == layout.ny ? memory.content.get() : nullptr;
+}
+
+StageBlock CpuDevice::lean_block(int stage, std::uint32_t effects) const {
+    const auto block = set_.select[stage](effects);
+    const auto& base = instruction_sets().front();
+    return &set_ != &base && block == base.select[stage](effects) ? nullptr : block;
+}
+
+void CpuDevice::set_content(const compute::Dispatch& d, const compute::StageInfo& stage, const WorldParams& params, Step& step) {
+    const FieldLayout layout{params.nx, params.ny};
+    const bool whole = d.range.i0 == 0 && d.range.j0 == 0 && d.range.i1 >= layout.nx && d.range.j1 >= layout.ny;
+    if (stage.lacks.empty() || d.tiles.on() || !whole || (d.effects & EFFECT_HALF_STORAGE) != 0) return;
+    if (Blocks{layout}.columns() > Blocks::most_columns) return;
+    std::vector<Content*> contents;
+    for (const auto& binding : stage.bindings) {
+        const bool exists = binding.exists(d.effects);
+        contents.push_back(exists ? content_of(at(d.slots[static_cast<std::size_t>(binding.slot)]), layout) : nullptr);
+        if (exists && contents.back() == nullptr) return;
+    }
+    step.content = content_stage(stage, stage.lacks, d.effects, contents, step.buffers,
+                                 [&](std::uint32_t effects) { return lean_block(d.stage, effects); });
 }
 
 void CpuDevice::destroy_program(compute::Program program) {
@@ -232,7 +277,32 @@ void CpuDevice::device_thread() {
     }
 }
 
+void CpuDevice::look_into_written(const Step& step) {
+    const compute::Range2& r = step.range;
+    for (auto* memory : step.written) {
+        auto* content = memory->content.get();
+        if (content == nullptr) continue;
+        const int nx = content->blocks().layout.nx, ny = content->blocks().layout.ny;
+        switch (step.block != nullptr ? step.extent : compute::Extent::points) {
+        case compute::Extent::strips:
+        case compute::Extent::source_box:
+            content->look({r.i0, r.j0 * STRIP, r.i1, r.j1 * STRIP});
+            break;
+        case compute::Extent::rim:
+            for (const auto& side : {compute::Range2{0, 0, 1, ny}, {nx, 0, nx + 1, ny}, {0, 0, nx, 1}, {0, ny, nx, ny + 1}})
+                content->look(side);
+            break;
+        default:
+            content->look_everywhere();
+        }
+    }
+}
+
 void CpuDevice::run_rows(Step& step, const WorldParams& params, const StepInput& input, int first, int last) {
+    if (step.content.on()) {
+        const StageCall call{step.block, step.buffers.data(), step.sizes.data(), params, input, step.range};
+        return run_by_content(step.content, call, first, last);
+    }
     if (step.active.activity != nullptr) {
         run_active(step.active, {step.block, step.buffers.data(), step.sizes.data(), params, input, step.range}, first, last);
     } else if (step.block != nullptr) {
@@ -251,6 +321,7 @@ void CpuDevice::execute(Recorded& program, std::span<const StepInput> inputs, st
     for (std::size_t n = 0; n < count; ++n) {
         program.progress[n].next_row.store(0, std::memory_order_relaxed);
         program.progress[n].rows.set(program.steps[n].rows());
+        program.progress[n].rows_to_run.store(program.steps[n].rows(), std::memory_order_relaxed);
     }
     std::vector<std::chrono::steady_clock::time_point> stamps(program.timestamp_labels.size());
     const auto work = [&] {
@@ -272,6 +343,9 @@ void CpuDevice::execute(Recorded& program, std::span<const StepInput> inputs, st
                     stamps[static_cast<std::size_t>(step.timestamp)] = std::chrono::steady_clock::now();
                 } else {
                     run_rows(step, program.params, inputs[step.input], first, last);
+                    if (progress.rows_to_run.fetch_sub(last - first, std::memory_order_acq_rel) == last - first &&
+                        !step.content.on())
+                        look_into_written(step);
                 }
                 progress.rows.finish(last - first);
             }

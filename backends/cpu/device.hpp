@@ -3,6 +3,8 @@
 #pragma once
 #include "backends/common/handle_table.hpp"
 #include "backends/cpu/active_tiles.hpp"
+#include "backends/cpu/content.hpp"
+#include "backends/cpu/host_memory.hpp"
 #include "backends/cpu/thread_pool.hpp"
 #include "engine/compute/device.hpp"
 #include <atomic>
@@ -37,9 +39,11 @@ class CpuDevice final : public compute::Device {
 
   private:
     struct Memory {
-        std::unique_ptr<std::byte[]> block;
-        std::byte* data = nullptr; // 64-byte aligned, staggered
+        std::shared_ptr<std::byte> block;
+        std::byte* data = nullptr;
         std::uint64_t bytes = 0;
+        std::unique_ptr<Content> content; // of a field that some stage can be empty without
+        bool exposed = false;             // its address was given away
     };
     /// One operation, ready to run.
     struct Step {
@@ -49,6 +53,9 @@ class CpuDevice final : public compute::Device {
         compute::Range2 range{};
         std::size_t input = 0; // of the submission
         ActiveStage active;
+        ContentStage content;
+        compute::Extent extent{};     // of a stage
+        std::vector<Memory*> written; // by what has no content of its own
         int rows_per_grab = 1;
         std::byte* from = nullptr; // copy
         std::byte* to = nullptr;   // copy and fill
@@ -56,12 +63,15 @@ class CpuDevice final : public compute::Device {
         std::uint32_t word = 0;
         bool barrier_before = false;
         int timestamp = -1;
-        /// Shares of the work that threads take: rows, or one.
-        int rows() const { return block != nullptr ? range.j1 - range.j0 : 1; }
+        /// Shares of the work that threads take: rows, rows of blocks, or one.
+        int rows() const {
+            return content.on() ? content.written.front()->blocks().rows() : block != nullptr ? range.j1 - range.j0 : 1;
+        }
     };
     /// How far one execution of a step has come.
     struct Progress {
-        std::atomic<int> next_row{0}; // the first that nobody has taken yet
+        std::atomic<int> next_row{0};    // the first that nobody has taken yet
+        std::atomic<int> rows_to_run{0}; // that nobody has run yet
         Remaining rows;
     };
     struct Recorded {
@@ -83,6 +93,14 @@ class CpuDevice final : public compute::Device {
     void execute(Recorded& program, std::span<const StepInput> inputs, std::vector<compute::Timing>& timings);
     /// Errors: internal (more outputs than any stage has).
     Status set_active(const compute::Dispatch& dispatch, const compute::StageInfo& stage, const WorldParams& params, Step& step);
+    /// Leaves the step's content off where it cannot be told.
+    void set_content(const compute::Dispatch& dispatch, const compute::StageInfo& stage, const WorldParams& params, Step& step);
+    /// Null for a buffer that is no field of this layout.
+    Content* content_of(Memory& memory, FieldLayout layout);
+    /// The stage of the step without some effects, null where its instruction set has no code of its own for it.
+    StageBlock lean_block(int stage, std::uint32_t effects) const;
+    /// For those that follow; what has content itself has looked already.
+    static void look_into_written(const Step& step);
     static void run_rows(Step& step, const WorldParams& params, const StepInput& input, int first, int last);
 
     const InstructionSet& set_;
@@ -90,6 +108,7 @@ class CpuDevice final : public compute::Device {
     const bool full_barriers_;
     compute::Capabilities capabilities_;
     compute::DeviceCounters counters_;
+    PageArena pages_;
     backends::HandleTable<Memory> buffers_;
     std::vector<StageBlock> pipelines_; // by id - 1
     backends::HandleTable<Recorded> programs_;

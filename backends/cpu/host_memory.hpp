@@ -1,9 +1,42 @@
 // What the backend asks of the operating system.
 #pragma once
+#include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 
 namespace wadi::cpu {
 std::uint64_t physical_memory(); // bytes; 0 = unknown
 std::string processor_name();
+
+/// Zeros in pages as large as the system gives; the memory of pages that nobody has touched is not taken yet.
+class Pages {
+  public:
+    /// Null where there is no memory.
+    static std::shared_ptr<Pages> map(std::size_t bytes);
+    Pages(std::byte* data, std::size_t bytes) : data_(data), bytes_(bytes) {}
+    ~Pages();
+    Pages(const Pages&) = delete;
+    Pages& operator=(const Pages&) = delete;
+
+    std::byte* data() const { return data_; }
+    std::size_t bytes() const { return bytes_; }
+    /// Gives back the pages that lie within [data, data + bytes).
+    static void forget(std::byte* data, std::size_t bytes);
+
+  private:
+    std::byte* data_;
+    std::size_t bytes_;
+};
+
+/// Buffers side by side in a few large mappings: where each had its own, most would be too small for a large page.
+class PageArena {
+  public:
+    /// Zeros, `offset` bytes behind a multiple of 4 KiB; null where there is no memory.
+    std::shared_ptr<std::byte> take(std::size_t bytes, std::size_t offset);
+
+  private:
+    std::weak_ptr<Pages> pages_; // goes with the last of its buffers
+    std::size_t used_ = 0;
+};
 } // namespace wadi::cpu

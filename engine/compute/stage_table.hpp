@@ -30,6 +30,7 @@ struct StageBinding {
     Access access;
     Scalar type;
     std::uint32_t condition; // all these effect bits must be on for the buffer to exist; 0 = always
+    float empty;             // what the stage writes there where it is empty: StageLack
 
     bool exists(std::uint32_t effects) const { return (effects & condition) == condition; }
 };
@@ -37,6 +38,15 @@ struct StageBinding {
 /// Cells from a thread's own index to the farthest that it reads.
 struct Reach {
     int west = 0, south = 0, east = 0, north = 0;
+};
+
+/// Where every number that the stage reads of these bindings is +0, of those that exist, it is empty: each `out` gets its
+/// `empty`, each `inout` keeps what it holds. With `less` the stage without these effects writes the same there, and of the
+/// bindings that it then lacks each `out` gets its `empty`. Of the other bindings nothing is asked but that no number in them is
+/// a denormal or -0.
+struct StageLack {
+    std::uint32_t slots; // a bit for each
+    std::uint32_t less;  // 0: empty
 };
 
 struct StageInfo {
@@ -51,6 +61,7 @@ struct StageInfo {
     std::span<const std::uint32_t> half_spirv; // for masks with EFFECT_HALF_STORAGE; empty where that changes nothing, too
     int stages;                                // stages that a fused stage runs in one pass; 0 for a stage that is none
     std::uint32_t needs, without;              // a fused stage is for masks that have all of `needs` and nothing of `without`
+    std::span<const StageLack> lacks;          // of stages of cells and faces; not of fused ones
 
     bool fused() const { return stages > 0; }
 };

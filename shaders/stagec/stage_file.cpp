@@ -60,8 +60,9 @@ bool upper_case(const std::string& word) {
 // Words in capitals belong to the language, to step_params.h and effects.h, or to what the stage includes.
 void check_words(const Source& source, const std::string& shaders, const std::string& reads) {
     static const std::set<std::string> language = {
-        "STAGE", "END_STAGE", "EXTENT", "REACH", "FAR_IF", "IN",           "OUT",    "INOUT", "IN_IF",     "OUT_IF", "INOUT_IF",
-        "HAS",   "UNIFORM",   "FN",     "REF",   "HELPER", "HELPER_CONST", "KERNEL", "IDX",   "EACH_AXIS", "EACH_OF"};
+        "STAGE",  "END_STAGE", "EXTENT",  "REACH",         "FAR_IF",       "IN",          "OUT",    "INOUT",        "IN_IF",
+        "OUT_IF", "INOUT_IF",  "HAS",     "UNIFORM",       "FN",           "REF",         "HELPER", "HELPER_CONST", "KERNEL",
+        "IDX",    "EACH_AXIS", "EACH_OF", "EMPTY_WITHOUT", "EMPTY_WRITES", "LEAN_WITHOUT"};
     std::set<std::string> known = language;
     known.insert(extents.begin(), extents.end());
     for (const char* header : {"step_params.h", "effects.h"}) note_defines(read_text(shaders + header), known);
@@ -115,6 +116,46 @@ void check_shape(const Stage& stage, const std::map<std::string, std::vector<std
         source.fail(found.at("EXTENT")[0], "EXTENT " + stage.extent + " is none of " + joined(extents));
     for (const int n : {stage.reach.west, stage.reach.south, stage.reach.east, stage.reach.north})
         if (n > 2) source.fail(found.at("KERNEL")[0], "reads more than 2 cells away, the width of the ghosts");
+}
+
+// EMPTY_WITHOUT(fields), LEAN_WITHOUT(EFFECTS, fields), EMPTY_WRITES(field = value).
+void read_content(Stage& stage, const std::string& word, std::size_t at) {
+    const Source& source = stage.source;
+    const auto binding = [&](const std::string& name) -> Binding& {
+        const auto found =
+            std::find_if(stage.bindings.begin(), stage.bindings.end(), [&](const Binding& b) { return b.name == name; });
+        if (found == stage.bindings.end()) source.fail(at, word + " names " + name + ", which the stage does not bind");
+        return *found;
+    };
+    auto a = arguments(source, at + word.size());
+    if (a.empty()) source.fail(at, word + " takes arguments in parentheses");
+    if (stage.extent != "CELLS" && stage.extent != "FACES") source.fail(at, word + " is for stages of cells and faces");
+    if (word == "EMPTY_WRITES") {
+        const auto equals = a[0].find('=');
+        if (a.size() != 1 || equals == std::string::npos) source.fail(at, word + " takes (field = value)");
+        Binding& b = binding(a[0].substr(0, equals));
+        if (b.access != "OUT") source.fail(at, word + " names " + b.name + ", which is no OUT");
+        b.empty = a[0].substr(equals + 1);
+        return;
+    }
+    Lack lack{{}, "0u"};
+    if (word == "LEAN_WITHOUT") {
+        lack.less = a[0];
+        a.erase(a.begin());
+    }
+    for (const auto& name : a) {
+        if (binding(name).access == "OUT") source.fail(at, word + " names " + name + ", which is an OUT");
+    }
+    lack.fields = std::move(a);
+    stage.lacks.push_back(std::move(lack));
+}
+
+// What stands behind END_STAGE is for the table alone: no compiler sees it.
+void read_contents(Stage& stage, std::size_t end) {
+    for_each_word(stage.source.text.substr(end), [&](const std::string& word, std::size_t at) {
+        if (word == "EMPTY_WITHOUT" || word == "LEAN_WITHOUT" || word == "EMPTY_WRITES") read_content(stage, word, end + at);
+    });
+    stage.source.text.erase(std::min(end + 1, stage.source.text.size()));
 }
 
 // A file that only says STAGE_LIKE(Name, stage, word = other) is that stage's text under its own name, with a word replaced.
@@ -186,6 +227,7 @@ Stage parse_stage(const std::string& path) {
         widen(stage.reach.south, stage.reach.north, a[1], 'j');
     }
     check_shape(stage, found);
+    read_contents(stage, found["END_STAGE"][0] + std::string("END_STAGE").size());
     for (std::size_t at = 0; (at = stage.source.text.find("\"../../physics/", at)) != std::string::npos;)
         stage.source.text.erase(at + 1, 6);
     stage.tested.assign(tested.begin(), tested.end());

@@ -11,6 +11,7 @@ namespace stagec {
 struct Binding {
     std::string name, type, access, condition;
     int slot = 0;
+    std::string empty = "0.0f"; // what the stage writes where it is empty
     /// Lies in memory as 16-bit floats with EFFECT_HALF_STORAGE.
     bool narrow() const { return type == "float_or_half"; }
 };
@@ -20,6 +21,12 @@ struct Reach {
     int west = 0, south = 0, east = 0, north = 0;
 };
 
+/// Where these fields are 0 wherever the kernel reads them, the stage is empty, or one without the effects `less` writes the same.
+struct Lack {
+    std::vector<std::string> fields;
+    std::string less; // "0u": empty
+};
+
 struct Stage {
     std::string path, name, struct_name, extent;
     /// The file without comments, what it says once written out, physics included by paths from shaders/.
@@ -27,6 +34,7 @@ struct Stage {
     Reach reach;
     std::string far; // effects without which it reads no further than one cell
     std::vector<Binding> bindings;
+    std::vector<Lack> lacks;
     bool fused = false;
     std::vector<std::string> tested; // effect names that HAS() or a condition asks
 };

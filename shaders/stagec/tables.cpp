@@ -11,6 +11,21 @@ static bool has_narrow(const Stage& s) {
     return std::any_of(s.bindings.begin(), s.bindings.end(), [](const Binding& b) { return b.narrow(); });
 }
 
+static std::string lacks_of(const Stage& s, const Effects& effects) {
+    if (s.lacks.empty()) return "";
+    std::ostringstream o;
+    o << "constexpr StageLack lacks_" << s.name << "[] = {\n";
+    for (const auto& lack : s.lacks) {
+        unsigned slots = 0;
+        for (const auto& b : s.bindings) {
+            if (std::find(lack.fields.begin(), lack.fields.end(), b.name) != lack.fields.end()) slots |= 1u << b.slot;
+        }
+        o << "    {" << slots << "u, " << effect_bits(lack.less, effects, s.path) << "u},\n";
+    }
+    o << "};\n";
+    return o.str();
+}
+
 std::string stage_table(const std::vector<std::string>& paths, const Effects& effects, const std::string& spirv_dir) {
     std::vector<FusedStage> stages; // one that is not fused has no parts
     for (const auto& path : paths) {
@@ -32,9 +47,9 @@ std::string stage_table(const std::vector<std::string>& paths, const Effects& ef
                                                               {"vec4", "vec4"}, {"float_or_half", "f32_or_f16"}};
             const std::map<std::string, std::string> access = {{"IN", "in"}, {"OUT", "out"}, {"INOUT", "inout"}};
             o << "    {\"" << b.name << "\", " << b.slot << ", Access::" << access.at(b.access)
-              << ", Scalar::" << types.at(b.type) << ", " << b.condition << "},\n";
+              << ", Scalar::" << types.at(b.type) << ", " << b.condition << ", " << b.empty << "},\n";
         }
-        o << "};\n";
+        o << "};\n" << lacks_of(s, effects);
         if (spirv_dir != "-") {
             o << "constexpr std::uint32_t spirv_" << s.name << "[] = {" << word_list(spirv_dir + "/" + s.name + ".spv")
               << "\n};\n";
@@ -53,7 +68,8 @@ std::string stage_table(const std::vector<std::string>& paths, const Effects& ef
           << (marks(s) ? "true" : "false") << ", " << tested_bits(s, effects) << "u, bindings_" << s.name << ", "
           << (spirv_dir != "-" ? "spirv_" + s.name : "std::span<const std::uint32_t>{}") << ", "
           << (spirv_dir != "-" && has_narrow(s) ? "half_spirv_" + s.name : "std::span<const std::uint32_t>{}") << ", "
-          << fused.parts.size() << ", " << fused.needs << "u, " << fused.without << "u},\n";
+          << fused.parts.size() << ", " << fused.needs << "u, " << fused.without << "u, "
+          << (s.lacks.empty() ? "std::span<const StageLack>{}" : "lacks_" + s.name) << "},\n";
     }
     o << "};\n} // namespace\nstd::span<const StageInfo> stage_table() {\n    return stages;\n}\n} // namespace wadi::compute\n";
     return o.str();

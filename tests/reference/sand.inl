@@ -74,8 +74,9 @@ template <class Real> void Solver<Real>::add_gravity(const Axis& ax, int a, int 
         const Real D = open_water(R) - open_water(L);
         const Real m = minmod(-D, slope.d); // where the water's surface is level the sand feels its buoyant weight
         u -= P.k_sand * g_f * slope.C * (slope.r * (slope.d - buoyancy * m) + buoyancy * (D + m));
-        withheld_push.along(ax)[f] = P.k_sand * g_f * (Real(1) - slope.C * slope.r) * slope.d;
-        friction_limit.along(ax)[f] = slope.C * level_friction(L, R);
+        const bool pushed = sand[L] + sand[R] > Real(0);
+        withheld_push.along(ax)[f] = pushed ? P.k_sand * g_f * (Real(1) - slope.C * slope.r) * slope.d : Real(0);
+        friction_limit.along(ax)[f] = pushed ? slope.C * level_friction(L, R) : Real(0);
     } else {
         u -= P.k_sand * g_f * (S_R - S_L);
     }
