@@ -1,5 +1,4 @@
 #include "backends/cpu/content.hpp"
-#include <array>
 #include <bit>
 #include <utility>
 
@@ -7,58 +6,57 @@ namespace wadi::cpu {
 
 namespace {
 
-// One row of blocks.
+/// Calls use(first, last) for each run of bits that are set.
+template <class Use> void for_each_run(std::uint64_t bits, Use use) {
+    while (bits != 0) {
+        const int first = std::countr_zero(bits), last = first + std::countr_one(bits >> first);
+        use(first, last);
+        bits &= last == 64 ? 0 : ~std::uint64_t{0} << last;
+    }
+}
+
+std::uint64_t bits_between(int first, int last) { return (~std::uint64_t{0} << first) & (~std::uint64_t{0} >> (64 - last)); }
+
+// One row of blocks, 64 of them at a time.
 class Runner {
   public:
-    Runner(const ContentStage& stage, const StageCall& call)
-        : s_(stage), call_(call), blocks_(stage.written.front()->blocks()), columns_(blocks_.columns()) {}
+    Runner(const ContentStage& stage, const StageCall& call, int row)
+        : s_(stage), call_(call), blocks_(stage.written.front()->blocks()), row_(row) {}
 
-    void run(int row) {
-        row_ = row;
-        choose();
-        for (int column = 0; column < columns_;) {
-            const int begin = column;
-            const auto choice = choice_[at(begin)];
-            while (column < columns_ && choice_[at(column)] == choice) ++column;
-            if (choice == s_.lacks.size()) {
-                compute(call_.block, s_.written, begin, column);
-                continue;
+    void run(int word) {
+        std::uint64_t rest = bits_between(0, std::min(64, blocks_.columns() - 64 * word));
+        for (const auto& lack : s_.lacks) {
+            std::uint64_t free = rest;
+            for (const auto& field : lack.fields) {
+                if (free != 0) free &= ~read(field, word);
             }
-            const auto& lack = s_.lacks[choice];
-            if (lack.block != nullptr) compute(lack.block, lack.written, begin, column);
-            for (const auto& output : lack.fills) fill(output, begin, column);
+            rest &= ~free;
+            for_each_run(free, [&](int first, int last) {
+                const int begin = 64 * word + first, end = 64 * word + last;
+                if (lack.block != nullptr) compute(lack.block, lack.written, begin, end);
+                for (const auto& output : lack.fills) fill(output, begin, end);
+            });
         }
+        for_each_run(rest, [&](int first, int last) { compute(call_.block, s_.written, 64 * word + first, 64 * word + last); });
     }
 
   private:
-    static std::size_t at(int column) { return static_cast<std::size_t>(column); }
-
-    // For each block the first lack that it has; their number where it has none.
-    void choose() {
-        const auto none = static_cast<std::uint8_t>(s_.lacks.size());
-        std::fill_n(choice_.begin(), columns_, none);
-        for (std::uint8_t n = none; n-- > 0;) {
-            std::fill_n(holds_.begin(), columns_, std::uint8_t{0});
-            for (const auto& field : s_.lacks[n].fields) add(field);
-            for (int column = 0; column < columns_; ++column)
-                choice_[at(column)] = holds_[at(column)] == 0 ? n : choice_[at(column)];
-        }
-    }
-
-    // Adds the blocks for which the field holds something where the stage reads it.
-    void add(const ContentStage::Field& field) {
-        const int low = field.around && s_.reach.south > 0 ? std::max(0, row_ - 1) : row_;
-        const int high = field.around && s_.reach.north > 0 ? std::min(blocks_.rows() - 1, row_ + 1) : row_;
-        std::uint8_t* here = beside_.data() + 1; // a column more on either side
-        std::copy_n(field.content->row(low), columns_, here);
-        for (int row = low + 1; row <= high; ++row) {
-            const std::uint8_t* more = field.content->row(row);
-            for (int column = 0; column < columns_; ++column) here[column] |= more[column];
-        }
-        here[-1] = here[columns_] = 0;
-        const std::uint8_t west = field.around && s_.reach.west > 0 ? 1 : 0, east = field.around && s_.reach.east > 0 ? 1 : 0;
-        for (int column = 0; column < columns_; ++column)
-            holds_[at(column)] |= static_cast<std::uint8_t>(here[column] | (west & here[column - 1]) | (east & here[column + 1]));
+    // The blocks for which the field holds something where the stage reads it.
+    std::uint64_t read(const ContentStage::Field& field, int word) const {
+        const Content& content = *field.content;
+        if (!field.around) return content.word(row_, word);
+        const int low = s_.reach.south > 0 ? std::max(0, row_ - 1) : row_;
+        const int high = s_.reach.north > 0 ? std::min(blocks_.rows() - 1, row_ + 1) : row_;
+        const auto rows = [&](int at) {
+            std::uint64_t bits = 0;
+            for (int row = low; row <= high && at >= 0 && at < content.words(); ++row) bits |= content.word(row, at);
+            return bits;
+        };
+        const std::uint64_t here = rows(word);
+        std::uint64_t all = here;
+        if (s_.reach.west > 0) all |= here << 1 | rows(word - 1) >> 63;
+        if (s_.reach.east > 0) all |= here >> 1 | rows(word + 1) << 63;
+        return all;
     }
 
     void compute(StageBlock block, const std::vector<Content*>& written, int begin, int end) const {
@@ -68,15 +66,12 @@ class Runner {
         for (auto* content : written) content->look(row_, begin, end); // as long as it lies in the cache
     }
 
+    // The blocks [begin, end), all of one word.
     void fill(const ContentStage::Output& output, int begin, int end) const {
         if (output.empty != 0) return put(output, begin, end);
-        for (int column = begin; column < end;) {
-            const std::uint8_t* holds = output.content->row(row_);
-            while (column < end && holds[column] == 0) ++column;
-            const int first = column;
-            while (column < end && holds[column] != 0) ++column;
-            if (first < column) put(output, first, column);
-        }
+        const int word = begin / 64;
+        const std::uint64_t full = output.content->word(row_, word) & bits_between(begin - 64 * word, end - 64 * word);
+        for_each_run(full, [&](int first, int last) { put(output, 64 * word + first, 64 * word + last); });
     }
 
     void put(const ContentStage::Output& output, int begin, int end) const {
@@ -94,23 +89,27 @@ class Runner {
     const ContentStage& s_;
     const StageCall& call_;
     const Blocks& blocks_;
-    const int columns_;
-    int row_ = 0;
-    std::array<std::uint8_t, Blocks::most_columns> choice_, holds_;
-    std::array<std::uint8_t, Blocks::most_columns + 2> beside_;
+    const int row_;
 };
 
 } // namespace
 
-Content::Content(FieldLayout layout, const std::uint32_t* words)
-    : blocks_{layout}, words_(words),
-      holds_(static_cast<std::size_t>(blocks_.columns()) * static_cast<std::size_t>(blocks_.rows()), 1) {
+Content::Content(FieldLayout layout, const std::uint32_t* numbers) : blocks_{layout}, numbers_(numbers) {
+    holds_.resize(static_cast<std::size_t>(words()) * static_cast<std::size_t>(blocks_.rows()));
     look_everywhere();
 }
 
 void Content::look(int row, int first, int last) {
     if (exposed_) return;
-    for (int column = first; column < last; ++column) holds_[at(column, row)] = holds_something(column, row) ? 1 : 0;
+    const int j0 = blocks_.first_j(row, -GHOST), j1 = blocks_.last_j(row, blocks_.layout.ny + 1 + GHOST);
+    // Where there is something, a number in the middle mostly tells.
+    const std::uint32_t* middle = numbers_ + blocks_.layout.index(Blocks::width / 2, (j0 + j1) / 2);
+    for (int column = first; column < last; ++column) {
+        const bool holds = middle[column * Blocks::width] != 0 || holds_something(column, row);
+        auto& word = holds_[at(row, column / 64)];
+        const std::uint64_t bit = std::uint64_t{1} << (column % 64);
+        word = holds ? word | bit : word & ~bit;
+    }
 }
 
 void Content::look(const compute::Range2& range) {
@@ -121,18 +120,24 @@ void Content::look(const compute::Range2& range) {
 
 void Content::expose() {
     exposed_ = true;
-    std::fill(holds_.begin(), holds_.end(), std::uint8_t{1});
+    for (int row = 0; row < blocks_.rows(); ++row)
+        for (int word = 0; word < words(); ++word)
+            holds_[at(row, word)] = bits_between(0, std::min(64, blocks_.columns() - 64 * word));
 }
 
 bool Content::holds_something(int column, int row) const {
     const auto& layout = blocks_.layout;
     const int i0 = blocks_.first_i(column, -GHOST), i1 = blocks_.last_i(column, layout.nx + 1 + GHOST);
     const int j0 = blocks_.first_j(row, -GHOST), j1 = blocks_.last_j(row, layout.ny + 1 + GHOST);
-    if (words_[layout.index((i0 + i1) / 2, (j0 + j1) / 2)] != 0) return true; // that mostly tells
+    const auto any_of = [](const std::uint32_t* line, int count) {
+        std::uint32_t any = 0;
+        for (int n = 0; n < count; ++n) any |= line[n];
+        return any;
+    };
     std::uint32_t any = 0;
     for (int j = j0; j < j1 && any == 0; ++j) {
-        const std::uint32_t* line = words_ + layout.index(i0, j);
-        for (int n = 0; n < i1 - i0; ++n) any |= line[n];
+        const std::uint32_t* line = numbers_ + layout.index(i0, j);
+        any = i1 - i0 == Blocks::width ? any_of(line, Blocks::width) : any_of(line, i1 - i0); // a constant count: no loop
     }
     return any != 0;
 }
@@ -171,8 +176,11 @@ ContentStage content_stage(const compute::StageInfo& stage, std::span<const comp
 }
 
 void run_by_content(const ContentStage& stage, const StageCall& call, int first, int last) {
-    Runner runner(stage, call);
-    for (int row = first; row < last; ++row) runner.run(row);
+    const int words = stage.written.front()->words();
+    for (int row = first; row < last; ++row) {
+        Runner runner(stage, call, row);
+        for (int word = 0; word < words; ++word) runner.run(word);
+    }
 }
 
 } // namespace wadi::cpu

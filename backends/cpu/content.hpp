@@ -13,7 +13,7 @@ namespace wadi::cpu {
 /// Blocks of width x height cells. Those along the east and the north side take what is left over, and those at the rim the
 /// ghosts.
 struct Blocks {
-    static constexpr int width = 16, height = 8, most_columns = 4096;
+    static constexpr int width = 16, height = 8;
     FieldLayout layout;
 
     int columns() const { return std::max(1, layout.nx / width); }
@@ -30,11 +30,13 @@ struct Blocks {
 /// What the blocks of one field hold. Whoever writes the field looks anew, so that this is never wrong when others ask.
 class Content {
   public:
-    Content(FieldLayout layout, const std::uint32_t* words);
+    Content(FieldLayout layout, const std::uint32_t* numbers);
 
     const Blocks& blocks() const { return blocks_; }
-    /// For each block of a row: 0 where every number is +0, ghosts included, else 1.
-    const std::uint8_t* row(int row) const { return holds_.data() + at(0, row); }
+    /// Words of a row of blocks, 64 blocks each.
+    int words() const { return (blocks_.columns() + 63) / 64; }
+    /// A bit for each block: 0 where every number is +0, ghosts included, and beyond the last one.
+    std::uint64_t word(int row, int word) const { return holds_[at(row, word)]; }
     /// Looks into the blocks [first, last) of a row.
     void look(int row, int first, int last);
     /// Looks into all blocks that have cells in the range or, at the rim of the grid, ghosts beside.
@@ -44,14 +46,14 @@ class Content {
     void expose();
 
   private:
-    std::size_t at(int column, int row) const {
-        return static_cast<std::size_t>(row) * static_cast<std::size_t>(blocks_.columns()) + static_cast<std::size_t>(column);
+    std::size_t at(int row, int word) const {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(words()) + static_cast<std::size_t>(word);
     }
     bool holds_something(int column, int row) const;
 
     Blocks blocks_;
-    const std::uint32_t* words_;
-    std::vector<std::uint8_t> holds_;
+    const std::uint32_t* numbers_;
+    std::vector<std::uint64_t> holds_;
     bool exposed_ = false;
 };
 

@@ -212,7 +212,6 @@ void CpuDevice::set_content(const compute::Dispatch& d, const compute::StageInfo
     const FieldLayout layout{params.nx, params.ny};
     const bool whole = d.range.i0 == 0 && d.range.j0 == 0 && d.range.i1 >= layout.nx && d.range.j1 >= layout.ny;
     if (stage.lacks.empty() || d.tiles.on() || !whole || (d.effects & EFFECT_HALF_STORAGE) != 0) return;
-    if (Blocks{layout}.columns() > Blocks::most_columns) return;
     std::vector<Content*> contents;
     for (const auto& binding : stage.bindings) {
         const bool exists = binding.exists(d.effects);
