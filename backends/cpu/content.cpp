@@ -63,7 +63,16 @@ class Runner {
         StageCall call = call_;
         call.block = block;
         call(first_i(begin), last_i(end - 1), first_j(), last_j());
-        for (auto* content : written) content->look(row_, begin, end); // as long as it lies in the cache
+        // A look as long as it lies in the cache; none where the fields that lacks name first keep all lacks out.
+        const int word = begin / 64;
+        std::uint64_t kept_out = bits_between(begin - 64 * word, end - 64 * word);
+        const std::uint64_t all = kept_out;
+        for (const auto& lack : s_.lacks) kept_out &= lack.fields.front().content->word(row_, word);
+        for (auto* content : written) {
+            const std::uint64_t assumed = content->leads() ? 0 : kept_out;
+            for_each_run(assumed, [&](int first, int last) { content->assume(row_, 64 * word + first, 64 * word + last); });
+            for_each_run(all & ~assumed, [&](int first, int last) { content->look(row_, 64 * word + first, 64 * word + last); });
+        }
     }
 
     // The blocks [begin, end), all of one word.
@@ -112,6 +121,11 @@ void Content::look(int row, int first, int last) {
     }
 }
 
+void Content::assume(int row, int first, int last) {
+    for (int word = first / 64; 64 * word < last; ++word)
+        holds_[at(row, word)] |= bits_between(std::max(0, first - 64 * word), std::min(64, last - 64 * word));
+}
+
 void Content::look(const compute::Range2& range) {
     if (range.i0 >= range.i1) return;
     for (int row = blocks_.row_of(range.j0); range.j0 < range.j1 && row <= blocks_.row_of(range.j1 - 1); ++row)
@@ -120,9 +134,7 @@ void Content::look(const compute::Range2& range) {
 
 void Content::expose() {
     exposed_ = true;
-    for (int row = 0; row < blocks_.rows(); ++row)
-        for (int word = 0; word < words(); ++word)
-            holds_[at(row, word)] = bits_between(0, std::min(64, blocks_.columns() - 64 * word));
+    for (int row = 0; row < blocks_.rows(); ++row) assume(row, 0, blocks_.columns());
 }
 
 bool Content::holds_something(int column, int row) const {
@@ -170,7 +182,10 @@ ContentStage content_stage(const compute::StageInfo& stage, std::span<const comp
                 part.fills.push_back(
                     {contents[n], static_cast<std::uint32_t*>(buffers[n]), std::bit_cast<std::uint32_t>(binding.empty)});
         }
-        if (!part.fields.empty()) made.lacks.push_back(std::move(part));
+        if (part.fields.empty()) continue;
+        for (std::size_t n = 0; n < contents.size(); ++n)
+            if (contents[n] == part.fields.front().content) contents[n]->lead();
+        made.lacks.push_back(std::move(part));
     }
     return made;
 }

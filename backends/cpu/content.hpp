@@ -35,10 +35,15 @@ class Content {
     const Blocks& blocks() const { return blocks_; }
     /// Words of a row of blocks, 64 blocks each.
     int words() const { return (blocks_.columns() + 63) / 64; }
-    /// A bit for each block: 0 where every number is +0, ghosts included, and beyond the last one.
+    /// A bit for each block: 0 only where every number is +0, ghosts included, and beyond the last one.
     std::uint64_t word(int row, int word) const { return holds_[at(row, word)]; }
     /// Looks into the blocks [first, last) of a row.
     void look(int row, int first, int last);
+    /// Says of them that they may hold something, without a look.
+    void assume(int row, int first, int last);
+    /// Some lack names the field first, so that the others that it names are not asked where this one holds something.
+    void lead() { leads_ = true; }
+    bool leads() const { return leads_; }
     /// Looks into all blocks that have cells in the range or, at the rim of the grid, ghosts beside.
     void look(const compute::Range2& range);
     void look_everywhere() { look({0, 0, blocks_.layout.nx, blocks_.layout.ny}); }
@@ -54,7 +59,7 @@ class Content {
     Blocks blocks_;
     const std::uint32_t* numbers_;
     std::vector<std::uint64_t> holds_;
-    bool exposed_ = false;
+    bool exposed_ = false, leads_ = false;
 };
 
 /// A stage whose fields have contents.

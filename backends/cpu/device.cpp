@@ -194,7 +194,6 @@ Status CpuDevice::set_active(const compute::Dispatch& d, const compute::StageInf
 Content* CpuDevice::content_of(Memory& memory, FieldLayout layout) {
     if (memory.bytes < layout.size() * 4) return nullptr;
     if (!memory.content) {
-        drain(); // what runs may be writing there
         memory.content = std::make_unique<Content>(layout, reinterpret_cast<const std::uint32_t*>(memory.data));
         if (memory.exposed) memory.content->expose();
     }
@@ -212,6 +211,7 @@ void CpuDevice::set_content(const compute::Dispatch& d, const compute::StageInfo
     const FieldLayout layout{params.nx, params.ny};
     const bool whole = d.range.i0 == 0 && d.range.j0 == 0 && d.range.i1 >= layout.nx && d.range.j1 >= layout.ny;
     if (stage.lacks.empty() || d.tiles.on() || !whole || (d.effects & EFFECT_HALF_STORAGE) != 0) return;
+    drain(); // what runs may be asking
     std::vector<Content*> contents;
     for (const auto& binding : stage.bindings) {
         const bool exists = binding.exists(d.effects);
