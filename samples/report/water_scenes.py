@@ -131,6 +131,6 @@ def over_bump(key, title, q, right, through_critical, seconds):
 
 def all_scenes():
     return [exact_dam_break("stoker", cases.EXACT["stoker"][0], 0.2), exact_dam_break("ritter", cases.EXACT["ritter"][0], 0), smooth_wave(),
-            thacker(), planar_bowl(), over_bump("bump", "Steady subcritical flow over a bump, after 100 s", 4.42, 2.0, False, 100),
+            thacker(), planar_bowl(), over_bump("bump", "Steady subcritical flow over a bump, after 400 s", 4.42, 2.0, False, 400),
             over_bump("transcritical", "Steady flow that turns fast over a bump, after 100 s", 1.53, None, True, 100),
             over_bump("jump", "Steady flow over a bump with a jump behind it, after 200 s", 0.18, 0.33, True, 200)]
