@@ -43,7 +43,7 @@ class Runner {
   private:
     // The blocks for which the field holds something where the stage reads it.
     std::uint64_t read(const ContentStage::Field& field, int word) const {
-        const Content& content = *field.content;
+        const BlockContent& content = *field.content;
         if (!field.around) return content.word(row_, word);
         const int low = s_.reach.south > 0 ? std::max(0, row_ - 1) : row_;
         const int high = s_.reach.north > 0 ? std::min(blocks_.rows() - 1, row_ + 1) : row_;
@@ -59,7 +59,7 @@ class Runner {
         return all;
     }
 
-    void compute(StageBlock block, const std::vector<Content*>& written, int begin, int end) const {
+    void compute(StageBlock block, const std::vector<BlockContent*>& written, int begin, int end) const {
         StageCall call = call_;
         call.block = block;
         call(first_i(begin), last_i(end - 1), first_j(), last_j());
@@ -103,12 +103,12 @@ class Runner {
 
 } // namespace
 
-Content::Content(FieldLayout layout, const std::uint32_t* numbers) : blocks_{layout}, numbers_(numbers) {
+BlockContent::BlockContent(FieldLayout layout, const std::uint32_t* numbers) : blocks_{layout}, numbers_(numbers) {
     holds_.resize(static_cast<std::size_t>(words()) * static_cast<std::size_t>(blocks_.rows()));
     look_everywhere();
 }
 
-void Content::look(int row, int first, int last) {
+void BlockContent::look(int row, int first, int last) {
     if (exposed_) return;
     const int j0 = blocks_.first_j(row, -GHOST), j1 = blocks_.last_j(row, blocks_.layout.ny + 1 + GHOST);
     // Where there is something, a number in the middle mostly tells.
@@ -121,23 +121,23 @@ void Content::look(int row, int first, int last) {
     }
 }
 
-void Content::assume(int row, int first, int last) {
+void BlockContent::assume(int row, int first, int last) {
     for (int word = first / 64; 64 * word < last; ++word)
         holds_[at(row, word)] |= bits_between(std::max(0, first - 64 * word), std::min(64, last - 64 * word));
 }
 
-void Content::look(const compute::Range2& range) {
+void BlockContent::look(const compute::Range2& range) {
     if (range.i0 >= range.i1) return;
     for (int row = blocks_.row_of(range.j0); range.j0 < range.j1 && row <= blocks_.row_of(range.j1 - 1); ++row)
         look(row, blocks_.column_of(range.i0), blocks_.column_of(range.i1 - 1) + 1);
 }
 
-void Content::expose() {
+void BlockContent::expose() {
     exposed_ = true;
     for (int row = 0; row < blocks_.rows(); ++row) assume(row, 0, blocks_.columns());
 }
 
-bool Content::holds_something(int column, int row) const {
+bool BlockContent::holds_something(int column, int row) const {
     const auto& layout = blocks_.layout;
     const int i0 = blocks_.first_i(column, -GHOST), i1 = blocks_.last_i(column, layout.nx + 1 + GHOST);
     const int j0 = blocks_.first_j(row, -GHOST), j1 = blocks_.last_j(row, layout.ny + 1 + GHOST);
@@ -155,7 +155,7 @@ bool Content::holds_something(int column, int row) const {
 }
 
 ContentStage content_stage(const compute::StageInfo& stage, std::span<const compute::StageLack> lacks, std::uint32_t effects,
-                           std::span<Content* const> contents, std::span<void* const> buffers,
+                           std::span<BlockContent* const> contents, std::span<void* const> buffers,
                            const std::function<StageBlock(std::uint32_t)>& lean) {
     ContentStage made;
     made.reach = stage.reach;

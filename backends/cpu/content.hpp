@@ -28,9 +28,9 @@ struct Blocks {
 };
 
 /// What the blocks of one field hold. Whoever writes the field looks anew, so that this is never wrong when others ask.
-class Content {
+class BlockContent {
   public:
-    Content(FieldLayout layout, const std::uint32_t* numbers);
+    BlockContent(FieldLayout layout, const std::uint32_t* numbers);
 
     const Blocks& blocks() const { return blocks_; }
     /// Words of a row of blocks, 64 blocks each.
@@ -65,11 +65,11 @@ class Content {
 /// A stage whose fields have contents.
 struct ContentStage {
     struct Field {
-        const Content* content;
+        const BlockContent* content;
         bool around; // read beyond the kernel's own index
     };
     struct Output {
-        Content* content;
+        BlockContent* content;
         std::uint32_t* words;
         std::uint32_t empty; // the word that the stage writes where it is empty
     };
@@ -77,11 +77,11 @@ struct ContentStage {
     struct Lack {
         StageBlock block = nullptr; // null: empty
         std::vector<Field> fields;
-        std::vector<Output> fills;     // what the block does not write
-        std::vector<Content*> written; // what it does
+        std::vector<Output> fills;          // what the block does not write
+        std::vector<BlockContent*> written; // what it does
     };
     std::vector<Lack> lacks;
-    std::vector<Content*> written; // by the whole stage
+    std::vector<BlockContent*> written; // by the whole stage
     compute::Reach reach;
 
     bool on() const { return !lacks.empty(); }
@@ -90,7 +90,7 @@ struct ContentStage {
 /// By what the stage lacks. `contents` and `buffers` go by binding, null where the mask lacks it. `lean`: the stage's block for a
 /// mask, null where there is none; lacks of that mask are left out then, and those of fields that the mask does not have.
 ContentStage content_stage(const compute::StageInfo& stage, std::span<const compute::StageLack> lacks, std::uint32_t effects,
-                           std::span<Content* const> contents, std::span<void* const> buffers,
+                           std::span<BlockContent* const> contents, std::span<void* const> buffers,
                            const std::function<StageBlock(std::uint32_t)>& lean);
 
 /// The stage over the rows [first, last) of blocks; what it writes has the bits of a call over all of them. Threads may run rows

@@ -191,10 +191,10 @@ Status CpuDevice::set_active(const compute::Dispatch& d, const compute::StageInf
     return ok_status();
 }
 
-Content* CpuDevice::content_of(Memory& memory, FieldLayout layout) {
+BlockContent* CpuDevice::content_of(Memory& memory, FieldLayout layout) {
     if (memory.bytes < layout.size() * 4) return nullptr;
     if (!memory.content) {
-        memory.content = std::make_unique<Content>(layout, reinterpret_cast<const std::uint32_t*>(memory.data));
+        memory.content = std::make_unique<BlockContent>(layout, reinterpret_cast<const std::uint32_t*>(memory.data));
         if (memory.exposed) memory.content->expose();
     }
     const auto& has = memory.content->blocks().layout;
@@ -212,7 +212,7 @@ void CpuDevice::set_content(const compute::Dispatch& d, const compute::StageInfo
     const bool whole = d.range.i0 == 0 && d.range.j0 == 0 && d.range.i1 >= layout.nx && d.range.j1 >= layout.ny;
     if (stage.lacks.empty() || d.tiles.on() || !whole || (d.effects & EFFECT_HALF_STORAGE) != 0) return;
     drain(); // what runs may be asking
-    std::vector<Content*> contents;
+    std::vector<BlockContent*> contents;
     for (const auto& binding : stage.bindings) {
         const bool exists = binding.exists(d.effects);
         contents.push_back(exists ? content_of(at(d.slots[static_cast<std::size_t>(binding.slot)]), layout) : nullptr);

@@ -42,8 +42,8 @@ class CpuDevice final : public compute::Device {
         std::shared_ptr<std::byte> block;
         std::byte* data = nullptr;
         std::uint64_t bytes = 0;
-        std::unique_ptr<Content> content; // of a field that some stage can be empty without
-        bool exposed = false;             // its address was given away
+        std::unique_ptr<BlockContent> content; // of a field that some stage can be empty without
+        bool exposed = false;                  // its address was given away
     };
     /// One operation, ready to run.
     struct Step {
@@ -96,7 +96,7 @@ class CpuDevice final : public compute::Device {
     /// Leaves the step's content off where it cannot be told.
     void set_content(const compute::Dispatch& dispatch, const compute::StageInfo& stage, const WorldParams& params, Step& step);
     /// Null for a buffer that is no field of this layout.
-    Content* content_of(Memory& memory, FieldLayout layout);
+    BlockContent* content_of(Memory& memory, FieldLayout layout);
     /// The stage of the step without some effects, null where its instruction set has no code of its own for it.
     StageBlock lean_block(int stage, std::uint32_t effects) const;
     /// For those that follow; what has content itself has looked already.

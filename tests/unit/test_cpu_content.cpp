@@ -3,6 +3,7 @@
 #include "backends/cpu/content.hpp"
 #include "backends/registry.hpp"
 #include "engine/step/world_params.hpp"
+#include "tests/support/worlds.hpp"
 #include <array>
 #include <cstring>
 #include <doctest/doctest.h>
@@ -76,10 +77,10 @@ ContentRun run_trial(const ContentTrial& trial, int stage, const InstructionSet&
         call(range.i0, range.i1, range.j0, range.j1);
         return run;
     }
-    std::vector<std::unique_ptr<Content>> owners;
-    std::vector<Content*> contents;
+    std::vector<std::unique_ptr<BlockContent>> owners;
+    std::vector<BlockContent*> contents;
     for (std::size_t n = 0; n < run.fields.size(); ++n) {
-        owners.push_back(trial.exists(n) ? std::make_unique<Content>(content_layout, run.fields[n].data()) : nullptr);
+        owners.push_back(trial.exists(n) ? std::make_unique<BlockContent>(content_layout, run.fields[n].data()) : nullptr);
         contents.push_back(owners.back().get());
     }
     const auto made = content_stage(trial.stage, *lacks, trial.effects, contents, buffers,
@@ -90,7 +91,7 @@ ContentRun run_trial(const ContentTrial& trial, int stage, const InstructionSet&
     run_by_content(made, call, 1, blocks.rows());
     for (std::size_t n = 0; n < run.fields.size(); ++n) {
         if (!trial.exists(n)) continue;
-        const Content anew(content_layout, run.fields[n].data());
+        const BlockContent anew(content_layout, run.fields[n].data());
         for (int row = 0; row < blocks.rows(); ++row)
             for (int word = 0; word < anew.words(); ++word)
                 run.true_to_fields &= (anew.word(row, word) & ~contents[n]->word(row, word)) == 0;
@@ -249,4 +250,15 @@ TEST_CASE("CPU: whoever writes a field, what stages know of it stays true") {
     REQUIRE(device.wait({}));
     std::memcpy(reinterpret_cast<float*>(address->handle) + cell, &height, 4);
     CHECK(height_after(alone) == 6);
+}
+
+TEST_CASE("CPU: water that a side lets into a dry world is seen at once") {
+    auto scene = test::flat_scene(70, 50, 0.2, 0.015);
+    scene.settings.sides[SIDE_WEST] = {SideKind::level, 0, 1e30, {{{0, 0.5}}}};
+    auto world = test::make_world(scene);
+    scene.settings.active_tiles = 8; // runs all that it runs in full
+    auto expected = test::make_world(scene);
+    for (auto* each : {world.get(), expected.get()}) test::step(*each, 20);
+    CHECK(test::hash_of(*world) == test::hash_of(*expected));
+    CHECK(world->reader().stats()->largest_water > 0);
 }
