@@ -18,9 +18,9 @@ template <class Use> void for_each_run(std::uint64_t bits, Use use) {
 std::uint64_t bits_between(int first, int last) { return (~std::uint64_t{0} << first) & (~std::uint64_t{0} >> (64 - last)); }
 
 // One row of blocks, 64 of them at a time.
-class Runner {
+class BlockRow {
   public:
-    Runner(const ContentStage& stage, const StageCall& call, int row)
+    BlockRow(const ContentStage& stage, const StageCall& call, int row)
         : s_(stage), call_(call), blocks_(stage.written.front()->blocks()), row_(row) {}
 
     void run(int word) {
@@ -193,8 +193,8 @@ ContentStage content_stage(const compute::StageInfo& stage, std::span<const comp
 void run_by_content(const ContentStage& stage, const StageCall& call, int first, int last) {
     const int words = stage.written.front()->words();
     for (int row = first; row < last; ++row) {
-        Runner runner(stage, call, row);
-        for (int word = 0; word < words; ++word) runner.run(word);
+        BlockRow blocks(stage, call, row);
+        for (int word = 0; word < words; ++word) blocks.run(word);
     }
 }
 
