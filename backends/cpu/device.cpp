@@ -284,7 +284,6 @@ void CpuDevice::look_into_written(const Step& step) {
         const int nx = content->blocks().layout.nx, ny = content->blocks().layout.ny;
         switch (step.block != nullptr ? step.extent : compute::Extent::points) {
         case compute::Extent::strips:
-        case compute::Extent::source_box:
             content->look({r.i0, r.j0 * STRIP, r.i1, r.j1 * STRIP});
             break;
         case compute::Extent::rim:

@@ -17,10 +17,10 @@ static_assert(offsetof(StepInput, source) == 16 && offsetof(StepInput, side) == 
 static_assert(offsetof(StepInput, edit) == offsetof(StepInput, side) + 16 * 4 && sizeof(StepInput) % 16 == 0);
 static_assert(offsetof(StepInput, wake) == offsetof(StepInput, edit) + 16 * EDIT_VECTORS * MAX_EDITS);
 
-/// The layout every field shares: GHOST ghost cells around, one more column and row for the last faces. Cell 0 of each row lies at a
-/// multiple of 32 elements (LEAD and the pitch are), so that a row begins a line of 128 bytes; its west ghosts end the row before.
-/// Behind the last row lie LEAD elements more, so that vectors of cells may reach over the last row's end.
-/// u[i,j] is the west face and v[i,j] the south face of cell (i,j).
+/// The layout every field shares: GHOST ghost cells around, one more column and row for the last faces. Cell 0 of each row lies
+/// at a multiple of 32 elements (LEAD and the pitch are), so that a row begins a line of 128 bytes; its west ghosts end the row
+/// before. Behind the last row lie LEAD elements more, so that vectors of cells may reach over the last row's end. u[i,j] is the
+/// west face and v[i,j] the south face of cell (i,j).
 struct FieldLayout {
     int nx = 0;
     int ny = 0;
@@ -30,6 +30,8 @@ struct FieldLayout {
     std::size_t index(int i, int j) const {
         return static_cast<std::size_t>(j + GHOST) * static_cast<std::size_t>(pitch()) + static_cast<std::size_t>(i + LEAD);
     }
+    /// Where row j begins, its west ghosts.
+    std::size_t row(int j) const { return index(-GHOST, j); }
     int strips() const { return (ny + 1 + STRIP - 1) / STRIP; }
     /// Output tiles of STRIP x STRIP cells in a row of them; the last may hold no cell.
     int tile_columns() const { return (nx + STRIP) / STRIP; }

@@ -15,8 +15,7 @@ namespace {
 class Rows {
   public:
     Rows(WorldState& state, const char* field, int first, int end)
-        : state_(state), field_(field),
-          offset_(state.layout().index(-GHOST, first)),
+        : state_(state), field_(field), offset_(state.layout().row(first)),
           values_(static_cast<std::size_t>(end - first) * static_cast<std::size_t>(state.layout().pitch())) {}
 
     Status read() { return state_.fields().read(field_, offset_, values_); }

@@ -25,8 +25,7 @@ std::vector<float> with_ghosts(const FieldLayout& layout, const std::vector<floa
     std::vector<float> field(layout.size(), 0.0F);
     const auto pitch = static_cast<std::size_t>(layout.pitch());
     for (int row = 0; row < layout.rows(); ++row)
-        fill_row(layout, cells, repeat_edges, row - GHOST,
-                 std::span(field).subspan(static_cast<std::size_t>(row) * pitch, pitch));
+        fill_row(layout, cells, repeat_edges, row - GHOST, std::span(field).subspan(layout.row(row - GHOST), pitch));
     return field;
 }
 
@@ -130,7 +129,9 @@ Status FieldStore::write_rows(const std::string& name, const std::function<void(
                 fill(static_cast<int>(first + n) - GHOST, row);
             }
         });
-        if (auto status = write(name, first * pitch, std::span(part).first(count * pitch)); !status) return status;
+        if (auto status = write(name, layout_.row(static_cast<int>(first) - GHOST), std::span(part).first(count * pitch));
+            !status)
+            return status;
     }
     return ok_status();
 }

@@ -131,7 +131,7 @@ std::vector<std::uint32_t> content_masks(int stage, const InstructionSet& set) {
     constexpr std::size_t most = 24;
     std::vector<std::uint32_t> some;
     for (std::size_t n = 0; n < std::min(most, masks.size()); ++n)
-        some.push_back(masks[masks.size() - 1 - n * masks.size() / std::min(most, masks.size())]);
+        some.push_back(masks[masks.size() - 1 - n * 37 % masks.size()]); // a prime: even steps would hold the lowest bits still
     return some;
 }
 
