@@ -230,6 +230,9 @@ void read_word(FusedStage& fused, const std::string& word, const Arguments& a, c
     } else if (word == "KEEP_RIM_IF") {
         for (const auto& name : effects_in(a[0])) asked.insert(name);
         for (std::size_t n = 1; n < a.size(); ++n) fused.kept[a[n]] = {true, bits(a[0]) & ~fused.needs, place};
+    } else if (word == "CELLS_EACH") {
+        if (a[0] != "1" && a[0] != "2") fail(place + ": CELLS_EACH takes 1 or 2");
+        fused.cells_each = a[0][0] - '0';
     } else if (word == "STAGED") {
         fused.staged = a;
         fused.staged_place = place;

@@ -51,7 +51,8 @@ struct Lean : Content {
 struct FusedStage {
     Stage stage; // name, struct name, extent, bindings and tested effects, as of a stage that is written by hand
     unsigned needs = 0, without = 0;
-    int groups = 6; // on a multiprocessor, for which CUDA keeps registers
+    int groups = 6;     // on a multiprocessor, for which CUDA keeps registers
+    int cells_each = 2; // of a column, that a thread computes at once
     std::vector<Margins> phases;
     std::vector<FusedPart> parts;
     std::map<std::string, Keeping> fields; // fields that parts write

@@ -192,11 +192,9 @@ std::string own_variables(const FusedStage& fused) {
     return out;
 }
 
-// A thread computes two cells of a column at once, so that compilers load what both read once, and stores what it shares behind
-// both. Cells beyond the grid are computed like the nearest one in it, without a branch, and are 0, as ghosts are.
+// A thread computes one or two cells of a column at once, so that compilers load what both read once, and stores what it shares
+// behind both. Cells beyond the grid are computed like the nearest one in it, without a branch, and are 0, as ghosts are.
 namespace {
-
-constexpr int rows_each = 2;
 
 struct Phase {
     std::size_t number;
@@ -242,9 +240,10 @@ std::string phase_text(const FusedStage& fused, const Phase& phase, const std::s
     const auto shared = shared_by(fused, phase);
     const std::string top = "own_j0 + " + std::to_string(height - m.south);
     std::ostringstream o;
-    o << "    ROLLED for (int n = LANE; n < " << width * ((height + rows_each - 1) / rows_each) << "; n += LANES) {\n"
+    o << "    ROLLED for (int n = LANE; n < " << width * ((height + fused.cells_each - 1) / fused.cells_each)
+      << "; n += LANES) {\n"
       << "        int i = own_i0 + n % " << width << " - " << m.west << ";\n        int j0 = own_j0 + n / " << width << " * "
-      << rows_each << " - " << m.south << ";\n"
+      << fused.cells_each << " - " << m.south << ";\n"
       << "        bool own_column = i >= own_i0 && i < own_i1;\n";
     std::set<std::string> extents;
     for (const auto* part : phase.parts) extents.insert(part->stage.extent == "FACES" ? "face" : "cell");
@@ -253,8 +252,8 @@ std::string phase_text(const FusedStage& fused, const Phase& phase, const std::s
         o << "        int last_" << at << "_i = P.nx" << less << ", last_" << at << "_j = P.ny" << less << ";\n"
           << "        int " << at << "_i = NEAREST(i, last_" << at << "_i, own_i0 - " << m.west << ");\n";
     }
-    for (int row = 0; row < rows_each; ++row) {
-        const bool within = row == 0 || height % rows_each == 0; // else the last row is computed twice
+    for (int row = 0; row < fused.cells_each; ++row) {
+        const bool within = row == 0 || height % fused.cells_each == 0; // else the last row is computed twice
         o << "        int j_" << row << " = j0 + " << row
           << (within ? "" : " < " + top + " ? j0 + " + std::to_string(row) + " : j0") << ";\n        {\n        int j = j_" << row
           << ";\n"
@@ -265,7 +264,7 @@ std::string phase_text(const FusedStage& fused, const Phase& phase, const std::s
         o << cell_text(fused, phase, prefix) << "        }\n";
         for (const auto& [field, condition] : shared) o << "        float " << field << "_" << row << " = own_" << field << ";\n";
     }
-    for (int row = 0; row < rows_each; ++row) {
+    for (int row = 0; row < fused.cells_each; ++row) {
         for (const auto& rows : windows(fused)) {
             const auto found = shared.find(rows.field);
             if (found == shared.end()) continue;

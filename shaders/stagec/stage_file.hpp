@@ -21,7 +21,8 @@ struct Reach {
     int west = 0, south = 0, east = 0, north = 0;
 };
 
-/// Where these fields are 0 wherever the kernel reads them, the stage is empty, or one without the effects `less` writes the same.
+/// Where these fields are 0 wherever the kernel reads them, the stage is empty, or one without the effects `less` writes the
+/// same.
 struct Lack {
     std::vector<std::string> fields;
     std::string less; // "0u": empty

@@ -77,6 +77,7 @@ FUSED_FAULTS = [
     (3, "NEED(EFFECT_WATER)", 3, "unknown word NEED"),
     (3, "NEEDS(EFFECT_WATR)", 3, "unknown effect EFFECT_WATR"),
     (3, "NEEDS", 3, "NEEDS takes arguments in parentheses"),
+    (4, "CELLS_EACH(3)\nPHASE(0, 0, 0, 0)", 4, "CELLS_EACH takes 1 or 2"),
     (4, "GROUPS(7)\nPHASE(0, 0, 0, 0)", 4, "GROUPS takes a number from 2 to 6"),
     (4, "PHASE(0, 0, 0)", 4, "PHASE takes (west, south, east, north)"),
     (4, "PHASE(0, 0, 0, 3)", 4, "PHASE takes (west, south, east, north)"),

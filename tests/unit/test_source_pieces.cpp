@@ -38,10 +38,10 @@ std::vector<int> owners(const Settings& s, const SourcePieces& p) {
     for (int piece = 0; piece < p.count; ++piece) {
         std::size_t box = 0;
         while (box + 1 < p.boxes.size() && piece >= p.first[box + 1]) ++box;
-        const CellBox& b = p.boxes[box];
-        const int columns = b.i1 - b.i0, i = b.i0 + (piece - p.first[box]) % columns;
-        const int from = b.j0 + (piece - p.first[box]) / columns * p.rows;
-        for (int j = from; j < std::min(from + p.rows, b.j1); ++j)
+        const CellBox& cells = p.boxes[box];
+        const int columns = cells.i1 - cells.i0, i = cells.i0 + (piece - p.first[box]) % columns;
+        const int from = cells.j0 + (piece - p.first[box]) / columns * p.rows;
+        for (int j = from; j < std::min(from + p.rows, cells.j1); ++j)
             ++owners[static_cast<std::size_t>(j) * static_cast<std::size_t>(s.grid.nx) + static_cast<std::size_t>(i)];
     }
     return owners;
