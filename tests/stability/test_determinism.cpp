@@ -155,12 +155,20 @@ TEST_CASE("nothing is allocated, written to descriptors or recorded per step, on
         auto world = make_world(mixed_scene(32, 32), {backend});
         step(*world, 2);
         const auto before = world->device().counters();
-        step(*world, 30);
+        for (int n = 0; n < 30; ++n) step(*world, 1);
         const auto after = world->device().counters();
         CHECK(after.submits == before.submits + 30);
         CHECK(after.allocations == before.allocations);
         CHECK(after.descriptor_writes == before.descriptor_writes);
         CHECK(after.recordings == before.recordings);
+        step(*world, 16); // runs of steps are recorded when the first is taken
+        const auto first_run = world->device().counters();
+        step(*world, 32);
+        const auto runs = world->device().counters();
+        CHECK(runs.submits == first_run.submits + 4);
+        CHECK(runs.allocations == first_run.allocations);
+        CHECK(runs.descriptor_writes == first_run.descriptor_writes);
+        CHECK(runs.recordings == first_run.recordings);
     }
 }
 
