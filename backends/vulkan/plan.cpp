@@ -95,9 +95,11 @@ class Planner {
         info.pPoolSizes = sizes;
         const VkResult r = c_.vk.vkCreateDescriptorPool(c_.device, &info, nullptr, &plan_.descriptors);
         if (Status s = c_.check(r, "vkCreateDescriptorPool", builder_.label()); !s) return s;
-        std::uint64_t written = 0;
+        // Dispatches of the same buffers wait for each other: for several inputs they may share what stands in for absent ones.
+        std::map<SetKey, std::uint64_t> slices;
         for (auto& [key, set] : sets_) {
-            if (Status s = write_set(key, set, p_.buffers.null_slice(written++)); !s) return s;
+            const std::uint64_t slice = slices.try_emplace({key.stage, 0, key.slots}, slices.size()).first->second;
+            if (Status s = write_set(key, set, p_.buffers.null_slice(slice)); !s) return s;
         }
         return ok_status();
     }
