@@ -197,7 +197,6 @@ std::string own_variables(const FusedStage& fused) {
 namespace {
 
 struct Phase {
-    std::size_t number;
     const Margins& margins;
     std::vector<const FusedPart*> parts;
 };
@@ -280,7 +279,7 @@ std::string phase_text(const FusedStage& fused, const Phase& phase, const std::s
 std::string loops(const FusedStage& fused, const std::string& prefix, unsigned less) {
     std::string out;
     for (std::size_t p = 0; p < fused.phases.size(); ++p) {
-        Phase phase{p, fused.phases[p], {}};
+        Phase phase{fused.phases[p], {}};
         for (const auto& part : fused.parts)
             if (part.phase == p && (part.condition & less) == 0) phase.parts.push_back(&part);
         if (phase.parts.empty()) continue;
