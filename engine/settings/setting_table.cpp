@@ -19,7 +19,7 @@ constexpr Values words(std::span<const char* const> names) { return {0, static_c
 
 constexpr Values flag = {0, 1};
 
-constexpr int sides_of_tiles[] = {0, tiles_where_they_gain, 8, 16, 32, 64};
+constexpr int sides_of_tiles[] = {0, tiles_where_they_gain, tiles_where_cheap, 8, 16, 32, 64};
 constexpr Values tile_sides = {0, 64, {}, sides_of_tiles};
 
 constexpr std::uint32_t several = 0; // effects, of which it needs none
@@ -142,7 +142,7 @@ constexpr Setting rows[] = {
     {"method.sand_transport_order", method<&Method::sand_transport_order>, {1, 2}, "", EFFECT_SAND,
      "2: heights and flux-form velocities of sand move with limited slopes", InDigest::where_set},
     {"active_tiles", at<&Settings::active_tiles>, tile_sides, "cells", several,
-     "side of active tiles: those at rest are left out; 0 = off, 1 = while that gains", InDigest::no},
+     "side of the tiles of which those at rest are left out; 0 = none, 1 = while that gains, 2 = and costs little", InDigest::no},
     {"fused_stages", at<&Settings::fused_stages>, words(fused_stages), "", several,
      "several stages in one pass; auto: where the device gains from it", InDigest::no},
     {"active_tiles_most", at<&Settings::active_tiles_most>, {0, 1}, "", several,

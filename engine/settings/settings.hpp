@@ -127,8 +127,9 @@ enum class Force : std::uint8_t { automatic, on, off };
 /// Whether a step's stages run fused; automatic: where the device gains from it (engine/step/README.md).
 enum class FusedStages : std::uint8_t { automatic, always, never };
 
-/// Settings::active_tiles: tiles of chosen_tile_side cells while little of the world is awake.
-inline constexpr int tiles_where_they_gain = 1, chosen_tile_side = 32;
+/// Settings::active_tiles: tiles of chosen_tile_side cells while little of the world is awake; and the same only with fused
+/// stages, in large grids, and where that takes an eighth more memory at most.
+inline constexpr int tiles_where_they_gain = 1, tiles_where_cheap = 2, chosen_tile_side = 32;
 
 /// Everything but the fields themselves. Units, ranges and meaning of what is one number, flag or choice: setting_table.cpp.
 struct Settings {
@@ -147,12 +148,14 @@ struct Settings {
     std::vector<float> roughness;
     /// Tiles in which nothing changes any more are left out of a step. How a world is run, not what it is: every bit stays, also
     /// in snapshots and between worlds that have it and that do not.
-    int active_tiles = 0; // side [cells]; 0 = off, tiles_where_they_gain = the world chooses while it runs
+    int active_tiles = tiles_where_cheap; // side [cells]; 0 = off; the two words above: the world chooses while it runs
     /// Every bit stays.
     FusedStages fused_stages = FusedStages::automatic;
     double active_tiles_most = 1; // 1 = the log is never told
     /// Of active tiles [cells]; 0 = there are none.
-    int tile_side() const { return active_tiles == tiles_where_they_gain ? chosen_tile_side : active_tiles; }
+    int tile_side() const {
+        return active_tiles == tiles_where_they_gain || active_tiles == tiles_where_cheap ? chosen_tile_side : active_tiles;
+    }
 };
 
 /// Initial fields in row-major nx * ny order, row 0 in the south; empty = zero everywhere.

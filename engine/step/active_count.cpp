@@ -12,9 +12,8 @@ using Counts = std::array<std::uint32_t, 2>; // one per list
 // Whose first word is how many tiles the newest step ran over: one per list of tiles.
 std::vector<compute::Buffer> counters(WorldState& state) {
     std::vector<compute::Buffer> buffers;
-    for (const bool of_substeps : {false, true})
-        if (!of_substeps || state.plan().tiles_by_material)
-            buffers.push_back(state.fields().buffer(state.plan().tile_list(of_substeps).back()));
+    for (const auto& ending : state.plan().tile_lists())
+        if (ending != "_mixture") buffers.push_back(state.fields().buffer(tile_list(ending).back())); // it is part of both others
     return buffers;
 }
 

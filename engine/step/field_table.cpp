@@ -109,7 +109,7 @@ std::span<const FieldRow> field_table() { return rows; }
 
 const FieldRow* find_field(std::string_view name) {
     if (const FieldRow* row = find_exactly(name)) return row;
-    for (const std::string_view material : {"_water", "_sand"}) {
+    for (const std::string_view material : {"_water", "_sand", "_mixture"}) {
         if (!name.ends_with(material)) continue;
         const FieldRow* row = find_exactly(name.substr(0, name.size() - material.size()));
         if (row != nullptr && row->role == tiles) return row;

@@ -14,7 +14,7 @@ using Names = std::map<std::string, std::string>; // a stage's binding name -> t
 class Builder {
   public:
     Builder(const StepPlan& plan, std::vector<PlanPass>& passes, bool in_substep)
-        : effects_(plan.effects), passes_(passes), in_substep_(in_substep), fused_(plan.fused),
+        : plan_(plan), effects_(plan.effects), passes_(passes), in_substep_(in_substep), fused_(plan.fused),
           by_material_(plan.tiles_by_material) {}
 
     bool has(std::uint32_t bits) const { return (effects_ & bits) == bits; }
@@ -34,12 +34,14 @@ class Builder {
     bool fuses_momentum_exchange() const { return !by_material_ && can_fuse("accelerate_mixture"); }
     /// Whether active tiles have a list for each material.
     bool tiles_by_material() const { return by_material_; }
+    std::vector<std::string> tile_lists() const { return plan_.tile_lists(); }
 
     void run(const char* stage, std::vector<std::string> flips = {}, const Names& names = {}) {
         PlanPass pass;
         pass.stage = compute::find_stage(stage);
         pass.in_substep = in_substep_;
         pass.flips = std::move(flips);
+        if (by_material_) pass.tiles = in_substep_ ? "_sand" : "_water";
         for (const auto& binding : compute::stage_table()[static_cast<std::size_t>(pass.stage)].bindings) {
             const bool exists = (effects_ & binding.condition) == binding.condition;
             const std::string name(binding.name);
@@ -51,8 +53,13 @@ class Builder {
         }
         passes_.push_back(std::move(pass));
     }
+    /// The latest pass changes nothing but where water and sand meet.
+    void only_where_both_run() {
+        if (by_material_) passes_.back().tiles = "_mixture";
+    }
 
   private:
+    const StepPlan& plan_;
     std::uint32_t effects_;
     std::vector<PlanPass>& passes_;
     bool in_substep_, fused_, by_material_;
@@ -168,7 +175,9 @@ void plan_sand(Builder b) {
     if (b.has(EFFECT_SEMI_LAGRANGIAN)) b.run("update_sand_boundary_types");
     plan_sand_transport(b);
     // Touches only the water's velocities, which the sand's velocity stage does not read: here both sand heights are at hand.
-    if (b.has(EFFECT_MIXTURE) && !b.fuses_momentum_exchange()) b.run("compute_momentum_exchange");
+    if (!b.has(EFFECT_MIXTURE) || b.fuses_momentum_exchange()) return;
+    b.run("compute_momentum_exchange");
+    b.only_where_both_run();
 }
 
 // After the sand height has become current.
@@ -196,7 +205,7 @@ void plan_sand_forces(Builder b) {
     b.run("apply_friction", moved, drag);
 }
 
-// One list of tiles, or one for the water's passes and one for the sand's.
+// One list of tiles, or one for the water's passes, one for the sand's and one for those of both.
 void plan_active_tiles(Builder b) {
     if (!b.tiles_by_material()) {
         for (const char* stage : {"mark_active_tiles", "count_active_tiles", "list_active_tiles"}) b.run(stage);
@@ -205,9 +214,10 @@ void plan_active_tiles(Builder b) {
     b.run("choose_active_tiles");
     b.run("look_into_tiles");
     for (const char* stage : {"count_active_tiles", "list_active_tiles"}) {
-        for (const std::string material : {"_water", "_sand"}) {
+        for (const std::string& ending : b.tile_lists()) {
+            const auto fields = tile_list(ending);
             Names names;
-            for (const char* name : tile_fields) names[name] = name + material;
+            for (std::size_t n = 0; n < fields.size(); ++n) names[tile_fields[n]] = fields[n];
             b.run(stage, {}, names);
         }
     }
@@ -276,10 +286,16 @@ void share_scratch(StepPlan& plan) {
 
 } // namespace
 
-std::vector<std::string> StepPlan::tile_list(bool of_substeps) const {
+std::vector<std::string> StepPlan::tile_lists() const {
+    if (!tiles_by_material) return {""};
+    if ((effects & EFFECT_MIXTURE) == 0) return {"_water", "_sand"};
+    return {"_water", "_sand", "_mixture"};
+}
+
+std::vector<std::string> tile_list(const std::string& ending) {
     std::vector<std::string> names(tile_fields.begin(), tile_fields.end());
-    for (auto& name : names)
-        if (tiles_by_material) name += of_substeps ? "_sand" : "_water";
+    for (auto& name : names) name += ending;
+    if (ending == "_mixture") names[0] = "activity_sand"; // its passes are of the substeps
     return names;
 }
 

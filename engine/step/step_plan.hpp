@@ -21,8 +21,12 @@ struct PlanPass {
     int stage = -1;
     std::vector<std::string> fields;
     std::vector<std::string> flips; // ping-pong fields whose new buffer becomes the current one after this pass
+    std::string tiles;              // what the names of its list of active tiles end in
     bool in_substep = false;
 };
+
+/// The fields of a list of active tiles, by what their names end in: activity, flags, counts, list, dispatch.
+std::vector<std::string> tile_list(const std::string& ending);
 
 struct PlanField {
     std::string name;
@@ -44,7 +48,8 @@ struct StepPlan {
     std::vector<PlanField> fields;
     int scratch_blocks = 0;
     bool active_tiles = false, fused = false; // as asked for
-    /// Two lists of active tiles: the water's for the passes ahead of the substeps, the sand's for those in them.
+    /// A list of active tiles for the passes ahead of the substeps, "_water", one for those in them, "_sand", and one for passes
+    /// that change nothing but where both run, "_mixture".
     bool tiles_by_material = false;
     /// Cells that one step carries a change along at most: the sum of what its passes read around them.
     int reach = 0;
@@ -60,8 +65,8 @@ struct StepPlan {
     double least_traffic_per_cell() const;
     const PlanField* find(const std::string& name) const&;
     const PlanField* find(const std::string& name) const&& = delete; // would point into a plan that is gone
-    /// The fields of a list of active tiles: activity, flags, counts, list, dispatch.
-    std::vector<std::string> tile_list(bool of_substeps) const;
+    /// What the names of the lists of active tiles end in.
+    std::vector<std::string> tile_lists() const;
 };
 
 /// What else a plan depends on, besides what it computes: none of it changes a bit of the result.

@@ -244,7 +244,7 @@ void Stepper::note_submitted(bool woken, int steps) {
 }
 
 void Stepper::choose_tiles() {
-    if (!state_.chooses_tiles() || profiling_ || state_.fields().turn() != 0 || starts()) return;
+    if (!state_.chooses_tiles() || state_.fields().turn() != 0 || starts()) return;
     const auto [ticket, count] = active_.newest();
     const double share = static_cast<double>(count) / static_cast<double>(state_.tiles().count());
     state_.use_tiles(choice_.wants_tiles(state_.steps, {ticket, share}));
@@ -293,6 +293,12 @@ Status Stepper::step() {
     if (auto status = begin(); !status) return status;
     if (asleep_ || starts()) return finish(parts());
     const auto turn = static_cast<std::size_t>(state_.fields().turn());
+    if (profiling_) {
+        if (auto status = record_timed(); !status) { // for the way that was not taken so far
+            inputs_.undo();
+            return status;
+        }
+    }
     auto ticket = state_.device().submit(profiling_ ? programs().timed[turn] : programs().steps[turn], input_);
     if (!ticket) {
         inputs_.undo();
@@ -367,15 +373,21 @@ Status Stepper::steps(std::uint64_t count) {
     return state_.lost();
 }
 
+Status Stepper::record_timed() {
+    if (programs().timed[0].id != 0) return ok_status();
+    for (int turn = 0; turn < 2; ++turn) {
+        Parity parity = state_.fields().parity(turn);
+        auto program = record_step(turn, parity, true);
+        if (!program) return program.status();
+        programs().timed[static_cast<std::size_t>(turn)] = *program;
+    }
+    return ok_status();
+}
+
 Status Stepper::set_profiling(bool on) {
     if (auto status = collect_timings(true); !status) return status;
-    if (on && programs().timed[0].id == 0) {
-        for (int turn = 0; turn < 2; ++turn) {
-            Parity parity = state_.fields().parity(turn);
-            auto program = record_step(turn, parity, true);
-            if (!program) return program.status();
-            programs().timed[static_cast<std::size_t>(turn)] = *program;
-        }
+    if (on) {
+        if (auto status = record_timed(); !status) return status;
     }
     if (on && !profiling_) {
         stage_milliseconds_.clear();
@@ -414,6 +426,10 @@ Result<std::vector<StageTime>> Stepper::stage_times() {
     };
     for (const auto& pass : state_.plan().water_passes) add(pass, 1);
     for (const auto& pass : state_.plan().substep_passes) add(pass, state_.plan().substeps);
+    if (const auto& other = state_.other_plan()) {
+        for (const auto* passes : {&other->water_passes, &other->substep_passes})
+            for (const auto& pass : *passes) add(pass, 0);
+    }
     return times;
 }
 

@@ -85,7 +85,7 @@ class Stepper {
     Status go_to(const HostTotals& totals);
 
     Status set_profiling(bool on);
-    /// Mean over the steps since profiling was switched on; steps in parts are not timed.
+    /// Mean over the steps since profiling was switched on; steps in parts are not timed. Passes are those of the plan in force.
     Result<std::vector<StageTime>> stage_times();
 
   private:
@@ -99,6 +99,8 @@ class Stepper {
     Status append_step(compute::ProgramBuilder& builder, int turn, Parity& parity, bool timestamps);
     Result<compute::Program> record_step(int turn, Parity& parity, bool timestamps);
     Result<compute::Program> record_run(int turn);
+    /// The timed programs of the plan in force.
+    Status record_timed();
     Result<compute::Program> record_part(int part, bool start, Parity& parity);
     Status record_parts(std::size_t turn);
     Status record_start(std::size_t turn);

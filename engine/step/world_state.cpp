@@ -1,6 +1,7 @@
 #include "engine/step/world_state.hpp"
 #include "engine/settings/level_digest.hpp"
 #include "engine/step/world_params.hpp"
+#include <utility>
 
 namespace wadi {
 
@@ -25,7 +26,10 @@ bool WorldState::fuses() const {
 // Where a GPU does not fuse, its grid is so small that a step is short passes that wait for each other, whatever they run over;
 // and scratch fields of their own would take memory.
 bool WorldState::may_choose_tiles() const {
-    return settings_.active_tiles == tiles_where_they_gain && ((*device_).capabilities().fused_gain_cells == 0 || fuses());
+    const auto& device = (*device_).capabilities();
+    const std::int64_t cells = std::int64_t{settings_.grid.nx} * settings_.grid.ny;
+    if (settings_.active_tiles == tiles_where_cheap) return fuses() && cells >= device.tiles_gain_cells;
+    return settings_.active_tiles == tiles_where_they_gain && (device.fused_gain_cells == 0 || fuses());
 }
 
 StepPlan WorldState::plan_for(std::uint32_t effects, bool tiles) const {
@@ -54,10 +58,18 @@ Status WorldState::check_device(std::uint32_t effects) const {
 
 Status WorldState::set_effects(const EffectChoice& effects) {
     if (auto status = check_device(effects.mask); !status) return status;
-    const bool chooses = may_choose_tiles();
-    StepPlan plan = plan_for(effects.mask, chooses || settings_.active_tiles > tiles_where_they_gain);
+    StepPlan plan = plan_for(effects.mask, settings_.active_tiles > tiles_where_cheap);
     std::optional<StepPlan> other;
-    if (chooses) share_fields(plan, other.emplace(plan_for(effects.mask, false)));
+    if (may_choose_tiles()) {
+        const int without = plan.field_buffers();
+        StepPlan tiled = plan_for(effects.mask, true);
+        share_fields(tiled, plan);
+        if (settings_.active_tiles == tiles_where_they_gain || 8 * tiled.field_buffers() <= 9 * without) {
+            other = std::exchange(plan, std::move(tiled));
+        } else {
+            plan = plan_for(effects.mask, false);
+        }
+    }
     if (auto status = fields_.set_plan(plan); !status) return status;
     if (plan.find("roughness") != nullptr) {
         if (auto status = fields_.write("roughness", 0, with_ghosts(layout_, settings_.roughness, true)); !status) {
@@ -118,7 +130,7 @@ Status WorldState::append(compute::ProgramBuilder& builder, const PlanPass& pass
     compute::Dispatch dispatch{
         *pipeline, pass.stage, plan_.effects, {}, compute::extent_range(stage.extent, params_), std::string(stage.name)};
     if (plan_.active_tiles && stage.marks) {
-        const auto names = plan_.tile_list(pass.in_substep);
+        const auto names = tile_list(pass.tiles);
         const auto list = [&](std::size_t n) { return fields_.buffer(names[n], parity); };
         dispatch.tiles = {list(0), list(1), list(2), list(3), list(4)};
     }

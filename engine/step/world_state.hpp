@@ -36,6 +36,8 @@ class WorldState {
     const StepPlan& plan() const { return plan_; }
     /// Whether steps may run with active tiles or without: Settings::active_tiles where that may gain on this device.
     bool chooses_tiles() const { return other_plan_.has_value(); }
+    /// The plan that is not in force in such a world.
+    const std::optional<StepPlan>& other_plan() const { return other_plan_; }
     /// Goes to the plan with active tiles or to the one without; before turn 0 only.
     void use_tiles(bool on);
     /// Stepper::set_tile_rings().

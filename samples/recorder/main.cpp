@@ -159,7 +159,7 @@ int main_checked(int argc, char** argv) {
     app.add_option("--dt", options.dt, "water time step [s] instead of the level's")->check(CLI::Range(1e-7, 100.0));
     app.add_option(
            "--active-tiles", options.active_tiles,
-           "8, 16, 32 or 64: tiles of so many cells in which nothing changes are left out; -1 = none are, 1 = while that gains")
+           "8, 16, 32 or 64: tiles of so many cells in which nothing changes are left out; -1 = none are, 1 = while that gains (the default in large grids on GPUs)")
         ->check(CLI::IsMember({-1, 1, 8, 16, 32, 64}));
     app.add_option("--fused-stages", options.fused_stages,
                    "1: several stages in one pass wherever the effects allow; -1: one by one")

@@ -15,6 +15,26 @@ std::string tile_bindings(const Stage& s) {
 const char* const head = "#version 450\n#extension GL_GOOGLE_include_directive : require\n#ifdef WADI_HALF\n"
                          "#extension GL_EXT_shader_16bit_storage : require\n#endif\n#include \"language/stage_glsl.h\"\n";
 
+// Rows of a group begin at multiples of four elements, in memory as in shared rows: each buffer has a second name, for four
+// floats at once.
+const char* const four_at_once =
+    "#define WIDE 4\n#define COPY(TO, T, FROM, F) { vec4 four = wide_##FROM[(F) >> 2]; TO[T] = four.x; TO[(T) + 1] = four.y; "
+    "TO[(T) + 2] = four.z; TO[(T) + 3] = four.w; }\n"
+    "#define ZERO(TO, T) { TO[T] = 0.0f; TO[(T) + 1] = 0.0f; TO[(T) + 2] = 0.0f; TO[(T) + 3] = 0.0f; }\n#define COPIED\n"
+    "#define HOLDS(FIELD, AT) any(notEqual(wide_##FIELD[(AT) >> 2], vec4(0.0f)))\n#define LOAD(FIELD, AT) FIELD[AT]\n"
+    "#define KEEP_FOUR(PLACE, VALUE) { vec4 four = VALUE; if (look) changed = changed || any(notEqual(floatBitsToInt(PLACE), "
+    "floatBitsToInt(four))); PLACE = four; }\n"
+    "#define KEEP_ZEROS(FIELD, AT, TYPE) KEEP_FOUR(wide_##FIELD[(AT) >> 2], vec4(0.0f))\n"
+    "#define KEEP_COPY(FIELD, AT, TYPE, FROM) KEEP_FOUR(wide_##FIELD[(AT) >> 2], wide_##FROM[(AT) >> 2])\n";
+
+std::string wide_names(const Stage& s) {
+    std::string text;
+    for (const auto& b : s.bindings)
+        text += "layout(std430, set = 0, binding = " + std::to_string(b.slot) + " + 2) " + (b.access == "IN" ? "readonly " : "") +
+                "buffer " + b.name + "_wide_block { vec4 wide_" + b.name + "[]; };\n";
+    return text;
+}
+
 // A stage's text from `at` to `stop` with what loads and stores the named buffers converted, which GLSL does for 16-bit floats
 // only where it is told.
 std::string converted(const Source& source, std::size_t at, std::size_t stop, const std::set<std::string>& narrow) {
@@ -83,7 +103,9 @@ std::string write_glsl(const FusedStage& whole, const Effects& effects) {
     std::ostringstream o;
     o << head << physics_includes(f) << "#undef HAS\n#define HAS(BITS) (((EFFECTS | " << f.needs << "u) & (BITS)) == (BITS))\n"
       << "#define Place ivec2\n#define PLACE(X, Y) ivec2(X, Y)\n"
-      << index_macros << shared_macros() << one_by_one << "#define LANE int(gl_LocalInvocationIndex)\n#define LANES "
+      << index_macros << shared_macros() << "#ifdef WADI_HALF\n"
+      << one_by_one << "#else\n"
+      << four_at_once << wide_names(s) << "#endif\n#define LANE int(gl_LocalInvocationIndex)\n#define LANES "
       << fused_group_x * fused_group_y
       << "\n#define BARRIER barrier()\n#define ROLLED\n#define PART_FUNCTION\n#define NOT_KEPT(X)\n"
       << keep_stored;

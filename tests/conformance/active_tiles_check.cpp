@@ -85,6 +85,9 @@ Verdict check_choose(const StageRun& run) {
                 return wrong("active_tiles_water", at);
             if (run.buffer("active_tiles_sand").words()[at] != (sand || (water && holds_sand) ? 1U : 0U))
                 return wrong("active_tiles_sand", at);
+            const bool both = (water || (sand && holds_water)) && (sand || (water && holds_sand));
+            if ((run.scene.effects & EFFECT_MIXTURE) != 0 && run.buffer("active_tiles_mixture").words()[at] != (both ? 1U : 0U))
+                return wrong("active_tiles_mixture", at);
         }
     }
     return {};

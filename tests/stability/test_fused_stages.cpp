@@ -17,6 +17,7 @@ std::unique_ptr<World> apart(Scene scene) {
 
 /// The scene with fused stages. Null where the device cannot run them or its floats are not exact.
 std::unique_ptr<World> fused(Scene scene, const std::string& backend) {
+    scene.settings.active_tiles = 0; // tested by themselves
     scene.settings.fused_stages = FusedStages::automatic;
     auto world = make_world(scene, {.backend = backend, .shared_device = true});
     const auto& device = world->device().capabilities();

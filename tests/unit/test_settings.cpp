@@ -67,7 +67,7 @@ TEST_CASE("settings: every row is checked, and every number of grid, material an
         if (row.at.kind == SettingKind::number) CHECK(says(with(NOT_A_NUMBER), name));
     }
     CHECK(refusal([](Settings& s) { s.material.friction = 12; }) == "material.friction: 12 is outside 0 ... 10");
-    CHECK(refusal([](Settings& s) { s.active_tiles = 9; }) == "active_tiles: 9 is not one of 0, 1, 8, 16, 32, 64");
+    CHECK(refusal([](Settings& s) { s.active_tiles = 9; }) == "active_tiles: 9 is not one of 0, 1, 2, 8, 16, 32, 64");
     CHECK(find_setting("material.frict") == nullptr);
     CHECK(rows_of("grid") == members<Grid>());
     CHECK(rows_of("material") == members<Material>() + 2); // three numbers of saturation
