@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Effect by effect, what leaving it out changes: the level that shows it best, with it and without, as a pair of pictures and in numbers.
-Writes samples/report/effects.
+"""Effect by effect, and choice by choice that levels have on by themselves, what leaving it out changes: the level that shows it best, with it
+and without, as a pair of pictures and in numbers. Writes samples/report/effects.
 
 usage: samples/report/effects.py BIN_FOLDER [--backend cpu] [--only EFFECT ...] [--out DIR | --check]
---check: half the cells along x and y and half the time, no files; fails where a pair does not differ, where the same run twice does, or where an effect that
-the engine knows has no pair.
+--check: half the cells along x and y and half the time, no files; fails where a pair does not differ, where the same run twice does, or where an effect, or a
+choice that is on by itself, has no pair.
 """
 import argparse
+import json
 import math
 import pathlib
 import re
@@ -35,10 +36,13 @@ SHOWN = {
     "slope_normal": ("dam_break", (96, 96), 3, {}, "Friction as on level ground: the dry column runs out further, to a flatter cone."),
     "internal_friction": ("piles", (168, 112), 5.4, {}, "Sand that spreads does not rub within: the dry pile and the soaked ones run further."),
     "retention": ("piles", (168, 112), 5.4, {}, "All pore water flows: damp piles stand in puddles of their own, the one at 0.45 sheds a ring of sand."),
+    "shock_viscosity": ("dam_break", (96, 96), 6, {"dt": 0.01, "sand": [], "method": {"largest_height": 64}, "water": [
+        {"shape": "plane", "height": 24}, {"shape": "box", "from": [0, 0], "to": [40, 40], "height": 30, "combine": "set"}]}, "Ripples of two cells trail the bores."),
 }
 NEEDED_BY = {"water": ("mixture", "diffusion", "drag", "cohesion", "rain", "bed_friction", "roughness", "bed_shear", "sources", "open_sides", "retention"),
              "sand": ("mixture", "diffusion", "drag", "elastoplastic", "cohesion", "bed_shear", "slope_normal", "internal_friction", "retention"),
              "mixture": ("diffusion", "bed_shear", "retention"), "drag": ("retention",), "bed_friction": ("roughness",), "elastoplastic": ("cohesion",)}
+OFF = {"shock_viscosity": {"method": {"shock_viscosity": 0}}}  # choices of method are no `effects`
 LEAST_PIXELS, LEAST_ERROR = 1.0, 0.2  # [%]: a pair differs from here on, to the eye and in its fields
 
 
@@ -47,9 +51,9 @@ def merged(level, changes):
 
 
 def known(recorder):
-    """The effects that the engine has, by a level's plan."""
+    """The effects that the engine has and the choices of method that are on by themselves, by a level's plan."""
     plan = subprocess.run([recorder.program, str(recordings.LEVELS / "piles"), "--backend", recorder.backend, "--print-plan"], capture_output=True, text=True, check=True).stdout
-    return re.findall(r"^  (?:on|- ) +(\w+)", plan, re.M)
+    return re.findall(r"^  (?:on|- ) +(\w+)", plan, re.M) + re.search(r"^grid .* T = \d+(?:, (.*))?$", plan, re.M)[1].split(", ")
 
 
 def left_out(with_it, without, seconds):
@@ -68,7 +72,7 @@ def run(recorder, effect, off, cells, seconds):
     level, _, _, changes, _ = SHOWN[effect]
     level = merged(recordings.read_level(level), changes)
     if off:
-        level = merged(level, {"effects": {name: "off" for name in (effect, *NEEDED_BY.get(effect, ()))}})
+        level = merged(level, OFF.get(effect) or {"effects": {name: "off" for name in (effect, *NEEDED_BY.get(effect, ()))}})
     recording, summary = recorder.record(level, size=cells, seconds=seconds, times=(0, seconds), pictures=2)
     return recording, summary, summary["ms_per_step"], pairs.map_of(recording.folder / "frame_00001.png", recording.nx, recording.ny)
 
@@ -99,13 +103,13 @@ def write_page(recorder, only, out):
         both = lambda pick: f"{pick(with_it)} / {pick(without)}"
         numbers.append([f"[{effect}](#{effect})", level, *(number(by_field[what]) if what in by_field else "" for what in ("sand", "water surface")), number(pixels),
                         both(lambda side: number(side[2])), both(lambda side: f"{side[1]['passes']['per_step']}"), both(lambda side: f"{side[1]['bytes_per_cell']:.0f}")])
-        extra = "".join(f", `{key}` {value}" for key, value in changes.items())
+        extra = "".join(f", `{key}` {json.dumps(value)}" for key, value in changes.items())
         shown += [f"## {effect}", f"`{level}`, {cells[0]} x {cells[1]} cells, {seconds} s{extra}. {look}", "", f"![{effect}: with it, without it]({effect}.png)", ""]
     if only:
         return
     head = ["without", "level", "sand [%]", "water surface [%]", "pixels [%]", "ms per step, with / without", "passes", "bytes per cell"]
     device = with_it[1]["device"]
-    lines = ["# Effect by effect", "", "What leaving one effect out of a level changes (`\"effects\": { NAME: \"off\" }`, what needs it off as well); left with it, right without. Sand and water "
+    lines = ["# Effect by effect", "", "What leaving one effect out of a level changes (`\"effects\": { NAME: \"off\" }`, what needs it off as well; `shock_viscosity`, a choice of method: 0); left with it, right without. Sand and water "
              "surface: mean absolute difference in percent of the range over which they moved with the effect on. Pixels: of the picture, different by a tenth or more. "
              f"Made by `samples/report/effects.py BIN` on {device['backend']}: {device['name']}.", "",
              "| " + " | ".join(head) + " |", "| --- | --- " + "| ---: " * (len(head) - 2) + "|", *("| " + " | ".join(row) + " |" for row in numbers), "", *shown]
