@@ -136,6 +136,7 @@ std::string format_summary(const Report& report) {
     json["simulated_seconds"] = stats.time;
     json["wall_seconds"] = report.wall_seconds;
     json["stepping_seconds"] = report.stepping_seconds;
+    json["processor_seconds"] = report.processor_seconds;
     json["loading_seconds"] = report.loading_seconds;
     json["figures_seconds"] = report.figures_seconds;
     json["picture_seconds"] = report.picture_seconds;

@@ -24,6 +24,7 @@ struct Report {
     double wall_seconds = 0;       // everything after creation: steps, pictures, files
     double loading_seconds = 0;    // the level and its world
     double stepping_seconds = 0;   // steps alone
+    double processor_seconds = 0;  // processor time of all threads in them
     double figures_seconds = 0;    // ledger, extremes and hash at the frames' times
     double picture_seconds = 0;    // frames: read, drawn and written
     std::uint64_t timed_steps = 0; // steps that stepping_seconds covers

@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <optional>
 
 namespace recorder {
@@ -131,9 +132,11 @@ Failure Recording::advance(std::uint64_t target) {
     while (done_ < target && !interrupted()) {
         const std::uint32_t count = static_cast<std::uint32_t>(std::min<std::uint64_t>(chunk_, target - done_));
         const Clock::time_point start = Clock::now();
+        const std::clock_t processor_start = std::clock();
         if (Failure failure = world_.step(count)) return failure;
         if (Failure failure = world_.wait(time_)) return failure;
         const double own = seconds_since(start);
+        report_.processor_seconds += static_cast<double>(std::clock() - processor_start) / CLOCKS_PER_SEC;
         report_.stepping_seconds += own;
         report_.timed_steps += count;
         done_ += count;

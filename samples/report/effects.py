@@ -46,10 +46,6 @@ OFF = {"shock_viscosity": {"method": {"shock_viscosity": 0}}}  # choices of meth
 LEAST_PIXELS, LEAST_ERROR = 1.0, 0.2  # [%]: a pair differs from here on, to the eye and in its fields
 
 
-def merged(level, changes):
-    return {**level, **{key: {**level.get(key, {}), **value} if isinstance(value, dict) else value for key, value in changes.items()}}
-
-
 def known(recorder):
     """The effects that the engine has and the choices of method that are on by themselves, by a level's plan."""
     plan = subprocess.run([recorder.program, str(recordings.LEVELS / "piles"), "--backend", recorder.backend, "--print-plan"], capture_output=True, text=True, check=True).stdout
@@ -70,9 +66,9 @@ def left_out(with_it, without, seconds):
 
 def run(recorder, effect, off, cells, seconds):
     level, _, _, changes, _ = SHOWN[effect]
-    level = merged(recordings.read_level(level), changes)
+    level = recordings.merged(recordings.read_level(level), changes)
     if off:
-        level = merged(level, OFF.get(effect) or {"effects": {name: "off" for name in (effect, *NEEDED_BY.get(effect, ()))}})
+        level = recordings.merged(level, OFF.get(effect) or {"effects": {name: "off" for name in (effect, *NEEDED_BY.get(effect, ()))}})
     recording, summary = recorder.record(level, size=cells, seconds=seconds, times=(0, seconds), pictures=2)
     return recording, summary, summary["ms_per_step"], pairs.map_of(recording.folder / "frame_00001.png", recording.nx, recording.ny)
 

@@ -4,7 +4,7 @@ import math
 
 import charts
 import scenes
-from prices import LEDGER_LEVEL as LEVEL, LEDGER_PASSES as PASSES
+from prices import LEDGER_LEVEL as LEVEL, LEDGER_PASSES as PASSES, WATER_LEVEL
 import sweep
 from scene import NORMS
 
@@ -211,12 +211,13 @@ def choices(page, all_scenes, rows):
     page.table(["choice", *(f"{scene.kind}: {scene.key}" for scene in swept)], body)
 
 
-def saved(row):
+def share(row, kind="saved"):
     """Median and quartiles [%]."""
-    return f"{row['saved']:.1f} ({row['saved_low']:.1f} to {row['saved_high']:.1f})" if "saved" in row else ""
+    return f"{row[kind]:.1f} ({row[kind + '_low']:.1f} to {row[kind + '_high']:.1f})" if kind in row else ""
 
 
 def price_list(page, rows, prices):
+    laws, prices = [row for row in prices if "costs" in row], [row for row in prices if "costs" not in row]
     everything = prices[0]
     at = {(r["choice"], r["dt_factor"]): r for r in rows if r["scene"] == "wall" and r["choice"] in sweep.GUARDS}
     base = {r["dt_factor"]: r for r in rows if r["scene"] == "wall" and r["choice"] == "robust" and r["T"] == 3 and not r["off"] and r["n"] == max((q["n"] for q in at.values()), default=0)}
@@ -227,7 +228,7 @@ def price_list(page, rows, prices):
               f"Saved: median and quartiles of {everything['rounds']} pairs of runs, one with it and one without, in turn, {everything['steps']} steps each. "
               "On so coarse a grid one error can offset another: what leaving an effect out changes by itself is in effects/README.md of samples/report.")
     page.table(["", "ms per step", "saved [%]", "passes", "bytes per cell", "error [%]"],
-               [[what, f"{row['ms_per_step']:.4g}", saved(row), str(row["passes"]), f"{row['bytes_per_cell']:.0f}",
+               [[what, f"{row['ms_per_step']:.4g}", share(row), str(row["passes"]), f"{row['bytes_per_cell']:.0f}",
                  "".join(number(point.get("error")) for point in (change.get(what.removeprefix("effect ").removesuffix(" off")), base.get(1) if what == "everything" else None) if point)]
                 for what, row in named if what == "everything" or what.startswith("effect")])
     page.heading("What safety costs")
@@ -238,19 +239,23 @@ def price_list(page, rows, prices):
     body = [["everything on", f"{everything['ms_per_step']:.4g}", "", *both(base, 1), *both(base, 4)]]
     for what, row in named[1:]:
         if what in sweep.GUARDS or not (what in sweep.METHODS or what.startswith(("effect", "fused"))):
-            body.append([what, f"{row['ms_per_step']:.4g}" if "ms_per_step" in row else "", saved(row), *both(at, (what, 1)), *both(at, (what, 4))])
+            body.append([what, f"{row['ms_per_step']:.4g}" if "ms_per_step" in row else "", share(row), *both(at, (what, 1)), *both(at, (what, 4))])
     page.table(["off", "ms per step", "saved [%]", "base step", "four times it"], body)
     page.heading("What choices of method and of fused stages cost")
-    page.table(["choice", "ms per step", "saved [%]", "passes"], [[what, f"{row['ms_per_step']:.4g}", saved(row), str(row["passes"])] for what, row in named if what in sweep.METHODS or what.startswith("fused")])
+    page.table(["choice", "ms per step", "saved [%]", "passes"], [[what, f"{row['ms_per_step']:.4g}", share(row), str(row["passes"])] for what, row in named if what in sweep.METHODS or what.startswith("fused")])
+    page.heading("What parts of the water's laws cost")
+    page.text(f"Level {WATER_LEVEL} on {laws[0]['n']} x {laws[0]['n']} cells with walls, without bed friction, shock viscosity and edits, as it is and without its sand; costs: of one part put in, in percent of a "
+              f"step without it, median and quartiles of {laws[0]['rounds']} pairs of runs in turn. With sand, level sides let ground water through.")
+    page.table(["part", "ms per step without", "costs [%]"], [[row["point"].removeprefix("price: "), f"{row['ms_per_step']:.4g}", share(row, "costs")] for row in laws])
 
 
-def write(out, all_scenes, rows, prices, planned, quick):
+def write(out, all_scenes, rows, prices, planned, quick, processor_time):
     page = Page(out)
     device = next((r["device"] for r in rows if "device" in r), "")
     backend = next((r["backend"] for r in rows if "backend" in r), "")
     page.heading("What accuracy costs in time", 1)
     page.text(f"{'Quick' if quick else 'Full'} run on {backend}: {device}. Error: mean absolute error of sand and water surface in percent of the range over which they moved, "
-              "or as the case says; time: of stepping alone, per simulated second. "
+              f"or as the case says; time: {'processor time of one thread, ' if processor_time else ''}of stepping alone, per simulated second. "
               f"Truth of island, heap and wall: double precision on {scenes.SOLVED_N} x {scenes.SOLVED_N // 2} cells "
               f"with second order for water. A point such as wall@n64,dt1,T3,robust is 64 cells along x, the base time step, "
               "three sand substeps per water step, method robust; samples/report/wadi-report BIN --point POINT measures it again.")

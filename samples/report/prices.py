@@ -7,6 +7,16 @@ import sweep
 
 LEDGER_LEVEL, LEDGER_PASSES = "spring", ("account_sides",)  # open sides and a source; the passes that nothing but the ledger needs
 LEDGER_STEPS = 100
+WATER_LEVEL = "beach"  # what parts of the water's laws are priced on: without those it has of them, with its sand and without
+MANNING = {"material": {"manning": 0.03}}
+WATER_LAWS = {  # part of the laws: what the level is changed by
+    "outflow on all sides": {"sides": {side: {"kind": "outflow"} for side in ("west", "east", "south", "north")}},
+    "level on all sides": {"sides": {side: {"kind": "level", "value": 1.05} for side in ("west", "east", "south", "north")}},
+    "Manning's law": MANNING,
+    "Manning's law and a roughness map": {**MANNING, "roughness": [{"shape": "box", "from": [0, 0], "to": [16, 26], "manning": 0.06}]},
+    "shock viscosity": {"method": {"shock_viscosity": 0.25}},
+    "second order": {"method": {"water_transport_order": 2}},
+}
 FUSED = ("always", "never")  # of a level's `fused_stages`; "everything" has auto
 
 
@@ -47,6 +57,25 @@ def ledger_share(recorder, n, seconds, rounds):
         stages = {stage["name"]: stage["ms"] for stage in summary["stages"]}
         shares.append(100 * math.fsum(stages[name] for name in LEDGER_PASSES) / math.fsum(stages.values()))
     return shares
+
+
+def water_prices(recorder, n, rounds, run_seconds):
+    """Rows of what each part of the water's laws costs, on n x n cells, as a report keeps them; `costs` is a share [%] of a step without it."""
+    whole = recordings.read_level(WATER_LEVEL)
+    bare = recordings.merged({key: value for key, value in whole.items() if key not in ("sides", "edits")},
+                             {"material": {"bed_friction": 0}, "method": {"shock_viscosity": 0}})
+    rows = []
+    for kept, level in (("all effects", bare), ("water alone", {key: value for key, value in bare.items() if key != "sand"})):
+        dt = level["dt"] * level["grid"]["nx"] / n
+
+        def run(changes, steps, level=level, dt=dt):
+            return recorder.record(recordings.merged(level, changes), size=(n, n), seconds=steps * dt, benchmark=True)[1]
+
+        steps = max(20, min(round(1000 * run_seconds / run({}, 20)["ms_per_step"]), int(level["duration"] / dt)))
+        for part, price in paired(lambda: run({}, steps), {part: lambda changes=changes: run(changes, steps) for part, changes in WATER_LAWS.items()}, rounds).items():
+            rows.append({"point": f"price: {part}, {kept}", "n": n, "rounds": rounds, "steps": steps, "ms_per_step": price.base_ms, "costs": 100 * (price.ratio - 1),
+                         "costs_low": 100 * (price.low - 1), "costs_high": 100 * (price.high - 1)})
+    return rows
 
 
 def price_list(recorder, relaxed, scene, n, rounds, run_seconds):

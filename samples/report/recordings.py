@@ -18,10 +18,11 @@ class Failed(Exception):
 
 
 class Recorder:
-    """One recorder program on one backend; threads: of the CPU backend, 0 = all cores. Recordings live until the object is closed."""
+    """One recorder program on one backend; threads: of the CPU backend, 0 = all cores. processor_time: what a summary calls times of steps is
+    processor time. Recordings live until the object is closed."""
 
-    def __init__(self, program, backend="cpu", threads=0):
-        self.program, self.backend, self.threads = str(pathlib.Path(program).resolve()), backend, threads
+    def __init__(self, program, backend="cpu", threads=0, processor_time=False):
+        self.program, self.backend, self.threads, self.processor_time = str(pathlib.Path(program).resolve()), backend, threads, processor_time
         self.scratch = tempfile.TemporaryDirectory()
         self.count = 0
 
@@ -66,6 +67,9 @@ class Recorder:
         if done.returncode != 0:
             raise Failed(f"{' '.join(command)}\n{done.stdout}{done.stderr}")
         summary = json.loads((folder / "summary.json").read_text())
+        if self.processor_time:
+            summary["ms_per_step"] *= summary["processor_seconds"] / summary["stepping_seconds"] if summary["stepping_seconds"] else 0
+            summary["stepping_seconds"] = summary["processor_seconds"]
         grid = summary["grid"]
         return measures.Run(folder, grid["nx"], grid["ny"], grid["dx"], [float(f"{time:g}") for time in times]), summary
 
@@ -96,3 +100,8 @@ def read_level(name):
 def choose(level, **choices):
     """The level with these keys of `method` changed."""
     return {**level, "method": {**level.get("method", {}), **choices}}
+
+
+def merged(level, changes):
+    """The level with these keys changed: within an object each by itself, else whole."""
+    return {**level, **{key: {**level.get(key, {}), **value} if isinstance(value, dict) else value for key, value in changes.items()}}

@@ -21,6 +21,7 @@ CHOICES = {
     "no_gravity_caps": {"gravity_cap": 0, "gravity_cap_least": 0, "sand_gravity_cap": 0},
     "no_elastic_cap": {"elastic_cap": 0},
     "no_rest_rule": {"rest_rule": False},
+    "no_shock_viscosity": {"shock_viscosity": 0},
     "no_passive_pressure": {"passive_pressure": 0},
     "no_smoothing": {"saturation_smoothing": 0},
 }

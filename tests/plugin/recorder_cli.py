@@ -19,8 +19,8 @@ from pathlib import Path
 OK, BAD_INPUT = 0, 2
 LEVEL = "dam_break"
 SUMMARY_KEYS = {
-    "level", "completed", "steps", "simulated_seconds", "wall_seconds", "loading_seconds", "figures_seconds", "picture_seconds",
-    "ms_per_step", "stages", "ledger", "extremes", "counts",
+    "level", "completed", "steps", "simulated_seconds", "wall_seconds", "processor_seconds", "loading_seconds", "figures_seconds",
+    "picture_seconds", "ms_per_step", "stages", "ledger", "extremes", "counts",
     "hash", "passes", "bytes_per_cell", "device", "warnings",
 }
 
@@ -257,6 +257,8 @@ def test_summary(recorder):
     assert abs(first["simulated_seconds"] - 0.5) <= first["grid"]["dt"]
     assert len(first["hash"]) == 16 and int(first["hash"], 16) >= 0
     assert first["device"].keys() >= {"backend", "name", "exact_float"}
+    one = summary("--threads", 1)  # its steps wait for nobody: on one thread a processor is busy for no longer than the clock runs
+    assert 0 < one["processor_seconds"] < 1.05 * one["stepping_seconds"] + 0.001 or recorder.backend != "cpu", one
     for layer in ("water", "sand"):
         assert first["ledger"][layer].keys() >= {"initial_m3", "in_m3", "out_m3", "now_m3", "relative_drift", "drift_quanta"}
         assert abs(first["ledger"][layer]["relative_drift"]) < 1e-6, first["ledger"]

@@ -19,7 +19,7 @@ def run(report, programs, *arguments, code=0):
 
 def main():
     report, programs = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
-    quick = ("--quick", "--repeats", "1", "--price-rounds", "1", "--threads", "1")  # its times are not looked at, and other tests want the other cores
+    quick = ("--quick", "--repeats", "1", "--price-rounds", "1", "--processor-time")  # other tests want the other cores
     with tempfile.TemporaryDirectory() as folder:
         out = pathlib.Path(folder)
         first = run(report, programs, *quick, "--out", out).stdout
