@@ -90,9 +90,6 @@ def by_size(rows, scene, choice):
 
 
 def convergence(page, all_scenes, rows):
-    page.heading("Errors against exact solutions and the laboratory")
-    page.text("Error in percent by cells along x, at the base time step (dt proportional to dx): L1 where a whole profile is compared, with L2 and largest at the finest "
-              "grid; order: slope of the error over dx, \"rounding\" where every error is below 0.01 %.")
     body = []
     for scene in all_scenes:
         if scene.sweep:
@@ -108,6 +105,11 @@ def convergence(page, all_scenes, rows):
                 cells.append("" if value is None else f"{number(value)} (order {order([(r['dx'], norm_of(r, norm)) for r in mine])})")
             body.append([*cells, "; ".join(f"{name} {number(value)} {unit}" + (f" (right {number(right)})" if right else "")
                                            for name, unit, value, right in finest["measures"][1:] if " error of depth" not in name)])
+    if not body:
+        return
+    page.heading("Errors against exact solutions and the laboratory")
+    page.text("Error in percent by cells along x, at the base time step (dt proportional to dx): L1 where a whole profile is compared, with L2 and largest at the finest "
+              "grid; order: slope of the error over dx, \"rounding\" where every error is below 0.01 %.")
     page.table(["case", "method", "error [%]", "order", "L2 [%]", "largest [%]", "at the finest"], body)
 
 

@@ -1,6 +1,7 @@
 """What a setting costs: runs with it and without in turn, so that what else the machine does falls on both; the median of their ratios."""
 import math
 import statistics
+import time
 
 import recordings
 import sweep
@@ -21,10 +22,11 @@ FUSED = ("always", "never")  # of a level's `fused_stages`; "everything" has aut
 
 
 class Price:
-    """ratio: time of a step over the base's, median of the rounds; low and high: its quartiles; base_ms: of a step, median; summary: of the
+    """ratio: time of a step over the base's, median of `rounds`; low and high: its quartiles; base_ms: of a step, median; summary: of the
     last run."""
 
     def __init__(self, ratios, base_ms, summary):
+        self.rounds = len(ratios)
         self.low, self.ratio, self.high = quartiles(ratios)
         self.base_ms, self.summary = base_ms, summary
 
@@ -34,11 +36,13 @@ def quartiles(values):
     return statistics.quantiles(values, n=4, method="inclusive") if len(values) > 1 else values * 3
 
 
-def paired(base, variants, rounds):
+def paired(base, variants, rounds, until=math.inf):
     """{name: Price} of `variants`, {name: function that runs and gives the summary}, over `base`, a function of the same kind. Base and
-    variant run one after the other, in either order by turns."""
+    variant run one after the other, in either order by turns. No round but the first begins after `until`, in seconds of time.monotonic()."""
     ratios, bases, last = {name: [] for name in variants}, [], {}
     for count in range(rounds):
+        if count > 0 and time.monotonic() > until:
+            break
         for name, variant in variants.items():
             pair = (base, variant) if count % 2 == 0 else (variant, base)
             runs = [run() for run in pair]
@@ -59,7 +63,7 @@ def ledger_share(recorder, n, seconds, rounds):
     return shares
 
 
-def water_prices(recorder, n, rounds, run_seconds):
+def water_prices(recorder, n, rounds, run_seconds, until):
     """Rows of what each part of the water's laws costs, on n x n cells, as a report keeps them; `costs` is a share [%] of a step without it."""
     whole = recordings.read_level(WATER_LEVEL)
     bare = recordings.merged({key: value for key, value in whole.items() if key not in ("sides", "edits")},
@@ -72,13 +76,13 @@ def water_prices(recorder, n, rounds, run_seconds):
             return recorder.record(recordings.merged(level, changes), size=(n, n), seconds=steps * dt, benchmark=True)[1]
 
         steps = max(20, min(round(1000 * run_seconds / run({}, 20)["ms_per_step"]), int(level["duration"] / dt)))
-        for part, price in paired(lambda: run({}, steps), {part: lambda changes=changes: run(changes, steps) for part, changes in WATER_LAWS.items()}, rounds).items():
-            rows.append({"point": f"price: {part}, {kept}", "n": n, "rounds": rounds, "steps": steps, "ms_per_step": price.base_ms, "costs": 100 * (price.ratio - 1),
+        for part, price in paired(lambda: run({}, steps), {part: lambda changes=changes: run(changes, steps) for part, changes in WATER_LAWS.items()}, rounds, until).items():
+            rows.append({"point": f"price: {part}, {kept}", "n": n, "rounds": price.rounds, "steps": steps, "ms_per_step": price.base_ms, "costs": 100 * (price.ratio - 1),
                          "costs_low": 100 * (price.low - 1), "costs_high": 100 * (price.high - 1)})
     return rows
 
 
-def price_list(recorder, relaxed, scene, n, rounds, run_seconds):
+def price_list(recorder, relaxed, scene, n, rounds, run_seconds, until):
     """Rows of what each effect and each guard costs on the scene with n cells along x, as a report keeps them. A run steps for about
     `run_seconds`, at most the scene's time. relaxed: a recorder built without strict floats, or None."""
     level = scene.make(n)
@@ -98,7 +102,8 @@ def price_list(recorder, relaxed, scene, n, rounds, run_seconds):
     variants["timestamps of every stage"] = lambda: run(level, profile=True)
     if relaxed:
         variants["strict floats off"] = lambda: run(level, relaxed)
-    prices = paired(lambda: run(level), variants, rounds)
+    prices = paired(lambda: run(level), variants, rounds, until)
+    rounds = next(iter(prices.values())).rounds
     base = next(iter(prices.values())).base_ms
     rows = [{"point": "price: everything", "n": n, "rounds": rounds, "steps": round(seconds / level["dt"]), "ms_per_step": base, "passes": first["passes"]["per_step"],
              "bytes_per_cell": first["bytes_per_cell"]}]
