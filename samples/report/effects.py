@@ -2,7 +2,7 @@
 """Effect by effect, and choice by choice that levels have on by themselves, what leaving it out changes: the level that shows it best, with it
 and without, as a pair of pictures and in numbers. Writes samples/report/effects.
 
-usage: samples/report/effects.py BIN_FOLDER [--backend cpu] [--only EFFECT ...] [--out DIR | --check]
+usage: samples/report/effects.py BIN_FOLDER [--backend cpu] [--processor-time] [--only EFFECT ...] [--out DIR | --check]
 --check: half the cells along x and y and half the time, no files; fails where a pair does not differ, where the same run twice does, or where an effect, or a
 choice that is on by itself, has no pair.
 """
@@ -107,7 +107,7 @@ def write_page(recorder, only, out):
     device = with_it[1]["device"]
     lines = ["# Effect by effect", "", "What leaving one effect out of a level changes (`\"effects\": { NAME: \"off\" }`, what needs it off as well; `shock_viscosity`, a choice of method: 0); left with it, right without. Sand and water "
              "surface: mean absolute difference in percent of the range over which they moved with the effect on. Pixels: of the picture, different by a tenth or more. "
-             f"Made by `samples/report/effects.py BIN` on {device['backend']}: {device['name']}.", "",
+             f"Made by `samples/report/effects.py BIN` on {device['backend']}: {device['name']}{'; processor time' if recorder.processor_time else ''}, least of three.", "",
              "| " + " | ".join(head) + " |", "| --- | --- " + "| ---: " * (len(head) - 2) + "|", *("| " + " | ".join(row) + " |" for row in numbers), "", *shown]
     (out / "README.md").write_text("\n".join(lines))
 
@@ -132,11 +132,12 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("programs", type=pathlib.Path)
     parser.add_argument("--backend", default="cpu")
+    parser.add_argument("--processor-time", action="store_true", help="times are processor time of one thread: for a busy machine, CPU backend alone")
     parser.add_argument("--only", nargs="*", default=[], choices=SHOWN, metavar="EFFECT")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent / "effects")
     parser.add_argument("--check", action="store_true")
     options = parser.parse_args()
-    with recordings.Recorder(options.programs / "wadi-recorder", options.backend) as recorder:
+    with recordings.Recorder(options.programs / "wadi-recorder", options.backend, int(options.processor_time), options.processor_time) as recorder:
         if options.check:
             return 0 if check(recorder) else 1
         write_page(recorder, options.only, options.out)
