@@ -142,7 +142,7 @@ constexpr Setting rows[] = {
     {"method.sand_transport_order", method<&Method::sand_transport_order>, {1, 2}, "", EFFECT_SAND,
      "2: heights and flux-form velocities of sand move with limited slopes", InDigest::where_set},
     {"active_tiles", at<&Settings::active_tiles>, tile_sides, "cells", several,
-     "side of tiles, left out at rest; 0 = off, 1 = while that gains, 2 = and costs little", InDigest::no},
+     "side of tiles, left out at rest; 0 = off, 1, 2 = where that gains", InDigest::no},
     {"fused_stages", at<&Settings::fused_stages>, words(fused_stages), "", several,
      "several stages in one pass; auto: where the device gains from it", InDigest::no},
     {"active_tiles_most", at<&Settings::active_tiles_most>, {0, 1}, "", several,
