@@ -73,9 +73,9 @@ def washed(name, scene, seconds, above, least, most, held, control=None):
         ]
 
 
-washed("castle_with_wave", castle, 3, above=1, least=0.7, most=0.11, held=(0.7, 0.112))
+washed("castle_with_wave", castle, 3, above=1, least=0.7, most=0.11, held=(0.7, 0.115))
 # On finer grids a sharper bore stands before the letters and sweeps sand away from their feet, which leaves them steeper and longer.
-washed("letters", partial(shipped, "letters"), 4, above=0.3, least=0.6, most=0.16, held=(0.6, 0.24), control={"material.friction": 0})
+washed("letters", partial(shipped, "letters"), 4, above=0.3, least=0.6, most=0.16, held=(0.6, 0.26), control={"material.friction": 0})
 
 
 @case("cone_at_the_water_line", control={"material.friction": 0.2}, quick=(0.1,))
