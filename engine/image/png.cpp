@@ -64,6 +64,20 @@ Status check_chunks(const std::vector<std::uint8_t>& bytes, const std::string& n
     }
 }
 
+/// Samples of a pixel by its colour type.
+std::uint64_t channels_of(std::uint8_t color) {
+    constexpr std::uint64_t grey_alpha = 2, rgb = 3, rgba = 4;
+    return color == 2 ? rgb : color == 4 ? grey_alpha : color == 6 ? rgba : 1;
+}
+
+/// stb_image names no reason where it had no memory for what it inflates; it keeps that of an earlier failure of the thread.
+Status why_not(const std::string& name) {
+    const char* reason = stbi_failure_reason();
+    if (reason == nullptr || std::string(reason) == "outofmem")
+        return error(Code::out_of_memory, name + ": there is no memory to decode this PNG");
+    return error(Code::bad_file, name + ": PNG cannot be decoded: " + reason);
+}
+
 template <class Sample> std::vector<float> to_grey(const Sample* samples, int nx, int ny, float white) {
     std::vector<float> grey;
     const auto width = static_cast<std::size_t>(nx);
@@ -84,26 +98,30 @@ Result<Map> decode_png(const std::vector<std::uint8_t>& bytes, const std::string
     const std::int64_t height = big_endian(&bytes[20]);
     if (Status status = check_map_size(width, height, name); !status) return status;
     // The header alone decides how much the decoder allocates: the data must be able to fill it.
-    const std::uint64_t bits = bytes[24];
-    if (static_cast<std::uint64_t>(width * height) * bits / 8 > DEFLATE_LIMIT * bytes.size())
+    const std::uint64_t row = (static_cast<std::uint64_t>(width) * channels_of(bytes[25]) * bytes[24] + 7) / 8;
+    const std::uint64_t decoded = (row + 1) * static_cast<std::uint64_t>(height); // a byte per row says how it is filtered
+    if (decoded > DEFLATE_LIMIT * bytes.size())
         return error(Code::bad_file, name + ": " + std::to_string(bytes.size()) + " bytes cannot hold the " +
                                          std::to_string(width) + " x " + std::to_string(height) + " pixels of its header");
+    if (decoded > INT_MAX)
+        return error(Code::bad_file, name + ": " + std::to_string(decoded) + " bytes when decoded are more than the " +
+                                         std::to_string(INT_MAX) + " bytes of the largest PNG");
     const auto size = static_cast<int>(bytes.size());
     int nx = 0;
     int ny = 0;
     int channels = 0;
     Map map;
     map.integer = true;
-    const auto refuse = [&] { return error(Code::bad_file, name + ": PNG cannot be decoded: " + stbi_failure_reason()); };
+    stbi__g_failure_reason = nullptr;
     if (stbi_is_16_bit_from_memory(bytes.data(), size) != 0) {
         const std::unique_ptr<stbi_us, void (*)(void*)> samples(
             stbi_load_16_from_memory(bytes.data(), size, &nx, &ny, &channels, 1), stbi_image_free);
-        if (!samples) return refuse();
+        if (!samples) return why_not(name);
         map.values = to_grey(samples.get(), nx, ny, 65535.0f);
     } else {
         const std::unique_ptr<stbi_uc, void (*)(void*)> samples(stbi_load_from_memory(bytes.data(), size, &nx, &ny, &channels, 1),
                                                                 stbi_image_free);
-        if (!samples) return refuse();
+        if (!samples) return why_not(name);
         map.values = to_grey(samples.get(), nx, ny, 255.0f);
     }
     map.nx = nx;

@@ -32,6 +32,10 @@ std::string reason_of(const std::string& what) {
     return bracket == std::string::npos ? what : what.substr(bracket + 2);
 }
 
+/// Lists and objects within each other: levels have 7. Reading, copying and printing a value take stack by its depth.
+constexpr int DEPTH_MOST = 32;
+struct TooDeep {};
+
 void refuse(Status& status, std::string message) {
     if (status) status = error(Code::bad_file, std::move(message));
 }
@@ -40,9 +44,12 @@ void refuse(Status& status, std::string message) {
 
 Result<Json> parse_json(const std::string& text) {
     std::vector<std::set<std::string>> objects;
-    std::string repeated;
-    const auto note_keys = [&](int, Json::parse_event_t event, Json& value) {
-        if (event == Json::parse_event_t::object_start) objects.emplace_back();
+    std::string repeated, key_of_root;
+    const auto note_keys = [&](int depth, Json::parse_event_t event, Json& value) {
+        const bool object = event == Json::parse_event_t::object_start;
+        if ((object || event == Json::parse_event_t::array_start) && depth >= DEPTH_MOST) throw TooDeep{};
+        if (event == Json::parse_event_t::key && depth == 1) key_of_root = value.get<std::string>();
+        if (object) objects.emplace_back();
         if (event == Json::parse_event_t::object_end) objects.pop_back();
         if (event == Json::parse_event_t::key && !objects.back().insert(value.get<std::string>()).second && repeated.empty())
             repeated = value.get<std::string>();
@@ -52,6 +59,9 @@ Result<Json> parse_json(const std::string& text) {
         Json json = Json::parse(text, note_keys, true, true);
         if (!repeated.empty()) return error(Code::bad_file, "the key \"" + repeated + "\" is given twice in one object");
         return json;
+    } catch (const TooDeep&) {
+        return error(Code::bad_file, (key_of_root.empty() ? "the level" : key_of_root) + " is nested more than " +
+                                         std::to_string(DEPTH_MOST) + " deep");
     } catch (const Json::parse_error& failure) {
         return error(Code::bad_file, position_text(text, failure.byte) + ": " + reason_of(failure.what()));
     } catch (const Json::exception& failure) {

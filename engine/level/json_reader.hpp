@@ -12,7 +12,8 @@ namespace wadi {
 
 using Json = nlohmann::json;
 
-/// Parses JSON with // and /* */ comments. Errors give line and column; a key given twice is an error.
+/// Parses JSON with // and /* */ comments. Errors give line and column; a key given twice is an error, and so are more than 32
+/// lists and objects within each other.
 Result<Json> parse_json(const std::string& text);
 
 /// A value as a message shows it: at most 40 characters.

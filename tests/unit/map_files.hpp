@@ -70,6 +70,37 @@ inline Bytes png(std::uint32_t nx, std::uint32_t ny, std::uint8_t depth, std::ui
     return file;
 }
 
+/// A PNG of zeros whose data is one deflate block of repeats: some 1/159 of what it decodes to.
+inline Bytes png_of_zeros(std::uint32_t nx, std::uint32_t ny, std::uint8_t depth, std::uint8_t color) {
+    const std::uint64_t channels = color == 2 ? 3 : color == 4 ? 2 : color == 6 ? 4 : 1;
+    std::uint64_t left = (nx * channels * depth / 8 + 1) * ny;
+    Bytes zlib = {0x78, 0x01};
+    std::uint32_t bits = 0;
+    int filled = 0;
+    const auto put = [&](std::uint32_t code, int length) { // from its first bit on
+        for (int n = length; n-- > 0; ++filled) {
+            if (filled == 8) zlib.push_back(static_cast<std::uint8_t>(bits)), bits = 0, filled = 0;
+            bits |= ((code >> n) & 1u) << filled;
+        }
+    };
+    // RFC 1951: last block, fixed codes; a literal 0, then repeats of 258 bytes at distance 1, then literals.
+    put(1, 1), put(2, 2), put(0x30, 8);
+    for (--left; left >= 258; left -= 258) put(0xc5, 8), put(0, 5);
+    for (; left > 0; --left) put(0x30, 8);
+    put(0, 7);
+    zlib.push_back(static_cast<std::uint8_t>(bits));
+    append_big(zlib, 0); // Adler-32, which the decoder does not ask for: the chunks have sums of their own
+    Bytes header;
+    append_big(header, nx);
+    append_big(header, ny);
+    header.insert(header.end(), {depth, color, 0, 0, 0});
+    Bytes file = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+    append_chunk(file, "IHDR", header);
+    append_chunk(file, "IDAT", zlib);
+    append_chunk(file, "IEND", {});
+    return file;
+}
+
 inline Bytes words(const std::vector<std::uint16_t>& values, bool big_endian) {
     Bytes bytes;
     for (const std::uint16_t value : values) {

@@ -65,6 +65,23 @@ TEST_CASE("image: damaged PNG files") {
     CHECK(says(message(decode_png(png(8, 8, 16, 0, {1, 2, 3, 4, 5, 6, 7, 8}), "a.png")), "cannot be decoded"));
 }
 
+TEST_CASE("image: a PNG counts with all its channels") {
+    const auto padded = [](Bytes file, std::size_t padding) {
+        Bytes chunk;
+        append_chunk(chunk, "tEXt", Bytes(padding));
+        file.insert(file.begin() + 33, chunk.begin(), chunk.end()); // behind IHDR
+        return file;
+    };
+    // Bytes for one channel of a header's pixels, but not for four.
+    const Bytes few = png(16384, 16384, 16, 6, {});
+    CHECK(says(message(decode_png(padded(few, 600'000), "a.png")), "cannot hold"));
+    // For all of them, but decoded they pass what the decoder counts with.
+    CHECK(says(message(decode_png(padded(few, 2'200'000), "a.png")), "more than the 2147483647 bytes"));
+    const auto zeros = decode_png(png_of_zeros(300, 200, 16, 6), "a.png"); // negative control
+    REQUIRE_MESSAGE(zeros, message(zeros));
+    CHECK(zeros->values == std::vector<float>(60000));
+}
+
 TEST_CASE("image: r16") {
     const auto map = decode_r16(words({0, 65535, 1, 2}, false), "a.r16", std::nullopt);
     REQUIRE_MESSAGE(map, message(map));

@@ -37,7 +37,24 @@ TEST_CASE("level errors: malformed JSON with line and column") {
     refuses_text("{\"dt\": 1e999}", "number overflow parsing '1e999'");
     refuses_text("[]", "the level: expected an object {...}, found []");
     refuses_text(R"({"name": "a", "name": "b"})", "the key \"name\" is given twice");
-    refuses_text(std::string(100000, '['), "line 1, column 100001");
+}
+
+// A message that quoted such a value, or a copy of it, went as deep on the stack as the file said.
+TEST_CASE("level errors: nesting") {
+    const auto nested = [](std::size_t depth, const std::string& begin, const std::string& end) {
+        std::string text;
+        for (std::size_t n = 0; n < depth; ++n) text += begin;
+        for (std::size_t n = 0; n < depth; ++n) text += end;
+        return text;
+    };
+    const std::string too_deep = "is nested more than 32 deep";
+    refuses_text(std::string(100000, '['), too_deep);
+    for (const char* key : {"description", "variants", "sources", "sand", "unknown"}) {
+        refuses("\"" + std::string(key) + "\": " + nested(100000, "[", "]"), std::string(key) + " " + too_deep);
+        refuses("\"" + std::string(key) + "\": " + nested(100000, "{\"a\":[", "]}"), std::string(key) + " " + too_deep);
+    }
+    refuses(R"("rain": )" + nested(31, "[", "]"), "rain[0]: expected two numbers"); // negative control: as deep as may be
+    refuses(R"("rain": )" + nested(32, "[", "]"), "rain " + too_deep);
 }
 
 TEST_CASE("level errors: root") {
