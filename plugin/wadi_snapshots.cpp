@@ -41,7 +41,7 @@ wadi_result wadi_world_save_file(wadi_world_id id, const char* path) {
 wadi_result wadi_world_load_file(wadi_world_id id, const char* path) {
     return with_world(__func__, id, [&](HostedWorld& hosted) {
         if (path == nullptr) return bad_argument("wadi_world_load_file: path is NULL");
-        auto bytes = read_snapshot_file(path);
+        auto bytes = read_snapshot_file(path, hosted.world->snapshots().most_bytes());
         return report(bytes ? hosted.world->snapshots().load(*bytes) : bytes.status());
     });
 }

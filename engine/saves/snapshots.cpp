@@ -1,6 +1,7 @@
 #include "engine/saves/snapshots.hpp"
 #include <algorithm>
 #include <cstring>
+#include <new>
 
 namespace wadi {
 
@@ -16,6 +17,14 @@ Content operator|(Content a, Content b) { return {a.sand || b.sand, a.water || b
 SnapshotHeader Snapshots::header() const {
     return {state_.layout().nx,         state_.layout().ny, state_.plan().effects, state_.level(),
             state_.settings().material, stepper_.totals(),  state_.fields().kept()};
+}
+
+std::uint64_t Snapshots::most_bytes() const {
+    std::vector<PlanField> fields;
+    for (const auto& row : field_table()) fields.push_back({std::string(row.name), row.role});
+    auto largest = header();
+    largest.fields = state_.fields().kept(fields);
+    return largest.bytes();
 }
 
 Status Snapshots::save(std::span<std::byte> to) {
@@ -69,6 +78,7 @@ Status Snapshots::check(const SnapshotHeader& header) const {
 
 // A field that the snapshot lacks was zero there, but without mixture the water in the sand moved with the rest of the water.
 Status Snapshots::write_fields(const SnapshotHeader& header, std::span<const std::byte> from) {
+    std::vector<std::byte> zeros;
     const auto find = [&](const std::string& name) {
         std::span<const std::byte> contents;
         for (std::size_t n = 0; n < header.fields.size(); ++n) {
@@ -77,7 +87,6 @@ Status Snapshots::write_fields(const SnapshotHeader& header, std::span<const std
         return contents;
     };
     const bool one_layer = (header.effects & (EFFECT_WATER | EFFECT_SAND)) == (EFFECT_WATER | EFFECT_SAND);
-    std::vector<std::byte> zeros;
     for (const auto& field : state_.fields().kept()) {
         auto contents = find(field.name);
         if (contents.empty() && one_layer && field.name.starts_with("mixed_")) contents = find("water_" + field.name.substr(6));
@@ -90,11 +99,22 @@ Status Snapshots::write_fields(const SnapshotHeader& header, std::span<const std
     return ok_status();
 }
 
+// A list that does not fit into memory is refused like any other: nothing has changed so far.
+Result<SnapshotHeader> Snapshots::read_and_check(std::span<const std::byte> snapshot) const {
+    try {
+        auto header = read_header(snapshot);
+        if (!header) return header;
+        if (auto status = check(*header); !status) return status;
+        return header;
+    } catch (const std::bad_alloc&) {
+        return error(Code::out_of_memory, "load: there is no memory to read the snapshot");
+    }
+}
+
 Status Snapshots::load(std::span<const std::byte> from) {
     if (auto status = stepper_.finish_step(); !status) return status;
-    auto header = read_header(from);
+    auto header = read_and_check(from);
     if (!header) return header.status();
-    if (auto status = check(*header); !status) return status;
     const Material before = state_.settings().material;
     if (auto status = stepper_.set_material(header->material); !status) return status;
     if ((header->effects & ~state_.plan().effects) != 0) {

@@ -15,12 +15,15 @@ class Snapshots {
 
     /// Bytes of a snapshot of the world as it is planned now.
     std::uint64_t bytes() const { return header().bytes(); }
+    /// Bytes that no snapshot of the world passes, whatever effects it may come to have.
+    std::uint64_t most_bytes() const;
     /// Writes bytes() bytes: everything that the next step depends on, to the bit (snapshot_format.hpp). Waits for the device.
     Status save(std::span<std::byte> to);
     /// Goes back (or on) to a snapshot of a world of the same level. The world is promoted to the snapshot's effects; what those
     /// lacked is zero, as it was there. Edits and commands that wait and states kept for roll-back are forgotten. Waits. Errors:
     /// bad_file (not a whole, unchanged snapshot of a known version), bad_argument (of another level, or with effects that this
-    /// world's level forces off), out_of_memory; the world is then unchanged.
+    /// world's level forces off), out_of_memory; the world is then unchanged. Throws std::bad_alloc where the host's memory ends
+    /// only once the snapshot is accepted.
     Status load(std::span<const std::byte> from);
 
     /// Has the device copy the state as it is after the steps asked for so far; never waits but allocates at its first call.
@@ -39,6 +42,7 @@ class Snapshots {
 
     SnapshotHeader header() const;
     Status check(const SnapshotHeader& header) const;
+    Result<SnapshotHeader> read_and_check(std::span<const std::byte> snapshot) const;
     Status write_fields(const SnapshotHeader& header, std::span<const std::byte> from);
     Status make_buffers();
     Status submit_copies();

@@ -17,6 +17,16 @@ using Bytes = std::vector<unsigned char>;
 
 std::string temporary(const std::string& name) { return (std::filesystem::temp_directory_path() / ("wadi-" + name)).string(); }
 
+// Unfinished files beside `path`.
+int parts_of(const std::string& path) {
+    int count = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(std::filesystem::path(path).parent_path())) {
+        const std::string name = entry.path().string();
+        if (name.starts_with(path) && name.ends_with(".part")) ++count;
+    }
+    return count;
+}
+
 double milliseconds_of(const auto& call) {
     const auto start = std::chrono::steady_clock::now();
     call();
@@ -71,7 +81,7 @@ TEST_CASE("load and continue equals never stopped, on every backend, across them
             CHECK(hash_of(other) == expected);
         }
     }
-    CHECK_FALSE(std::filesystem::exists(path + ".part"));
+    CHECK(parts_of(path) == 0);
     std::filesystem::remove(path);
 }
 
@@ -182,7 +192,7 @@ TEST_CASE("bad arguments of saving and loading") {
     std::filesystem::remove(path);
     std::filesystem::create_directory(path);
     CHECK(wadi_world_save_file(world.id, path.c_str()) == WADI_ERROR_BAD_FILE);
-    CHECK_FALSE(std::filesystem::exists(path + ".part"));
+    CHECK(parts_of(path) == 0);
     std::filesystem::remove(path);
     CHECK(wadi_world_get_hash(world.id, nullptr) == WADI_ERROR_BAD_ARGUMENT);
     CHECK(wadi_world_begin_save(world.id, nullptr) == WADI_ERROR_BAD_ARGUMENT);

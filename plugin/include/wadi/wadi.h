@@ -394,10 +394,13 @@ WADI_API wadi_result wadi_world_save(wadi_world_id world, void* data, size_t* si
  *  Errors, all leaving the world unchanged: BAD_FILE (no snapshot, a newer version, truncated, changed), BAD_ARGUMENT (of another
  *  level, or with effects that this world's level forces off), OUT_OF_MEMORY, DEVICE_LOST. */
 WADI_API wadi_result wadi_world_load(wadi_world_id world, const void* data, size_t size);
-/** wadi_world_save to a file, written as path + ".part" and renamed when it is whole. Errors: NOT_FOUND (the folder cannot be
- *  written to), BAD_FILE (writing failed). */
+/** wadi_world_save to a file, written beside it under a name that ends in ".part" and that no other call has, brought to the disk and
+ *  renamed when it is whole: also of several savers to one path each leaves a whole file. A process that is killed meanwhile leaves its
+ *  part. Errors, an earlier file unchanged: NOT_FOUND (the folder cannot be written to), BAD_FILE (writing failed, or path is a folder,
+ *  pipe or device). */
 WADI_API wadi_result wadi_world_save_file(wadi_world_id world, const char* path);
-/** wadi_world_load from a file. Errors: NOT_FOUND, and those of wadi_world_load. */
+/** wadi_world_load from a regular file; one larger than any snapshot of this world is refused unread. Errors: NOT_FOUND, and those of
+ *  wadi_world_load. */
 WADI_API wadi_result wadi_world_load_file(wadi_world_id world, const char* path);
 
 /** Asks for a snapshot of the state after the steps asked for so far, or, in the middle of a step that runs in parts, after that
