@@ -13,6 +13,14 @@ constexpr float off = 1e30F;
 constexpr float gravity_cap_off = 1e9F;
 constexpr double steep = 1e9; // slope of a wedge that limits nothing
 
+// Next to nothing: less would not change a bit of what moves, but its inverse does not fit into a float. Below it gravity is
+// none, and sand has this stiffness if it has any.
+constexpr double least_gravity = 1e-15;   // [m/s2]
+constexpr double least_stiffness = 1e-15; // [Pa]
+
+// As a float, within what stages can multiply: neutral values of guards included.
+float bounded(double x) { return static_cast<float>(std::clamp(x, -static_cast<double>(off), static_cast<double>(off))); }
+
 void set_sources(const Settings& s, WorldParams& p) {
     const SourcePieces pieces = source_pieces(s);
     p.source_count = static_cast<int>(s.sources.size());
@@ -44,7 +52,8 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     const auto& m = s.material;
     const auto& w = s.method;
     const FieldLayout layout{s.grid.nx, s.grid.ny};
-    const auto f = [](double x) { return static_cast<float>(x); };
+    const auto f = bounded;
+    const double gravity = s.gravity < least_gravity ? 0 : s.gravity;
     const double dx = s.grid.dx, dt = s.dt, dts = dt / w.substeps, k = dt / dx, ks = dts / dx, quantum = height_quantum(w);
     WorldParams p{};
     p.nx = s.grid.nx;
@@ -63,7 +72,7 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     p.side_kind_north = static_cast<int>(s.sides[SIDE_NORTH].kind);
     p.dx = f(dx);
     p.inv_dx = f(1 / dx);
-    p.gravity = f(s.gravity);
+    p.gravity = f(gravity);
     p.quantum = f(quantum);
     p.inv_quantum = quantum > 0 ? f(1 / quantum) : 0.0F;
     p.inv_ledger_quantum = f(1 / ledger_quantum(w));
@@ -72,18 +81,18 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
 
     p.k = f(k);
     p.water_velocity_clamp = velocity_limit(w, k);
-    p.shock_viscosity = f(w.shock_viscosity * k * std::sqrt(s.gravity));
+    p.shock_viscosity = f(w.shock_viscosity * k * std::sqrt(gravity));
     p.gravity_cap_base = w.gravity_cap > 0 ? f(w.gravity_cap) : gravity_cap_off;
     p.gravity_cap_floor = f(w.gravity_cap_least);
     p.inv_k2 = f(1 / (k * k));
     const double rest_surface = 2 * ledger_quantum(w);
     p.rest_surface = w.rest_rule ? f(rest_surface) : -1.0F;
-    p.rest_velocity = w.rest_rule ? f(1.5 * k * s.gravity * rest_surface) : -1.0F; // rounding of the push does not decide
+    p.rest_velocity = w.rest_rule ? f(1.5 * k * gravity * rest_surface) : -1.0F; // rounding of the push does not decide
     p.diffusion_number = f(std::min(m.diffusion_rate, 0.2 * dx * dx / dt) * dt / (dx * dx));
     p.bed_friction_dt = f(dt * m.bed_friction);
     p.manning = f(m.manning);
-    p.gravity_dt = f(dt * s.gravity);
-    const double submerged = std::max(m.sand_density / m.water_density - 1, 0.05) * s.gravity; // (s - 1) g
+    p.gravity_dt = f(dt * gravity);
+    const double submerged = std::max(m.sand_density / m.water_density - 1, 0.05) * gravity; // (s - 1) g
     p.bed_shear = f(m.bed_shear);
     p.bed_shear_dt = f(dt * m.bed_shear);
     p.bed_shear_threshold = f(0.047 * submerged * m.grain_size);
@@ -116,15 +125,18 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     p.inv_drainable = retains ? f(1 / (1 - m.retention)) : 1.0F;
     p.prestress = w.prestress ? 1.0F : 0.0F;
 
-    double lambda = m.young_modulus * m.poisson_ratio / ((1 + m.poisson_ratio) * (1 - 2 * m.poisson_ratio));
-    double shear = m.young_modulus / (2 * (1 + m.poisson_ratio));
+    const double young = m.young_modulus > 0 ? std::max(m.young_modulus, least_stiffness) : 0;
+    double lambda = young * m.poisson_ratio / ((1 + m.poisson_ratio) * (1 - 2 * m.poisson_ratio));
+    double shear = young / (2 * (1 + m.poisson_ratio));
     if (w.elastic_cap > 0 && lambda + 2 * shear > 0) {
-        const double scale = std::min(1.0, w.elastic_cap * m.sand_density * dx * dx / (dts * dts * (lambda + 2 * shear)));
+        const double stiffness = lambda + 2 * shear,
+                     scale = std::min(1.0, std::max(w.elastic_cap * m.sand_density * dx * dx / (dts * dts * stiffness),
+                                                    least_stiffness / stiffness));
         lambda *= scale;
         shear *= scale;
     }
     const double slope = m.yield_friction * (2 * shear + 2 * lambda);
-    const double weight = m.sand_density * s.gravity;
+    const double weight = m.sand_density * gravity;
     p.lambda = f(lambda);
     p.shear = f(shear);
     p.inv_two_shear = shear > 0 ? f(0.5 / shear) : 0.0F;

@@ -1,4 +1,8 @@
-// Parameters from nothing to far beyond sense: exchange rate, stiffness, cohesion, sources.
+// Parameters from nothing to far beyond sense: every setting's range, exchange rate, stiffness, cohesion, sources.
+#include "backends/registry.hpp"
+#include "engine/settings/messages.hpp"
+#include "engine/settings/setting_table.hpp"
+#include "tests/fuzz/random.hpp"
 #include "tests/stability/quality.hpp"
 
 using namespace wadi;
@@ -28,7 +32,102 @@ Scene jet(double dt) {
     return scene;
 }
 
+/// Everything at once: what a number does not touch cannot tell that it is wrong.
+Scene all_at_once(DragFriction form) {
+    auto scene = mixed_scene(14, 11);
+    auto& material = scene.settings.material;
+    material.bed_shear = 0.1;
+    material.manning = 0.03;
+    auto& method = scene.settings.method;
+    method.largest_height = 64;
+    method.bulk_viscosity = 0.3;
+    method.stress_taper = 0.01;
+    method.drag_friction = form;
+    if (form == DragFriction::sequence) method.strain_transport = StrainTransport::polar;
+    scene.settings.sources = {{SourceShape::disc, SourceMaterial::water, {0.6, 0.9}, 0.5, {}, {{{0, 0.5}}}, true, {3, 0}}};
+    scene.settings.rain = {{{0, 1e-3}}};
+    return scene;
+}
+
+/// Next to nothing, the ends, and what lies between them by decades. Nothing where the setting is no number.
+std::vector<double> ladder(const Setting& row) {
+    if (row.at.kind != SettingKind::number) return {};
+    const auto [least, most] = std::pair{row.values.least, row.values.most};
+    std::vector<double> values = {least, most, 0.5 * most, 1e-3 * most};
+    for (const double value :
+         {5e-324, 1e-300, 1e-100, 1e-50, 1e-45, 1e-42, 1e-39, 1e-38, 1e-37, 1e-30, 1e-24, 1e-20, 1e-15, 1e-10, 1e-6, 1e-3})
+        if (value > least && value < most) values.push_back(value);
+    return values;
+}
+
+/// As messages name it: one saturation is refused for the sake of another.
+std::string name_of(const Setting& row) {
+    const std::string path = row.path;
+    return path.substr(0, path.find('['));
+}
+
+/// What a world does wrong in a few steps, "" if nothing. One that is refused must be told by one of these fields.
+std::string wrong_of(Scene scene, const std::vector<std::string>& fields) {
+    const double width = scene.settings.grid.nx * scene.settings.grid.dx;
+    scene.settings.sources[0].center = {0.2 * width, 0.3 * width};
+    scene.settings.sources[0].radius = 0.2 * width;
+    auto device = backends::open_device("cpu", -1, {});
+    Status valid = validate(scene.settings);
+    if (valid) valid = validate(scene.fields, scene.settings);
+    auto world = valid && device ? World::create(scene.settings, scene.fields, std::move(*device)) : valid;
+    if (!world) {
+        const auto named = [&](const std::string& field) { return world.status().message.find(field) != std::string::npos; };
+        return std::any_of(fields.begin(), fields.end(), named) ? "" : "refused: " + world.status().message;
+    }
+    for (int n = 1; n <= 4; ++n) {
+        step(**world, 1);
+        const auto stats = stats_of(**world);
+        if (stats.largest_water + stats.largest_sand > 0.5 * scene.settings.method.largest_height && stats.not_finite == 0) break;
+        if (!ledger_holds(**world, stats))
+            return std::to_string(stats.not_finite) + " values not finite, water " +
+                   std::to_string(stats.water_quanta - stats.water_initial - stats.ledger.water_in + stats.ledger.water_out) +
+                   " and sand " +
+                   std::to_string(stats.sand_quanta - stats.sand_initial - stats.ledger.sand_in + stats.ledger.sand_out) +
+                   " quanta off after step " + std::to_string(n);
+    }
+    return "";
+}
+
 } // namespace
+
+TEST_CASE("every setting from next to nothing to its end, alone and with others: finite, every quantum in the ledger, or refused "
+          "by name") {
+    std::vector<const Setting*> rows;
+    for (const Setting& row : setting_table())
+        if (!ladder(row).empty()) rows.push_back(&row);
+    for (const auto form : {DragFriction::joint, DragFriction::sequence}) {
+        CAPTURE(static_cast<int>(form));
+        for (const Setting* row : rows) {
+            for (const double value : ladder(*row)) {
+                auto scene = all_at_once(form);
+                row->at.set(scene.settings, value);
+                const auto wrong = wrong_of(scene, {name_of(*row)});
+                CHECK_MESSAGE(wrong.empty(), std::string(row->path) << " " << value << ": " << wrong);
+            }
+        }
+    }
+    for (std::uint64_t seed = 0; seed < (few_steps ? 50 : 1500); ++seed) {
+        fuzz::Random random(seed);
+        auto scene = all_at_once(random.chance(0.3) ? DragFriction::sequence : DragFriction::joint);
+        std::vector<std::string> fields;
+        std::string text;
+        for (int n = random.whole(2, 5); n > 0; --n) {
+            const Setting& row = *rows[random.next() % rows.size()];
+            const auto values = ladder(row);
+            const double value = values[random.next() % values.size()];
+            row.at.set(scene.settings, value);
+            fields.push_back(name_of(row));
+            text += std::string(row.path) + " " + number_text(value) + ", ";
+        }
+        const auto wrong = wrong_of(scene, fields);
+        CHECK_MESSAGE(wrong.empty(), text << wrong);
+    }
+}
 
 TEST_CASE("Young's modulus 0 to 1e12: a pile within its slope keeps every bit, a damp column comes to rest smooth") {
     for (const double modulus : {0.0, 1e2, 1e5, 1e9, 1e12}) {
