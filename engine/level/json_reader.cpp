@@ -33,8 +33,56 @@ std::string reason_of(const std::string& what) {
 }
 
 /// Lists and objects within each other: levels have 7. Reading, copying and printing a value take stack by its depth.
-constexpr int DEPTH_MOST = 32;
-struct TooDeep {};
+constexpr std::size_t DEPTH_MOST = 32;
+
+/// Looks through a text once, before values are made of it. (A parser with a callback looks through a whole list at each end of
+/// one of its elements.)
+class Survey : public nlohmann::json_sax<Json> {
+  public:
+    explicit Survey(const std::string& text) : text_(text) {}
+    const Status& status() const { return status_; }
+
+    bool null() override { return true; }
+    bool boolean(bool) override { return true; }
+    bool number_integer(std::int64_t) override { return true; }
+    bool number_unsigned(std::uint64_t) override { return true; }
+    bool number_float(double, const std::string&) override { return true; }
+    bool string(std::string&) override { return true; }
+    bool binary(binary_t&) override { return true; }
+    bool start_object(std::size_t) override { return go_down(); }
+    bool start_array(std::size_t) override { return go_down(); }
+    bool end_object() override { return go_up(); }
+    bool end_array() override { return go_up(); }
+    bool key(std::string& name) override {
+        if (keys_.size() == 1) key_of_root_ = name;
+        if (keys_.back().insert(name).second) return true;
+        return fail("the key \"" + name + "\" is given twice in one object");
+    }
+    bool parse_error(std::size_t byte, const std::string&, const Json::exception& failure) override {
+        return fail(position_text(text_, byte) + ": " + reason_of(failure.what()));
+    }
+
+  private:
+    bool fail(const std::string& message) {
+        status_ = error(Code::bad_file, message);
+        return false;
+    }
+    bool go_down() {
+        keys_.emplace_back();
+        if (keys_.size() <= DEPTH_MOST) return true;
+        return fail((key_of_root_.empty() ? "the level" : key_of_root_) + " is nested more than " + std::to_string(DEPTH_MOST) +
+                    " deep");
+    }
+    bool go_up() {
+        keys_.pop_back();
+        return true;
+    }
+
+    const std::string& text_;
+    Status status_;
+    std::vector<std::set<std::string>> keys_; // of the objects around, none of a list
+    std::string key_of_root_;
+};
 
 void refuse(Status& status, std::string message) {
     if (status) status = error(Code::bad_file, std::move(message));
@@ -43,30 +91,10 @@ void refuse(Status& status, std::string message) {
 } // namespace
 
 Result<Json> parse_json(const std::string& text) {
-    std::vector<std::set<std::string>> objects;
-    std::string repeated, key_of_root;
-    const auto note_keys = [&](int depth, Json::parse_event_t event, Json& value) {
-        const bool object = event == Json::parse_event_t::object_start;
-        if ((object || event == Json::parse_event_t::array_start) && depth >= DEPTH_MOST) throw TooDeep{};
-        if (event == Json::parse_event_t::key && depth == 1) key_of_root = value.get<std::string>();
-        if (object) objects.emplace_back();
-        if (event == Json::parse_event_t::object_end) objects.pop_back();
-        if (event == Json::parse_event_t::key && !objects.back().insert(value.get<std::string>()).second && repeated.empty())
-            repeated = value.get<std::string>();
-        return true;
-    };
-    try {
-        Json json = Json::parse(text, note_keys, true, true);
-        if (!repeated.empty()) return error(Code::bad_file, "the key \"" + repeated + "\" is given twice in one object");
-        return json;
-    } catch (const TooDeep&) {
-        return error(Code::bad_file, (key_of_root.empty() ? "the level" : key_of_root) + " is nested more than " +
-                                         std::to_string(DEPTH_MOST) + " deep");
-    } catch (const Json::parse_error& failure) {
-        return error(Code::bad_file, position_text(text, failure.byte) + ": " + reason_of(failure.what()));
-    } catch (const Json::exception& failure) {
-        return error(Code::bad_file, reason_of(failure.what()));
-    }
+    constexpr bool strict = true, comments = true, throws = true;
+    Survey survey(text);
+    if (!Json::sax_parse(text, &survey, Json::input_format_t::json, strict, comments)) return survey.status();
+    return Json::parse(text, nullptr, throws, comments);
 }
 
 std::string json_text(const Json& value) {

@@ -2,6 +2,7 @@
 #include "engine/settings/messages.hpp"
 #include "tests/unit/level_text.hpp"
 #include "tests/unit/map_files.hpp"
+#include <chrono>
 #include <doctest/doctest.h>
 #include <fstream>
 #include <iterator>
@@ -55,6 +56,15 @@ TEST_CASE("level errors: nesting") {
     }
     refuses(R"("rain": )" + nested(31, "[", "]"), "rain[0]: expected two numbers"); // negative control: as deep as may be
     refuses(R"("rain": )" + nested(32, "[", "]"), "rain " + too_deep);
+}
+
+// The parser that was here looked through a list at the end of each of its objects: minutes for this one.
+TEST_CASE("level errors: a million layers are counted in seconds") {
+    std::string list = "{}";
+    for (int n = 1; n < 1'000'000; ++n) list += ",{}";
+    const auto start = std::chrono::steady_clock::now();
+    refuses("\"terrain\": [" + list + "]", "terrain: 1000000 elements are more than 256");
+    CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(20));
 }
 
 TEST_CASE("level errors: root") {

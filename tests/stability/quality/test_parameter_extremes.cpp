@@ -4,6 +4,7 @@
 #include "engine/settings/setting_table.hpp"
 #include "tests/fuzz/random.hpp"
 #include "tests/stability/quality.hpp"
+#include <limits>
 
 using namespace wadi;
 using namespace wadi::test;
@@ -195,6 +196,31 @@ TEST_CASE("exchange rate 0 to 1e15: a soaked column runs out with its own energy
     auto stiff = column(1.4);
     stiff.settings.material.exchange_rate = 1e12;
     on_every_backend(stiff, [](World& world) { step(world, 30); });
+}
+
+TEST_CASE("explicit drag whose square leaves the floats: clamped, finite, every quantum in the ledger") {
+    auto scene = flat_scene(16, 12, 1000, 10);
+    auto& material = scene.settings.material;
+    material.exchange_rate = 1e15;
+    material.water_density = material.sand_density = 1;
+    auto& method = scene.settings.method;
+    method.drag_friction = DragFriction::sequence;
+    method.substeps = 1;
+    method.velocity_clamp = 100;
+    method.largest_height = 1024;
+    const auto inside = [](double x, double from, double to) { return x > from && x < to; };
+    scene.fill(scene.fields.sand, [&](double x, double y) { return inside(x, 3e3, 9e3) && inside(y, 3e3, 8e3) ? 40.0 : 0.0; });
+    scene.fill(scene.fields.water, [&](double x, double y) { return inside(x, 5e3, 12e3) && inside(y, 2e3, 7e3) ? 60.0 : 0.0; });
+    scene.fill(scene.fields.velocity_x, [](double, double) { return 9000.0; });
+    scene.fill(scene.fields.velocity_y, [](double, double) { return 1000.0; });
+    const double impulse = scene.settings.dt * material.exchange_rate / material.sand_density * 9000;
+    CHECK(impulse * impulse > static_cast<double>(std::numeric_limits<float>::max()));
+    on_every_backend(scene, [](World& world) {
+        for (int n = 0; n < 4; ++n) {
+            step(world, 1);
+            CHECK(stats_of(world).not_finite == 0);
+        }
+    });
 }
 
 TEST_CASE("a source of 100 m/s: nothing outruns it, no checkerboard; without the gravity cap there is one") {
