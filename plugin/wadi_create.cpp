@@ -53,6 +53,7 @@ LevelOverrides to_overrides(const wadi_level_overrides* o) {
     if (o->accuracy != nullptr) overrides.accuracy = o->accuracy;
     if (o->fused_stages != 0) overrides.fused_stages = o->fused_stages > 0 ? FusedStages::always : FusedStages::never;
     if (o->active_tiles != 0) overrides.active_tiles = o->active_tiles == -1 ? 0 : o->active_tiles;
+    overrides.files = o->any_files != 0 ? FilesFrom::anywhere : FilesFrom::below;
     return overrides;
 }
 
@@ -202,7 +203,10 @@ wadi_result wadi_create_world_from_arrays(const wadi_world_arrays* arrays, const
         if (arrays->settings_json == nullptr || world == nullptr)
             return bad_argument("wadi_create_world_from_arrays: settings_json or world is NULL");
         const ThreadLimit limit(threads_of(options));
-        auto level = parse_level(arrays->settings_json, "", {});
+        const FileReader no_files = [](const std::string& name, std::uint64_t) -> Result<std::vector<std::uint8_t>> {
+            return error(Code::bad_argument, name + ": settings_json may name no files");
+        };
+        auto level = parse_level(arrays->settings_json, no_files, {});
         if (!level) return report(level.status());
         const auto& grid = level->settings.grid;
         if (arrays->nx != grid.nx || arrays->ny != grid.ny) {

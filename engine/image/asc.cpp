@@ -59,8 +59,9 @@ class AscReader {
   public:
     AscReader(std::string_view text, const std::string& name) : words_(text), name_(name) {}
 
-    Result<Map> read() {
+    Result<Map> read(FileRoom* room) {
         Status status = read_header();
+        if (status) status = check_map_size(map_.nx, map_.ny, name_, room);
         if (status) status = read_values();
         if (!status) return status;
         fill_unknown();
@@ -183,8 +184,8 @@ class AscReader {
 
 } // namespace
 
-Result<Map> decode_asc(const std::vector<std::uint8_t>& bytes, const std::string& name) {
-    return AscReader({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name).read();
+Result<Map> decode_asc(const std::vector<std::uint8_t>& bytes, const std::string& name, FileRoom* room) {
+    return AscReader({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name).read(room);
 }
 
 } // namespace wadi

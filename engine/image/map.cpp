@@ -9,6 +9,8 @@
 namespace wadi {
 namespace {
 
+constexpr const char* OUTSIDE = "lies outside the level's folder, where levels may name no files unless their host allows it";
+
 std::string lower_case_ending(const std::string& path) {
     std::string ending = std::filesystem::path(path).extension().string();
     for (char& c : ending)
@@ -41,8 +43,17 @@ int places(int source, int target) { return (source + target - 1) / target; }
 
 } // namespace
 
-Status check_map_size(std::int64_t nx, std::int64_t ny, const std::string& name) {
-    if (nx >= 1 && ny >= 1 && nx <= MAP_LIMIT && ny <= MAP_LIMIT) return ok_status();
+Status FileRoom::take(std::int64_t values, const std::string& name) {
+    if (values > left_)
+        return error(Code::bad_file, name + ": its " + std::to_string(values) + " values are more than the " +
+                                         std::to_string(left_) + " that are left of what a level's files may hold together");
+    left_ -= values;
+    return ok_status();
+}
+
+Status check_map_size(std::int64_t nx, std::int64_t ny, const std::string& name, FileRoom* room) {
+    if (nx >= 1 && ny >= 1 && nx <= MAP_LIMIT && ny <= MAP_LIMIT)
+        return room != nullptr ? room->take(nx * ny, name) : ok_status();
     return error(Code::bad_file, name + ": a map of " + std::to_string(nx) + " x " + std::to_string(ny) + " is outside 1 ... " +
                                      std::to_string(MAP_LIMIT) + " on each side");
 }
@@ -67,25 +78,46 @@ Result<std::vector<std::uint8_t>> read_file_bytes(const std::string& path, std::
     return bytes;
 }
 
-FileReader files_in(const std::string& folder) {
-    return [folder](const std::string& name, std::uint64_t limit) {
-        return read_file_bytes((std::filesystem::path(folder) / name).string(), limit);
+Status check_below(const std::string& name) {
+    const auto outside = [&] { return error(Code::bad_file, name + ": " + OUTSIDE); };
+    if (name.empty() || name[0] == '/' || name[0] == '\\' || (name.size() > 1 && name[1] == ':')) return outside();
+    for (std::size_t begin = 0; begin <= name.size();) {
+        const std::size_t end = std::min(name.find_first_of("/\\", begin), name.size());
+        if (name.compare(begin, end - begin, "..") == 0) return outside();
+        begin = end + 1;
+    }
+    return ok_status();
+}
+
+FileReader files_in(const std::string& folder, FilesFrom from) {
+    return [folder, from](const std::string& name, std::uint64_t limit) -> Result<std::vector<std::uint8_t>> {
+        const auto path = std::filesystem::path(folder) / name;
+        if (from == FilesFrom::below) {
+            if (Status status = check_below(name); !status) return status;
+            std::error_code failure;
+            const auto around = std::filesystem::canonical(folder.empty() ? "." : folder, failure);
+            const auto real = std::filesystem::weakly_canonical(path, failure);
+            if (std::mismatch(around.begin(), around.end(), real.begin(), real.end()).first != around.end())
+                return error(Code::bad_file, name + ": " + OUTSIDE);
+        }
+        return read_file_bytes(path.string(), limit);
     };
 }
 
-Result<Map> read_map(const std::string& path, std::optional<std::pair<int, int>> size, const FileReader& files) {
+Result<Map> read_map(const std::string& path, std::optional<std::pair<int, int>> size, const FileReader& files, FileRoom& room) {
     const std::string ending = lower_case_ending(path);
     const bool raw = ending == ".r16" || ending == ".raw";
     if (!raw && ending != ".png" && ending != ".npy" && ending != ".asc")
         return error(Code::bad_file, path + ": maps end in .png, .r16, .raw, .npy or .asc");
     if (!raw && size) return error(Code::bad_argument, path + ": only .r16 and .raw maps are given a size");
-    // The largest map as float64, and some room for a header.
-    const std::uint64_t limit = std::uint64_t{MAP_LIMIT} * MAP_LIMIT * 8 + 65536;
+    // The largest map as float64 or as text, and some room for a header.
+    const std::uint64_t values = std::min(static_cast<std::uint64_t>(room.left()), std::uint64_t{MAP_LIMIT} * MAP_LIMIT / 2);
+    const std::uint64_t limit = values * 16 + 65536;
     auto bytes = files(path, limit);
     if (!bytes) return bytes.status();
-    if (raw) return decode_r16(*bytes, path, size);
-    if (ending == ".asc") return decode_asc(*bytes, path);
-    return ending == ".png" ? decode_png(*bytes, path) : decode_npy(*bytes, path);
+    if (raw) return decode_r16(*bytes, path, size, &room);
+    if (ending == ".asc") return decode_asc(*bytes, path, &room);
+    return ending == ".png" ? decode_png(*bytes, path, &room) : decode_npy(*bytes, path, &room);
 }
 
 std::vector<float> resample(const Map& map, int nx, int ny) {

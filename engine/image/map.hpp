@@ -22,27 +22,49 @@ struct Map {
     std::vector<float> values; // row-major nx * ny, row 0 in the south
 };
 
+/// Values that the files of one level may hold together. Each file takes its own ahead of being decoded, so that small files
+/// cannot ask for much memory and time.
+class FileRoom {
+  public:
+    explicit FileRoom(std::int64_t values) : left_(values) {}
+    void add(std::int64_t values) { left_ += values; }
+    std::int64_t left() const { return left_; }
+    /// Errors: bad_file, which names the file; nothing is taken then.
+    Status take(std::int64_t values, const std::string& name);
+
+  private:
+    std::int64_t left_;
+};
+
 /// The whole of a file of at most `limit` bytes, by the name that a level gives it. Errors: not_found, bad_file.
 using FileReader = std::function<Result<std::vector<std::uint8_t>>(const std::string& name, std::uint64_t limit)>;
 
-/// Files on disk, relative to a folder.
-FileReader files_in(const std::string& folder);
+enum class FilesFrom : std::uint8_t {
+    below,   // the folder alone, links followed
+    anywhere // that the process can read
+};
+/// Files on disk, relative to a folder. A file elsewhere than `from` says is bad_file, there or not.
+FileReader files_in(const std::string& folder, FilesFrom from);
+
+/// ok, or bad_file for a name that leads out of the folder of who names it: a path from the root or a drive on, or one with "..".
+Status check_below(const std::string& name);
 
 /// Reads a map by the ending of its name: .png, .r16 (or .raw), .npy and .asc. `size` (nx, ny) is what an r16 file holds, square
 /// when absent; for the other formats it must be absent. Errors: not_found, bad_file, bad_argument; the message names the
 /// file.
-Result<Map> read_map(const std::string& path, std::optional<std::pair<int, int>> size, const FileReader& files = files_in(""));
+Result<Map> read_map(const std::string& path, std::optional<std::pair<int, int>> size, const FileReader& files, FileRoom& room);
 
-/// The same from bytes already read; `name` is used in messages.
+/// The same from bytes already read; `name` is used in messages. `room`: null = as large as a map may be.
 /// PNG with 8 or 16 bits: grey, or the luma of a colour image; alpha is ignored. The file's first row is the north.
-Result<Map> decode_png(const std::vector<std::uint8_t>& bytes, const std::string& name);
+Result<Map> decode_png(const std::vector<std::uint8_t>& bytes, const std::string& name, FileRoom* room = nullptr);
 /// Little-endian 16-bit samples without a header. The file's first row is the north.
-Result<Map> decode_r16(const std::vector<std::uint8_t>& bytes, const std::string& name, std::optional<std::pair<int, int>> size);
+Result<Map> decode_r16(const std::vector<std::uint8_t>& bytes, const std::string& name, std::optional<std::pair<int, int>> size,
+                       FileRoom* room = nullptr);
 /// NumPy format 1 and 2, little-endian float32 or float64, C order, shape (ny, nx). The file's first row is the south.
-Result<Map> decode_npy(const std::vector<std::uint8_t>& bytes, const std::string& name);
+Result<Map> decode_npy(const std::vector<std::uint8_t>& bytes, const std::string& name, FileRoom* room = nullptr);
 
 /// Esri ASCII grid with square cells. The file's first row is the north.
-Result<Map> decode_asc(const std::vector<std::uint8_t>& bytes, const std::string& name);
+Result<Map> decode_asc(const std::vector<std::uint8_t>& bytes, const std::string& name, FileRoom* room = nullptr);
 
 /// Bilinear samples at the cell centres of an nx * ny grid over the same rectangle; an exact copy when the sizes are equal.
 std::vector<float> resample(const Map& map, int nx, int ny);
@@ -50,7 +72,7 @@ std::vector<float> resample(const Map& map, int nx, int ny);
 /// The whole of a regular file of at most `limit` bytes.
 Result<std::vector<std::uint8_t>> read_file_bytes(const std::string& path, std::uint64_t limit);
 
-/// ok, or why a map of this size is not accepted.
-Status check_map_size(std::int64_t nx, std::int64_t ny, const std::string& name);
+/// ok, or why a map of this size is not accepted; takes its values from `room`, if there is one.
+Status check_map_size(std::int64_t nx, std::int64_t ny, const std::string& name, FileRoom* room);
 
 } // namespace wadi

@@ -65,7 +65,7 @@ template <class Scalar> Result<Map> read_values(const std::uint8_t* data, int nx
 
 } // namespace
 
-Result<Map> decode_npy(const std::vector<std::uint8_t>& bytes, const std::string& name) {
+Result<Map> decode_npy(const std::vector<std::uint8_t>& bytes, const std::string& name, FileRoom* room) {
     static const std::uint8_t magic[6] = {0x93, 'N', 'U', 'M', 'P', 'Y'};
     if (bytes.size() < PREAMBLE_BYTES + 2 || !std::equal(magic, magic + 6, bytes.begin()))
         return error(Code::bad_file, name + ": not an NPY file");
@@ -91,7 +91,7 @@ Result<Map> decode_npy(const std::vector<std::uint8_t>& bytes, const std::string
     std::vector<std::int64_t> shape;
     if (!tuple(dictionary_value(header, "'shape'"), shape) || shape.size() != 2)
         return error(Code::bad_file, name + ": the shape must be (rows, columns)");
-    if (Status status = check_map_size(shape[1], shape[0], name); !status) return status;
+    if (Status status = check_map_size(shape[1], shape[0], name, room); !status) return status;
 
     const auto nx = static_cast<int>(shape[1]);
     const auto ny = static_cast<int>(shape[0]);

@@ -89,16 +89,17 @@ template <class Sample> std::vector<float> to_grey(const Sample* samples, int nx
 
 } // namespace
 
-Result<Map> decode_png(const std::vector<std::uint8_t>& bytes, const std::string& name) {
+Result<Map> decode_png(const std::vector<std::uint8_t>& bytes, const std::string& name, FileRoom* room) {
     const std::size_t ihdr_end = SIGNATURE_BYTES + 25;
     if (bytes.size() < ihdr_end || bytes.size() > INT_MAX || !std::equal(SIGNATURE.begin(), SIGNATURE.end(), bytes.begin()))
         return error(Code::bad_file, name + ": not a PNG file");
     if (Status status = check_chunks(bytes, name); !status) return status;
     const std::int64_t width = big_endian(&bytes[16]);
     const std::int64_t height = big_endian(&bytes[20]);
-    if (Status status = check_map_size(width, height, name); !status) return status;
+    const auto channels = static_cast<std::int64_t>(channels_of(bytes[25]));
+    if (Status status = check_map_size(width, height, name, nullptr); !status) return status;
     // The header alone decides how much the decoder allocates: the data must be able to fill it.
-    const std::uint64_t row = (static_cast<std::uint64_t>(width) * channels_of(bytes[25]) * bytes[24] + 7) / 8;
+    const std::uint64_t row = (static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(channels) * bytes[24] + 7) / 8;
     const std::uint64_t decoded = (row + 1) * static_cast<std::uint64_t>(height); // a byte per row says how it is filtered
     if (decoded > DEFLATE_LIMIT * bytes.size())
         return error(Code::bad_file, name + ": " + std::to_string(bytes.size()) + " bytes cannot hold the " +
@@ -106,20 +107,22 @@ Result<Map> decode_png(const std::vector<std::uint8_t>& bytes, const std::string
     if (decoded > INT_MAX)
         return error(Code::bad_file, name + ": " + std::to_string(decoded) + " bytes when decoded are more than the " +
                                          std::to_string(INT_MAX) + " bytes of the largest PNG");
+    if (room != nullptr)
+        if (Status status = room->take(width * height * channels, name); !status) return status;
     const auto size = static_cast<int>(bytes.size());
     int nx = 0;
     int ny = 0;
-    int channels = 0;
+    int found = 0;
     Map map;
     map.integer = true;
     stbi__g_failure_reason = nullptr;
     if (stbi_is_16_bit_from_memory(bytes.data(), size) != 0) {
-        const std::unique_ptr<stbi_us, void (*)(void*)> samples(
-            stbi_load_16_from_memory(bytes.data(), size, &nx, &ny, &channels, 1), stbi_image_free);
+        const std::unique_ptr<stbi_us, void (*)(void*)> samples(stbi_load_16_from_memory(bytes.data(), size, &nx, &ny, &found, 1),
+                                                                stbi_image_free);
         if (!samples) return why_not(name);
         map.values = to_grey(samples.get(), nx, ny, 65535.0f);
     } else {
-        const std::unique_ptr<stbi_uc, void (*)(void*)> samples(stbi_load_from_memory(bytes.data(), size, &nx, &ny, &channels, 1),
+        const std::unique_ptr<stbi_uc, void (*)(void*)> samples(stbi_load_from_memory(bytes.data(), size, &nx, &ny, &found, 1),
                                                                 stbi_image_free);
         if (!samples) return why_not(name);
         map.values = to_grey(samples.get(), nx, ny, 255.0f);

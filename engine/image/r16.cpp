@@ -4,7 +4,8 @@
 
 namespace wadi {
 
-Result<Map> decode_r16(const std::vector<std::uint8_t>& bytes, const std::string& name, std::optional<std::pair<int, int>> size) {
+Result<Map> decode_r16(const std::vector<std::uint8_t>& bytes, const std::string& name, std::optional<std::pair<int, int>> size,
+                       FileRoom* room) {
     const std::uint64_t samples = bytes.size() / 2;
     std::int64_t nx = 0;
     std::int64_t ny = 0;
@@ -18,7 +19,7 @@ Result<Map> decode_r16(const std::vector<std::uint8_t>& bytes, const std::string
             return error(Code::bad_file, name + ": " + std::to_string(bytes.size()) +
                                              " bytes is not a square map of 16-bit samples; give its size");
     }
-    if (Status status = check_map_size(nx, ny, name); !status) return status;
+    if (Status status = check_map_size(nx, ny, name, room); !status) return status;
     const auto expected = static_cast<std::uint64_t>(nx * ny) * 2;
     if (bytes.size() != expected)
         return error(Code::bad_file, name + ": " + (bytes.size() < expected ? "truncated, " : "wrong size, ") +

@@ -42,9 +42,8 @@ inline double combined(double current, double value, Combine combine) {
 }
 
 /// A layer's map as its file has it.
-Result<Map> open_map(const MapSource& source, const std::string& path, const FileReader& files,
-                     std::vector<std::string>& warnings) {
-    auto map = read_map(source.file, source.size, files);
+Result<Map> open_map(const MapSource& source, const std::string& path, LevelFiles& files, std::vector<std::string>& warnings) {
+    auto map = read_map(source.file, source.size, files.read, files.room);
     if (!map) // a bad argument of ours is a bad field of the level's author
         return error(map.status().code == Code::bad_argument ? Code::bad_file : map.status().code,
                      path + ".file: " + map.status().message);
@@ -117,7 +116,7 @@ std::vector<const Layer*> pointers(const std::vector<Layer>& first, const std::v
 
 class Drawing {
   public:
-    Drawing(const LayerLists& lists, const LevelGrid& grid, const FileReader& files, InitialFields& fields,
+    Drawing(const LayerLists& lists, const LevelGrid& grid, LevelFiles& files, InitialFields& fields,
             std::vector<std::string>& warnings)
         : lists_(lists), grid_(grid), files_(files), fields_(fields), warnings_(warnings),
           cut_(cut_cells(pointers(lists.sand, lists.water), grid)), map_heights_(lists.sand.size() + lists.water.size()) {}
@@ -300,6 +299,11 @@ class Drawing {
         own.ny = map.ny;
         own.dx = grid_.nx * grid_.dx / map.nx;
         own.stretch_y = grid_.stretch_y * (own.ny * own.dx) / (grid_.ny * grid_.dx);
+        // The map chooses these cells, not the level's grid.
+        const auto layers = static_cast<std::int64_t>(lists_.terrain.size() + lists_.sand.size());
+        if (Status status = files_.room.take(std::int64_t{own.nx} * own.ny * layers, layer.path + ".file: " + layer.map->file);
+            !status)
+            return status;
         InitialFields ground;
         std::vector<std::string> said_already;
         if (Status status = draw_layers({lists_.terrain, lists_.sand, {}}, own, files_, ground, said_already); !status)
@@ -351,7 +355,7 @@ class Drawing {
 
     const LayerLists& lists_;
     const LevelGrid& grid_;
-    const FileReader& files_;
+    LevelFiles& files_;
     InitialFields& fields_;
     std::vector<std::string>& warnings_;
     const std::vector<std::size_t> cut_;                       // by the edges of sand and water
@@ -366,12 +370,12 @@ std::string filled_warning(const Map& map, const std::string& path) {
            " cells hold NODATA_value; they take the height of the nearest cell that has one";
 }
 
-Status draw_layers(const LayerLists& lists, const LevelGrid& grid, const FileReader& files, InitialFields& fields,
+Status draw_layers(const LayerLists& lists, const LevelGrid& grid, LevelFiles& files, InitialFields& fields,
                    std::vector<std::string>& warnings) {
     return Drawing(lists, grid, files, fields, warnings).draw();
 }
 
-Status draw_roughness(std::vector<Layer> layers, const LevelGrid& grid, const FileReader& files, std::vector<float>& roughness,
+Status draw_roughness(std::vector<Layer> layers, const LevelGrid& grid, LevelFiles& files, std::vector<float>& roughness,
                       std::vector<std::string>& warnings) {
     LevelGrid unrounded = grid;
     unrounded.quantum = 0;
@@ -383,7 +387,7 @@ Status draw_roughness(std::vector<Layer> layers, const LevelGrid& grid, const Fi
     return status;
 }
 
-Status draw_velocities(const std::vector<VelocityLayer>& layers, bool of_sand, const LevelGrid& grid, const FileReader& files,
+Status draw_velocities(const std::vector<VelocityLayer>& layers, bool of_sand, const LevelGrid& grid, LevelFiles& files,
                        std::vector<float>& x, std::vector<float>& y, std::vector<std::string>& warnings) {
     for (const VelocityLayer& layer : layers) {
         if (layer.of_sand != of_sand) continue;

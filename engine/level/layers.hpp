@@ -3,6 +3,7 @@
 #include "engine/compute/status.hpp"
 #include "engine/image/map.hpp"
 #include "engine/level/json_reader.hpp"
+#include "engine/level/level_files.hpp"
 #include "engine/level/shapes.hpp"
 #include "engine/settings/settings.hpp"
 #include <optional>
@@ -89,16 +90,16 @@ struct LayerLists {
 /// Draws terrain, sand and water into `fields`; a field without layers is empty. Maps come from `files`. Terrain is what its
 /// layers say at the middle of a cell, sand and water the mean over the cell where an edge runs through it. A layer that changes
 /// no cell is worth a warning.
-Status draw_layers(const LayerLists& lists, const LevelGrid& grid, const FileReader& files, InitialFields& fields,
+Status draw_layers(const LayerLists& lists, const LevelGrid& grid, LevelFiles& files, InitialFields& fields,
                    std::vector<std::string>& warnings);
 
 /// Draws the roughness that layers say at the middles of cells; empty without layers.
-Status draw_roughness(std::vector<Layer> layers, const LevelGrid& grid, const FileReader& files, std::vector<float>& roughness,
+Status draw_roughness(std::vector<Layer> layers, const LevelGrid& grid, LevelFiles& files, std::vector<float>& roughness,
                       std::vector<std::string>& warnings);
 
 /// Draws the velocities of water or of sand at the middles of cells into x and y; both stay empty when no layer sets any. A
 /// layer that changes no cell is worth a warning.
-Status draw_velocities(const std::vector<VelocityLayer>& layers, bool of_sand, const LevelGrid& grid, const FileReader& files,
+Status draw_velocities(const std::vector<VelocityLayer>& layers, bool of_sand, const LevelGrid& grid, LevelFiles& files,
                        std::vector<float>& x, std::vector<float>& y, std::vector<std::string>& warnings);
 
 } // namespace wadi

@@ -4,6 +4,7 @@
 #include "engine/level/settings_reader.hpp"
 #include "engine/level/variants.hpp"
 #include "engine/settings/accuracy_presets.hpp"
+#include <algorithm>
 #include <filesystem>
 #include <new>
 
@@ -28,7 +29,7 @@ void read_version(ObjectReader& root) {
                   std::to_string(version) + " is newer than this build reads, " + std::to_string(FORMAT_VERSION));
 }
 
-Status read_root(const Json& json, const FileReader& files, Level& level, Layers& layers, LevelOverrides& overrides) {
+Status read_root(const Json& json, LevelFiles& files, Level& level, Layers& layers, LevelOverrides& overrides) {
     Status status;
     ObjectReader root(json, "", status);
     read_version(root);
@@ -53,7 +54,7 @@ Status read_root(const Json& json, const FileReader& files, Level& level, Layers
     return status;
 }
 
-Status draw(const Layers& layers, const LevelGrid& grid, const FileReader& files, Level& level) {
+Status draw(const Layers& layers, const LevelGrid& grid, LevelFiles& files, Level& level) {
     InitialFields& fields = level.fields;
     if (Status status = draw_layers(layers, grid, files, fields, level.warnings); !status) return status;
     const auto draw_of = [&](bool sand, std::vector<float>& x, std::vector<float>& y) {
@@ -64,7 +65,19 @@ Status draw(const Layers& layers, const LevelGrid& grid, const FileReader& files
     return draw_roughness(layers.roughness, grid, files, level.settings.roughness, level.warnings);
 }
 
-Result<Level> parse(const std::string& text, const FileReader& files, LevelOverrides overrides) {
+/// The names of files as the level's author may write them.
+FileReader within(const FileReader& read, FilesFrom from) {
+    if (from == FilesFrom::anywhere) return read;
+    return [&read](const std::string& name, std::uint64_t limit) -> Result<std::vector<std::uint8_t>> {
+        if (Status status = check_below(name); !status) return status;
+        return read(name, limit);
+    };
+}
+
+std::int64_t cells_of(const Grid& grid) { return std::int64_t{grid.nx} * grid.ny; }
+
+Result<Level> parse(const std::string& text, const FileReader& read, LevelOverrides overrides) {
+    LevelFiles files{within(read, overrides.files)};
     auto json = parse_json(text);
     if (!json) return json.status();
     Level level;
@@ -75,9 +88,11 @@ Result<Level> parse(const std::string& text, const FileReader& files, LevelOverr
     if (Status status = read_root(*json, files, level, layers, overrides); !status) return status;
     if (overrides.variant) level.name += ", " + *overrides.variant;
     if (Status status = validate(level.settings); !status) return error(Code::bad_file, status.message);
+    const std::int64_t own_cells = cells_of(level.settings.grid);
     auto grid = apply_overrides(overrides, level.settings);
     if (!grid) return grid.status();
     if (Status status = validate(level.settings); !status) return error(Code::bad_argument, status.message);
+    files.room.add(LEVEL_VALUES_PER_CELL * std::max(own_cells, cells_of(level.settings.grid)));
     if (Status status = draw(layers, *grid, files, level); !status) return status;
     if (Status status = validate(level.fields, level.settings); !status) return error(Code::bad_file, status.message);
     for (std::string& warning : level_warnings(level.settings, level.fields)) level.warnings.push_back(std::move(warning));
@@ -95,7 +110,7 @@ Result<Level> parse_level(const std::string& text, const FileReader& files, cons
 }
 
 Result<Level> parse_level(const std::string& text, const std::string& folder, const LevelOverrides& overrides) {
-    return parse_level(text, files_in(folder), overrides);
+    return parse_level(text, files_in(folder, overrides.files), overrides);
 }
 
 Result<Level> load_level(const std::string& path, const LevelOverrides& overrides) {

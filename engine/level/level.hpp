@@ -32,6 +32,9 @@ struct LevelOverrides {
     std::optional<std::string> accuracy;
     std::optional<int> active_tiles;         // Settings::active_tiles
     std::optional<FusedStages> fused_stages; // Settings::fused_stages
+    /// Where the maps and series of the level may lie. By default whoever wrote the level chooses among the files beside it
+    /// alone.
+    FilesFrom files = FilesFrom::below;
 };
 
 /// Reads a level file. Errors: not_found, bad_file (position or field, nearest known key, allowed range).

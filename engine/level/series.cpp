@@ -25,9 +25,10 @@ bool parse_number(std::string_view text, double& number) {
 
 } // namespace
 
-Result<TimeSeries> read_series_file(const std::string& path, const FileReader& files) {
-    auto bytes = files(path, SERIES_BYTES_MOST);
+Result<TimeSeries> read_series_file(const std::string& path, LevelFiles& files) {
+    auto bytes = files.read(path, SERIES_BYTES_MOST);
     if (!bytes) return bytes.status();
+    if (Status status = files.room.take(static_cast<std::int64_t>(bytes->size()), path); !status) return status;
     std::string_view rest(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     TimeSeries series;
     bool heading_allowed = true;
@@ -45,12 +46,14 @@ Result<TimeSeries> read_series_file(const std::string& path, const FileReader& f
             return error(Code::bad_file, path + ": line " + std::to_string(line_number) + " is not \"time,value\"");
         heading_allowed = false;
         if (numbers) series.samples.emplace_back(time, value);
+        if (series.samples.size() > SAMPLES_MOST)
+            return error(Code::bad_file, path + ": more than " + std::to_string(SAMPLES_MOST) + " samples");
     }
     if (series.samples.empty()) return error(Code::bad_file, path + ": holds no \"time,value\" lines");
     return series;
 }
 
-TimeSeries read_series(const Json& value, const std::string& path, const FileReader& files, Status& status) {
+TimeSeries read_series(const Json& value, const std::string& path, LevelFiles& files, Status& status) {
     TimeSeries series;
     if (value.is_object()) {
         ObjectReader reader(value, path, status);

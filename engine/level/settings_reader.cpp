@@ -63,7 +63,7 @@ void read_method(const Json& value, Settings& settings, Status& status) {
     reader.finish();
 }
 
-void read_sides(const Json& value, const FileReader& files, std::array<Side, 4>& sides, Status& status) {
+void read_sides(const Json& value, LevelFiles& files, std::array<Side, 4>& sides, Status& status) {
     ObjectReader reader(value, "sides", status);
     for (std::size_t n = 0; n < sides.size(); ++n) {
         const Json* found = reader.find(side_names()[n].c_str());
@@ -84,7 +84,7 @@ void read_sides(const Json& value, const FileReader& files, std::array<Side, 4>&
     reader.finish();
 }
 
-Source read_source(const Json& value, const std::string& path, const FileReader& files, Status& status) {
+Source read_source(const Json& value, const std::string& path, LevelFiles& files, Status& status) {
     Source source;
     ObjectReader reader(value, path, status);
     int shape = static_cast<int>(SourceShape::disc);
@@ -132,7 +132,7 @@ void read_effects(const Json& value, Settings& settings, Status& status) {
 
 } // namespace
 
-void read_settings(ObjectReader& root, const FileReader& files, Settings& settings) {
+void read_settings(ObjectReader& root, LevelFiles& files, Settings& settings) {
     Status& status = root.status();
     if (const Json* grid = root.require("grid")) read_grid(*grid, settings, status);
     read_rows(root, "", settings);

@@ -57,7 +57,8 @@ Source spring(const std::vector<float>& terrain, const Grid& grid) {
 }
 
 Result<Level> build(const std::string& map_path, const LevelOverrides& overrides) {
-    auto map = read_map(map_path, std::nullopt);
+    FileRoom room(std::int64_t{MAP_LIMIT} * MAP_LIMIT);
+    auto map = read_map(map_path, std::nullopt, files_in("", FilesFrom::anywhere), room); // named by the host
     if (!map) return map.status();
     if (Status status = scale_heights(*map, map_path); !status) return status;
 

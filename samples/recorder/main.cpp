@@ -155,6 +155,7 @@ int main_checked(int argc, char** argv) {
     app.add_option("--variant", options.variant, "a variant of the level (--list-levels shows them)");
     app.add_option("--accuracy", options.accuracy,
                    "draft, balanced or accurate: half, all or twice the cells, two sand substeps; accurate: order 2 for water");
+    app.add_flag("--any-files", options.any_files, "the level may name files outside its folder; for levels that you trust");
     app.add_option("--size", size, "grid NxM instead of the level's; keeps the length in x");
     app.add_option("--dt", options.dt, "water time step [s] instead of the level's")->check(CLI::Range(1e-7, 100.0));
     app.add_option(

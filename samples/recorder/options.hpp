@@ -49,6 +49,8 @@ struct Options {
     std::int32_t active_tiles = 0; // 0 = the level's, -1 = off
     std::int32_t fused_stages = 0; // 0 = the level's, 1 = always, -1 = never
 
+    bool any_files = false; // the level's maps may lie anywhere
+
     double seconds = -1;    // simulated time, -1 = the level's duration
     double every = 0;       // between frames [s], 0 = a tenth of the recording
     double water_scale = 0; // depth drawn in deep blue [m], 0 = derived

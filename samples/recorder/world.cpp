@@ -36,6 +36,7 @@ Failure World::create(const Options& options) {
     overrides.dt = options.dt;
     overrides.active_tiles = options.active_tiles;
     overrides.fused_stages = options.fused_stages;
+    overrides.any_files = options.any_files ? 1 : 0;
     overrides.method = options.method.empty() ? nullptr : options.method.c_str();
     overrides.variant = options.variant.empty() ? nullptr : options.variant.c_str();
     overrides.accuracy = options.accuracy.empty() ? nullptr : options.accuracy.c_str();

@@ -143,6 +143,12 @@ def test_refusals(recorder):
     recorder.refuse(LEVEL, "--seconds", "0.1", "--summary", "a_file/in/summary.json", says=["a_file/in"])
     (recorder.folder / "broken.json").write_text("{ \"name\": ", encoding="utf-8")
     recorder.refuse("broken.json", says=["broken.json"])
+    (recorder.folder / "rain.csv").write_text("0,0.001\n", encoding="utf-8")
+    (recorder.folder / "inner").mkdir()
+    level = {"format_version": 1, "name": "inner", "grid": {"nx": 4, "ny": 4, "dx": 1}, "dt": 0.01, "rain": {"file": "../rain.csv"}}
+    (recorder.folder / "inner" / "level.json").write_text(json.dumps(level), encoding="utf-8")
+    recorder.refuse("inner/level.json", says=["../rain.csv", "outside the level's folder"])
+    recorder.run("inner/level.json", "--any-files", "--backend", recorder.backend, "--print-plan")
 
 
 def test_frames(recorder):

@@ -103,6 +103,33 @@ TEST_CASE("hosts without the file, or that change their mind, and texts that are
     CHECK(id.index == 0);
 }
 
+TEST_CASE("files outside a level's folder are asked for only where the host allows it; settings of arrays name none") {
+    const auto options = cpu_device();
+    const std::string head = R"({"format_version": 1, "name": "files", "grid": {"nx": 4, "ny": 4, "dx": 1}, "dt": 0.01, )";
+    const std::string text = head + R"("rain": {"file": "../rain.csv"}})";
+    Host host;
+    host.files["../rain.csv"] = host.files["rain.csv"] = "0,0.001\n";
+    wadi_world_id id{};
+    CHECK(wadi_create_world_from_level_text(text.c_str(), read_file, &host, nullptr, &options, &id) == WADI_ERROR_BAD_FILE);
+    CHECK(std::string(wadi_get_last_error()).find("rain.file: ../rain.csv: lies outside the level's folder") != std::string::npos);
+    CHECK(host.calls == 0);
+    auto overrides = wadi_default_level_overrides();
+    overrides.any_files = 1;
+    REQUIRE(wadi_create_world_from_level_text(text.c_str(), read_file, &host, &overrides, &options, &id) == WADI_OK);
+    CHECK(host.calls == 2);
+    wadi_destroy_world(id);
+
+    auto arrays = wadi_default_world_arrays();
+    const std::string settings = head + R"("rain": {"file": "rain.csv"}})", plain = head + R"("rain": 0.001})";
+    arrays.nx = arrays.ny = 4;
+    arrays.settings_json = settings.c_str();
+    CHECK(wadi_create_world_from_arrays(&arrays, &options, &id) == WADI_ERROR_BAD_ARGUMENT);
+    CHECK(std::string(wadi_get_last_error()).find("may name no files") != std::string::npos);
+    arrays.settings_json = plain.c_str(); // negative control
+    REQUIRE(wadi_create_world_from_arrays(&arrays, &options, &id) == WADI_OK);
+    wadi_destroy_world(id);
+}
+
 TEST_CASE("level overrides: fused_stages is 1, -1 or 0") {
     auto overrides = wadi_default_level_overrides();
     overrides.nx = overrides.ny = 40;

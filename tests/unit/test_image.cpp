@@ -220,18 +220,22 @@ TEST_CASE("image: damaged ASCII grids are refused with their line") {
 
 TEST_CASE("image: files by the ending of their name") {
     const Folder folder;
-    CHECK(read_map(folder.write("a.PNG", png16(1, 1, {7})), std::nullopt));
-    CHECK(read_map(folder.write("a.r16", words({7}, false)), std::nullopt));
-    CHECK(read_map(folder.write("a.raw", words({7, 8}, false)), std::pair{2, 1}));
-    CHECK(read_map(folder.write("a.Asc", asc(ASC_HEADER, "1 2 3 4 5 6")), std::nullopt));
-    CHECK(read_map(folder.write("a.npy", npy(dictionary("<f4", "(2, 3)"), VALUES)), std::nullopt));
+    const auto read_any = [](const std::string& path, std::optional<std::pair<int, int>> size) {
+        FileRoom room(1000);
+        return read_map(path, size, files_in("", FilesFrom::anywhere), room);
+    };
+    CHECK(read_any(folder.write("a.PNG", png16(1, 1, {7})), std::nullopt));
+    CHECK(read_any(folder.write("a.r16", words({7}, false)), std::nullopt));
+    CHECK(read_any(folder.write("a.raw", words({7, 8}, false)), std::pair{2, 1}));
+    CHECK(read_any(folder.write("a.Asc", asc(ASC_HEADER, "1 2 3 4 5 6")), std::nullopt));
+    CHECK(read_any(folder.write("a.npy", npy(dictionary("<f4", "(2, 3)"), VALUES)), std::nullopt));
 
-    CHECK(read_map(folder.file("none.png"), std::nullopt).status().code == Code::not_found);
-    CHECK(says(message(read_map(folder.file("none.png"), std::nullopt)), "none.png: no such file"));
-    CHECK(says(message(read_map(folder.file("a.jpg"), std::nullopt)), "end in .png, .r16, .raw, .npy or .asc"));
-    CHECK(says(message(read_map(folder.file("a.PNG"), std::pair{1, 1})), "only .r16 and .raw maps are given a size"));
+    CHECK(read_any(folder.file("none.png"), std::nullopt).status().code == Code::not_found);
+    CHECK(says(message(read_any(folder.file("none.png"), std::nullopt)), "none.png: no such file"));
+    CHECK(says(message(read_any(folder.file("a.jpg"), std::nullopt)), "end in .png, .r16, .raw, .npy or .asc"));
+    CHECK(says(message(read_any(folder.file("a.PNG"), std::pair{1, 1})), "only .r16 and .raw maps are given a size"));
     std::filesystem::create_directory(folder.file("folder.png"));
-    CHECK(says(message(read_map(folder.file("folder.png"), std::nullopt)), "not a regular file"));
+    CHECK(says(message(read_any(folder.file("folder.png"), std::nullopt)), "not a regular file"));
     CHECK(says(message(read_file_bytes(folder.file("a.npy"), 10)), "more than the largest accepted file, 10 bytes"));
 }
 

@@ -159,6 +159,66 @@ TEST_CASE("level errors: layers") {
             "cell (0, 0) is 17 m high, above method.largest_height, 16 m");
 }
 
+TEST_CASE("level errors: files outside the level's folder, unless the host allows them") {
+    const Folder folder;
+    const std::string level = folder.file("level");
+    std::filesystem::create_directories(level + "/maps");
+    const auto height = map_files::npy(map_files::dictionary("<f4", "(1, 1)"), std::vector<float>{2});
+    for (const char* name : {"secret.npy", "level/a.npy", "level/maps/b.npy"}) folder.write(name, height);
+    std::filesystem::create_symlink(folder.file("secret.npy"), level + "/out.npy");
+    std::filesystem::create_symlink(folder.path(), level + "/up");
+    std::filesystem::create_symlink("maps/b.npy", level + "/in.npy");
+    LevelOverrides anywhere;
+    anywhere.files = FilesFrom::anywhere;
+    const auto terrain = [](const std::string& file) { return "\"terrain\": [{\"file\": \"" + file + "\"}]"; };
+    for (const std::string file : {"../secret.npy", "maps/../../secret.npy", "maps/../a.npy", "out.npy", "up/secret.npy"}) {
+        refuses(terrain(file), "terrain[0].file: " + file + ": lies outside the level's folder", level);
+        CHECK(at(must(parse(terrain(file), level, anywhere)), must(parse(terrain(file), level, anywhere)).fields.terrain, 3, 3) ==
+              2);
+    }
+    for (const std::string& file : {folder.file("secret.npy"), level + "/a.npy"}) {
+        refuses(terrain(file), "lies outside the level's folder", level);
+        CHECK(parse(terrain(file), level, anywhere));
+    }
+    for (const char* file : {"a.npy", "./a.npy", "maps/b.npy", "in.npy"}) CHECK(parse(terrain(file), level)); // negative control
+    refuses(terrain("../none.npy"), "lies outside", level); // whether there is such a file is not told
+    refuses(R"("rain": {"file": "/etc/passwd"})", "rain.file: /etc/passwd: lies outside", level);
+    refuses(R"("rain": {"file": "..\\..\\rain.csv"})", "lies outside", level);
+    refuses(R"("rain": {"file": "c:rain.csv"})", "lies outside", level);
+    // A host's own reader is not asked for them either.
+    int asked = 0;
+    const FileReader reader = [&](const std::string&, std::uint64_t) -> Result<map_files::Bytes> { return ++asked, height; };
+    CHECK_FALSE(parse_level(level_text::level(terrain("../secret.npy")), reader, {}));
+    CHECK(asked == 0);
+    CHECK(parse_level(level_text::level(terrain("../secret.npy")), reader, anywhere));
+    CHECK(asked == 1);
+}
+
+TEST_CASE("level errors: the files of a level hold so much together, told before they are decoded") {
+    const Folder folder;
+    folder.write("map.png", map_files::png_of_zeros(4096, 4096, 8, 2)); // 3/4 of what a level of few cells may name
+    folder.write("wide.png", map_files::png_of_zeros(8192, 8192, 16, 6));
+    folder.write("small.npy", map_files::npy(map_files::dictionary("<f4", "(1, 1)"), std::vector<float>{1}));
+    const std::string layer = R"({"file": "map.png", "max": 1})", water = R"("water": [{"file": "map.png", "max": 1}])";
+    const auto start = std::chrono::steady_clock::now();
+    refuses("\"terrain\": [" + layer + "," + layer + "]",
+            "terrain[1].file: map.png: its 50331648 values are more than the 16778496", folder.path());
+    refuses(R"("terrain": [{"file": "wide.png", "max": 1}])", "its 268435456 values are more than the 67110144", folder.path());
+    // A map of depths has what lies below it drawn on its own cells.
+    refuses(R"("terrain": [{"shape": "plane", "height": 0}, {"shape": "plane", "height": 0}], )" + water,
+            "water[0].file: map.png: its 33554432 values", folder.path());
+    std::string series = "time,value\n";
+    for (int n = 0; n <= 1'000'000; ++n) series += std::to_string(n) + ",0\n";
+    folder.write("long.csv", series);
+    refuses(R"("rain": {"file": "long.csv"})", "rain.file: long.csv: more than 1000000 samples", folder.path());
+    CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(60));
+    CHECK(parse("\"terrain\": [" + layer + "]", folder.path())); // negative controls
+    const auto larger =
+        parse_level(level_text::level("\"terrain\": [" + layer + "," + layer + "]", R"({"nx": 2048, "ny": 1024, "dx": 1})"),
+                    folder.path(), {});
+    CHECK_MESSAGE(larger, message(larger));
+}
+
 TEST_CASE("level errors: maps") {
     const Folder folder;
     folder.write("good.png", map_files::png16(2, 2, {0, 1, 2, 3}));

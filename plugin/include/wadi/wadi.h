@@ -104,6 +104,8 @@ typedef struct wadi_level_overrides {
                                   awake, 0 = as 1 in large grids on GPUs. Tiles in which nothing changes any more are left out of a
                                   step; every bit stays, also in snapshots */
     int32_t fused_stages;      /* 1 = several stages in one pass wherever the effects allow, -1 = one by one. Every bit stays */
+    int32_t any_files;         /* 1 = maps and series may lie anywhere that the process can read; 0 = in the level's folder and below it
+                                  alone, links followed: no "..", no path from the root on. For levels of one's own */
 } wadi_level_overrides;
 WADI_API wadi_level_overrides wadi_default_level_overrides(void);
 
@@ -125,7 +127,7 @@ WADI_API wadi_result wadi_create_world_from_level(const char* path, const wadi_l
                                                   const wadi_device_options* options, wadi_world_id* world);
 
 /** A world from arrays: settings as the text of a level file without its "terrain", "sand", "water", "velocities"
- *  and "roughness" entries, and fields of nx * ny floats. NULL = zero everywhere. */
+ *  and "roughness" entries, which may name no files, and fields of nx * ny floats. NULL = zero everywhere. */
 typedef struct wadi_world_arrays {
     uint32_t struct_size;
     const char* settings_json; /* must not be NULL */
@@ -617,7 +619,7 @@ WADI_API wadi_result wadi_world_play_commands(wadi_world_id world, const void* d
 
 /** Reads a file that a level names, for the host's own file system. Called with data NULL first: sets *size to the file's bytes;
  *  then with room for *size bytes: fills it and sets *size to what it wrote. Returns 1, or 0 where there is no such file. `name` is
- *  as the level writes it, '/' between folders. Called only inside wadi_create_world_from_level_text, on its thread. */
+ *  as the level writes it, '/' between folders, and never leads out of the level's folder but with overrides.any_files. Called only inside wadi_create_world_from_level_text, on its thread. */
 typedef int32_t (*wadi_read_file_callback)(void* user, const char* name, void* data, size_t* size);
 
 /** A world from the text of a level file. Maps and series that it names come from read_file; with read_file NULL the text may name
