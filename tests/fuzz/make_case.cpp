@@ -242,6 +242,8 @@ Case make_case(std::uint64_t seed) {
     if (random.chance(0.1)) s.roughness = drawn(s.grid, relief(random, s.grid, random.log(1e-3, 1)));
     for (Side& side : s.sides)
         if (side.kind == SideKind::discharge && random.chance(0.5)) side.depth = random.log(1e-3, 2) * size;
+    if (s.method.name == "published" && random.chance(0.2)) s.method.outflow_limiter = false;
+    if (random.chance(0.2)) c.at_ends = draw_ends(random, c);
     return c;
 }
 

@@ -98,6 +98,7 @@ std::string wrong_of(Scene scene, const std::vector<std::string>& fields) {
 
 TEST_CASE("every setting from next to nothing to its end, alone and with others: finite, every quantum in the ledger, or refused "
           "by name") {
+    int worlds = 0;
     std::vector<const Setting*> rows;
     for (const Setting& row : setting_table())
         if (!ladder(row).empty()) rows.push_back(&row);
@@ -107,6 +108,7 @@ TEST_CASE("every setting from next to nothing to its end, alone and with others:
             for (const double value : ladder(*row)) {
                 auto scene = all_at_once(form);
                 row->at.set(scene.settings, value);
+                ++worlds;
                 const auto wrong = wrong_of(scene, {name_of(*row)});
                 CHECK_MESSAGE(wrong.empty(), std::string(row->path) << " " << value << ": " << wrong);
             }
@@ -125,9 +127,11 @@ TEST_CASE("every setting from next to nothing to its end, alone and with others:
             fields.push_back(name_of(row));
             text += std::string(row.path) + " " + number_text(value) + ", ";
         }
+        ++worlds;
         const auto wrong = wrong_of(scene, fields);
         CHECK_MESSAGE(wrong.empty(), text << wrong);
     }
+    MESSAGE(worlds, " worlds");
 }
 
 TEST_CASE("Young's modulus 0 to 1e12: a pile within its slope keeps every bit, a damp column comes to rest smooth") {
