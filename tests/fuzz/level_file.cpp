@@ -62,7 +62,10 @@ Json source_of(const Source& source) {
         json["center"] = source.center;
     }
     if (source.shape == SourceShape::disc) json["radius"] = source.radius;
-    json["rate"] = series(source.rate);
+    if (source.discharge.samples.empty())
+        json["rate"] = series(source.rate);
+    else
+        json["discharge"] = series(source.discharge);
     if (source.set_velocity) json["velocity"] = source.velocity;
     return json;
 }

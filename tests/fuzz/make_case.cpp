@@ -242,6 +242,11 @@ Case make_case(std::uint64_t seed) {
     if (random.chance(0.1)) s.roughness = drawn(s.grid, relief(random, s.grid, random.log(1e-3, 1)));
     for (Side& side : s.sides)
         if (side.kind == SideKind::discharge && random.chance(0.5)) side.depth = random.log(1e-3, 2) * size;
+    for (Source& source : s.sources) {
+        if (!random.chance(0.2)) continue;
+        source.discharge = {{{0, source.rate.samples[0].second * s.grid.dx * s.grid.dx * random.real(0.5, 20)}}};
+        source.rate = {};
+    }
     if (s.method.name == "published" && random.chance(0.2)) s.method.outflow_limiter = false;
     if (random.chance(0.2)) c.at_ends = draw_ends(random, c);
     return c;

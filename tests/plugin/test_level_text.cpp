@@ -111,7 +111,8 @@ TEST_CASE("files outside a level's folder are asked for only where the host allo
     host.files["../rain.csv"] = host.files["rain.csv"] = "0,0.001\n";
     wadi_world_id id{};
     CHECK(wadi_create_world_from_level_text(text.c_str(), read_file, &host, nullptr, &options, &id) == WADI_ERROR_BAD_FILE);
-    CHECK(std::string(wadi_get_last_error()).find("rain.file: ../rain.csv: lies outside the level's folder") != std::string::npos);
+    CHECK(std::string(wadi_get_last_error()).find("rain.file: ../rain.csv: lies outside the level's folder") !=
+          std::string::npos);
     CHECK(host.calls == 0);
     auto overrides = wadi_default_level_overrides();
     overrides.any_files = 1;
