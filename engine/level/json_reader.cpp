@@ -37,9 +37,9 @@ constexpr std::size_t DEPTH_MOST = 32;
 
 /// Looks through a text once, before values are made of it. (A parser with a callback looks through a whole list at each end of
 /// one of its elements.)
-class Survey : public nlohmann::json_sax<Json> {
+class TextSurvey : public nlohmann::json_sax<Json> {
   public:
-    explicit Survey(const std::string& text) : text_(text) {}
+    explicit TextSurvey(const std::string& text) : text_(text) {}
     const Status& status() const { return status_; }
 
     bool null() override { return true; }
@@ -92,7 +92,7 @@ void refuse(Status& status, std::string message) {
 
 Result<Json> parse_json(const std::string& text) {
     constexpr bool strict = true, comments = true, throws = true;
-    Survey survey(text);
+    TextSurvey survey(text);
     if (!Json::sax_parse(text, &survey, Json::input_format_t::json, strict, comments)) return survey.status();
     return Json::parse(text, nullptr, throws, comments);
 }

@@ -19,7 +19,7 @@ constexpr double least_gravity = 1e-15;   // [m/s2]
 constexpr double least_stiffness = 1e-15; // [Pa]
 
 // As a float, within what stages can multiply: neutral values of guards included.
-float bounded(double x) { return static_cast<float>(std::clamp(x, -static_cast<double>(off), static_cast<double>(off))); }
+float as_float(double x) { return static_cast<float>(std::clamp(x, -static_cast<double>(off), static_cast<double>(off))); }
 
 void set_sources(const Settings& s, WorldParams& p) {
     const SourcePieces pieces = source_pieces(s);
@@ -52,7 +52,7 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     const auto& m = s.material;
     const auto& w = s.method;
     const FieldLayout layout{s.grid.nx, s.grid.ny};
-    const auto f = bounded;
+    const auto f = as_float;
     const double gravity = s.gravity < least_gravity ? 0 : s.gravity;
     const double dx = s.grid.dx, dt = s.dt, dts = dt / w.substeps, k = dt / dx, ks = dts / dx, quantum = height_quantum(w);
     WorldParams p{};
