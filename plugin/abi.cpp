@@ -4,23 +4,30 @@ namespace wadi::plugin {
 
 namespace {
 
-thread_local std::string last;
+// A host may call from destructors that run after those of its thread's variables: then errors have no text.
+thread_local bool text_gone = false;
+struct LastError {
+    std::string text;
+    ~LastError() { text_gone = true; }
+};
+thread_local LastError last;
 
 } // namespace
 
-const std::string& last_error() { return last; }
+const char* last_error() { return text_gone ? "" : last.text.c_str(); }
 
 wadi_result report_out_of_memory(const char* function) noexcept {
+    if (text_gone) return WADI_ERROR_OUT_OF_MEMORY;
     try {
-        last = std::string(function) + ": out of memory";
+        last.text = std::string(function) + ": out of memory";
     } catch (const std::bad_alloc&) {
-        last.clear();
+        last.text.clear();
     }
     return WADI_ERROR_OUT_OF_MEMORY;
 }
 
 wadi_result report(const Status& status) {
-    last = status ? std::string() : status.message;
+    if (!text_gone) last.text = status ? std::string() : status.message;
     switch (status.code) {
     case Code::ok:
         return WADI_OK;

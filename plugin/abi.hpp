@@ -1,10 +1,12 @@
 // What every file of the C ABI uses: handles and sizes checked, Status turned into codes, exceptions caught.
 #pragma once
+#include "engine/compute/float_environment.hpp"
 #include "engine/threads/bands.hpp"
 #include "plugin/include/wadi/wadi.h"
 #include "plugin/world_table.hpp"
 #include <algorithm>
 #include <cstring>
+#include <cxxabi.h>
 #include <new>
 #include <string>
 
@@ -12,21 +14,33 @@ namespace wadi::plugin {
 
 /// Keeps the message for wadi_get_last_error() of this thread.
 wadi_result report(const Status& status);
-const std::string& last_error();
+const char* last_error();
 
 /// WADI_ERROR_OUT_OF_MEMORY, with a text where there is memory for one.
 wadi_result report_out_of_memory(const char* function) noexcept;
 
 inline wadi_result bad_argument(const std::string& message) { return report(error(Code::bad_argument, message)); }
 
-// No exception may reach a host: what the standard library throws becomes an error.
+#if defined(__GLIBCXX__)
+using ThreadCancelled = abi::__forced_unwind; // thrown on by whoever catches it
+#else
+struct ThreadCancelled {};
+#endif
+
+/// No exception may reach a host: whatever is thrown, by its callbacks too, becomes an error. The library's floating-point
+/// environment holds within.
 template <class Call> wadi_result guarded(const char* function, Call call) {
+    const compute::DefaultFloats floats;
     try {
         return call();
     } catch (const std::bad_alloc&) {
         return report_out_of_memory(function);
     } catch (const std::exception& e) {
         return report(error(Code::internal, std::string(function) + ": " + e.what()));
+    } catch (const ThreadCancelled&) {
+        throw;
+    } catch (...) {
+        return report(error(Code::internal, std::string(function) + ": an exception of unknown type"));
     }
 }
 
@@ -35,7 +49,8 @@ inline wadi_result refused(const char* function, Entry entry) {
     return entry == Entry::busy
                ? report(error(Code::busy, std::string(function) + ": another call is inside this world; a world is used by one "
                                                                   "thread at a time"))
-               : bad_argument(std::string(function) + ": the world id is null or its world was destroyed");
+               : bad_argument(std::string(function) +
+                              ": the world id is null, its world was destroyed, or it is from before a fork");
 }
 
 // The world is marked as in use for as long as the call lasts; no lock is held.

@@ -15,8 +15,11 @@ namespace {
 compute::Log to_log(const wadi_device_options* options) {
     if (options == nullptr || options->log == nullptr) return {};
     return [log = options->log, user = options->log_user](int severity, const std::string& message) {
+        const compute::DefaultFloats kept; // whatever the host's code sets
         try {
             log(user, severity, message.c_str());
+        } catch (const ThreadCancelled&) {
+            throw;
         } catch (...) {
         }
     };
@@ -64,6 +67,7 @@ constexpr const char* unknown_fused_stages = ": overrides.fused_stages is neithe
 // The host's files: asked for their size first, then for their bytes.
 FileReader host_files(wadi_read_file_callback read_file, void* user) {
     return [=](const std::string& name, std::uint64_t limit) -> Result<std::vector<std::uint8_t>> {
+        const compute::DefaultFloats kept; // whatever the host's code sets
         std::size_t size = 0;
         if (read_file == nullptr || read_file(user, name.c_str(), nullptr, &size) == 0)
             return error(Code::not_found, name + (read_file == nullptr ? ": read_file is NULL" : ": read_file does not know it"));

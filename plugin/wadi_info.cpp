@@ -10,7 +10,7 @@ extern "C" {
 
 uint32_t wadi_get_abi_version(void) { return WADI_ABI_VERSION; }
 
-const char* wadi_get_last_error(void) { return last_error().c_str(); }
+const char* wadi_get_last_error(void) { return last_error(); }
 
 wadi_world_info wadi_default_world_info(void) { return sized<wadi_world_info>(); }
 

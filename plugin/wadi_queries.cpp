@@ -71,6 +71,7 @@ wadi_result wadi_world_get_query(wadi_world_id id, uint64_t ticket, wadi_query_r
 }
 
 wadi_body wadi_default_body(void) {
+    const compute::DefaultFloats floats;
     auto b = sized<wadi_body>();
     const Body body;
     b.orientation[3] = 1;

@@ -1,6 +1,23 @@
 #include "plugin/world_table.hpp"
+#include <atomic>
+#if !defined(_WIN32)
+#include <unistd.h>
+#endif
 
 namespace wadi::plugin {
+
+namespace {
+
+// Of all tables, so that an id from before a fork is none of the child's.
+std::atomic<std::uint32_t> newest_generation{0};
+
+#if defined(_WIN32)
+long this_process() { return 0; } // never forks
+#else
+long this_process() { return getpid(); }
+#endif
+
+} // namespace
 
 wadi_world_id WorldTable::add(HostedWorld hosted) {
     const std::lock_guard lock(mutex_);
@@ -8,7 +25,7 @@ wadi_world_id WorldTable::add(HostedWorld hosted) {
     while (n < slots_.size() && slots_[n].hosted) ++n;
     if (n == slots_.size()) slots_.emplace_back();
     auto& slot = slots_[n];
-    ++slot.generation;
+    slot.generation = ++newest_generation;
     slot.hosted = std::make_unique<HostedWorld>(std::move(hosted));
     return {static_cast<std::uint32_t>(n + 1), slot.generation};
 }
@@ -42,9 +59,14 @@ Entry WorldTable::remove(wadi_world_id id) {
     return Entry::entered;
 }
 
+// Never destroyed: other threads of the host may be inside a call when the process ends. A forked child has a table of its own,
+// since it has none of the threads that its parent's worlds need.
 WorldTable& worlds() {
-    static WorldTable table;
-    return table;
+    static std::atomic<WorldTable*> newest{nullptr};
+    WorldTable* table = newest.load();
+    if (table != nullptr && table->process() == this_process()) return *table;
+    auto mine = std::make_unique<WorldTable>(this_process(), table);
+    return newest.compare_exchange_strong(table, mine.get()) ? *mine.release() : *table;
 }
 
 } // namespace wadi::plugin

@@ -25,6 +25,10 @@ enum class Entry { entered, unknown, busy };
 
 class WorldTable {
   public:
+    /// `inherited`: that of the parent process, or null.
+    WorldTable(long process, WorldTable* inherited) : process_(process), inherited_(inherited) {}
+    /// Whose worlds these are.
+    long process() const { return process_; }
     wadi_world_id add(HostedWorld hosted);
     /// Only one caller is inside a world at a time; one that entered must leave.
     Entry enter(wadi_world_id id, HostedWorld*& hosted);
@@ -40,7 +44,9 @@ class WorldTable {
     /// Null when the id is not of a living world. The mutex must be held.
     Slot* find(wadi_world_id id);
 
-    std::mutex mutex_; // held to look worlds up, not while one is used
+    const long process_;
+    WorldTable* const inherited_; // kept for tools that look for lost memory
+    std::mutex mutex_;            // held to look worlds up, not while one is used
     std::vector<Slot> slots_;
 };
 
@@ -63,6 +69,7 @@ class EnteredWorld {
     const Entry entry_;
 };
 
+/// Of this process.
 WorldTable& worlds();
 
 } // namespace wadi::plugin

@@ -1,6 +1,7 @@
 #include "backends/cpu/device.hpp"
 #include "backends/cpu/backend.hpp"
 #include "backends/cpu/host_memory.hpp"
+#include "engine/compute/float_environment.hpp"
 #include "engine/compute/hazards.hpp"
 #include <algorithm>
 #include <chrono>
@@ -22,11 +23,10 @@ std::int64_t area(const compute::Range2& r) { return std::int64_t{std::max(0, r.
 
 } // namespace
 
-CpuDevice::CpuDevice(const InstructionSet& set, int threads, const compute::DeviceOptions& options)
-    : set_(set), pool_(threads), full_barriers_(options.full_barriers) {
+CpuDevice::CpuDevice(const InstructionSet& set, const compute::DeviceOptions& options)
+    : set_(set), full_barriers_(options.full_barriers) {
     capabilities_.backend = "cpu";
     capabilities_.name = processor_name();
-    capabilities_.driver = std::string(set.name) + ", " + std::to_string(threads) + (threads == 1 ? " thread" : " threads");
     capabilities_.kind = compute::DeviceKind::cpu;
     capabilities_.memory_bytes = physical_memory();
     capabilities_.largest_buffer_bytes =
@@ -36,7 +36,14 @@ CpuDevice::CpuDevice(const InstructionSet& set, int threads, const compute::Devi
     capabilities_.half_storage = true;
     capabilities_.fused_stages = true;
     capabilities_.queue_depth = most_in_flight;
+}
+
+// The device thread comes first: without it nothing runs, without others all does.
+void CpuDevice::start(int threads) {
     runner_ = std::thread([this] { device_thread(); });
+    pool_.emplace(threads);
+    const int got = pool_->size();
+    capabilities_.driver = std::string(set_.name) + ", " + std::to_string(got) + (got == 1 ? " thread" : " threads");
 }
 
 CpuDevice::~CpuDevice() {
@@ -45,7 +52,7 @@ CpuDevice::~CpuDevice() {
         stop_ = true;
     }
     changed_.notify_all();
-    runner_.join();
+    if (runner_.joinable()) runner_.join();
 }
 
 Result<compute::Buffer> CpuDevice::create_buffer(const compute::BufferDesc& desc) {
@@ -143,7 +150,7 @@ Result<compute::Program> CpuDevice::compile(const compute::ProgramBuilder& build
             step.input = static_cast<std::size_t>(d->input);
             step.extent = stage.extent;
             set_content(*d, stage, params, step);
-            step.rows_per_grab = std::max(1, step.rows() / (8 * pool_.size()));
+            step.rows_per_grab = std::max(1, step.rows() / (8 * pool_->size()));
             if (d->tiles.on()) {
                 if (auto status = set_active(*d, stage, params, step); !status) return status;
             }
@@ -257,6 +264,7 @@ Result<std::vector<compute::Timing>> CpuDevice::timings(compute::Ticket ticket) 
 }
 
 void CpuDevice::device_thread() {
+    const compute::DefaultFloats floats;
     std::unique_lock lock(mutex_);
     for (;;) {
         changed_.wait(lock, [this] { return stop_ || !queue_.empty(); });
@@ -350,10 +358,10 @@ void CpuDevice::execute(Recorded& program, std::span<const StepInput> inputs, st
         }
         for (; waited < count; ++waited) program.progress[waited].rows.wait();
     };
-    if (program.small || pool_.size() == 1) {
+    if (program.small || pool_->size() == 1) {
         work();
     } else {
-        pool_.run(std::ref(work)); // allocates nothing: nobody could catch it here
+        pool_->run(std::ref(work)); // allocates nothing: nobody could catch it here
     }
     for (std::size_t n = 1; n < stamps.size(); ++n) {
         timings.push_back(
@@ -379,8 +387,9 @@ const backends::Backend& cpu_backend() {
                              "this processor or build has no instruction set '" + options.instruction_set + "'");
             const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
             try {
-                return std::unique_ptr<compute::Device>(
-                    new CpuDevice(*set, options.threads == 0 ? std::min(cores, most_threads) : options.threads, options));
+                auto device = std::make_unique<CpuDevice>(*set, options);
+                device->start(options.threads == 0 ? std::min(cores, most_threads) : options.threads);
+                return std::unique_ptr<compute::Device>(std::move(device));
             } catch (const std::exception& e) { // the system refuses threads or memory
                 return error(Code::out_of_memory, std::string("the CPU device cannot start: ") + e.what());
             }

@@ -12,14 +12,18 @@
 #include <deque>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 namespace wadi::cpu {
 
 class CpuDevice final : public compute::Device {
   public:
-    CpuDevice(const InstructionSet& set, int threads, const compute::DeviceOptions& options);
+    CpuDevice(const InstructionSet& set, const compute::DeviceOptions& options);
     ~CpuDevice() override;
+    /// Before anything else: starts the device thread and `threads` - 1 others, or as many as the system gives. Throws
+    /// std::system_error where it gives none.
+    void start(int threads);
 
     const compute::Capabilities& capabilities() const override { return capabilities_; }
     compute::DeviceCounters counters() const override { return counters_; }
@@ -104,7 +108,7 @@ class CpuDevice final : public compute::Device {
     static void run_rows(Step& step, const WorldParams& params, const StepInput& input, int first, int last);
 
     const InstructionSet& set_;
-    ThreadPool pool_;
+    std::optional<ThreadPool> pool_;
     const bool full_barriers_;
     compute::Capabilities capabilities_;
     compute::DeviceCounters counters_;

@@ -1,4 +1,6 @@
 #include "backends/cpu/thread_pool.hpp"
+#include "engine/compute/float_environment.hpp"
+#include <exception>
 
 namespace wadi::cpu {
 
@@ -34,7 +36,10 @@ void Remaining::wait() const {
 }
 
 ThreadPool::ThreadPool(int threads) {
-    for (int t = 1; t < threads; ++t) workers_.emplace_back([this] { worker(); });
+    try {
+        while (size() < threads) workers_.emplace_back([this] { worker(); });
+    } catch (const std::exception&) { // no more threads, or no memory for them: those that there are do the work
+    }
 }
 
 ThreadPool::~ThreadPool() {
@@ -64,6 +69,7 @@ bool ThreadPool::enter(std::uint64_t& seen) {
 }
 
 void ThreadPool::worker() {
+    const compute::DefaultFloats floats;
     std::uint64_t seen = 0;
     while (!stop_.load()) {
         if (!enter(seen)) continue;

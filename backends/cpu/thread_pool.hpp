@@ -24,7 +24,7 @@ class Remaining {
 
 class ThreadPool {
   public:
-    /// `threads` in all, the caller of run() being one of them.
+    /// `threads` in all, the caller of run() being one of them; fewer where the system refuses some.
     explicit ThreadPool(int threads);
     ~ThreadPool();
     ThreadPool(const ThreadPool&) = delete;

@@ -194,12 +194,14 @@ Status Snapshots::end_save(std::uint64_t ticket, std::span<std::byte> to) {
         return error(Code::bad_argument, "end_save: size is " + std::to_string(to.size()) + ", the snapshot needs " +
                                              std::to_string(*bytes) + " bytes");
     }
-    if (!state_.lost()) return state_.lost();
+    // What the worker was given no loss of the device takes away.
+    if (waits_for_ != Waits::worker && !state_.lost()) return state_.lost();
     if (waits_for_ == Waits::device && state_.device().finished(copied_)) {
         if (auto status = state_.device().wait(copied_); !status) return status;
         to_ = to.first(*bytes);
+        if (auto status = worker_.start([this] { assemble(); }); !status)
+            return error(status.code, "end_save: " + status.message);
         waits_for_ = Waits::worker;
-        worker_.start([this] { assemble(); });
     } else if (waits_for_ == Waits::worker) {
         if (to.data() != to_.data()) return error(Code::bad_argument, "end_save: data differs from that of the earlier calls");
         if (!worker_.busy()) {

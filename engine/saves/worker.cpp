@@ -1,4 +1,6 @@
 #include "engine/saves/worker.hpp"
+#include "engine/compute/float_environment.hpp"
+#include <exception>
 
 namespace wadi {
 
@@ -11,15 +13,21 @@ Worker::~Worker() {
     thread_.join();
 }
 
-void Worker::start(std::function<void()> job) {
+Status Worker::start(std::function<void()> job) {
+    try {
+        if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
+    } catch (const std::exception& e) {
+        return error(Code::out_of_memory, std::string("no thread: ") + e.what());
+    }
     job_ = std::move(job);
     busy_.store(true, std::memory_order_relaxed);
     jobs_.fetch_add(1, std::memory_order_release);
     jobs_.notify_one();
-    if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
+    return ok_status();
 }
 
 void Worker::run() {
+    const compute::DefaultFloats floats;
     for (unsigned done = 0;; ++done) {
         jobs_.wait(done, std::memory_order_acquire);
         if (stop_) return;

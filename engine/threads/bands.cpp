@@ -1,4 +1,5 @@
 #include "engine/threads/bands.hpp"
+#include "engine/compute/float_environment.hpp"
 #include <algorithm>
 #include <atomic>
 #include <exception>
@@ -43,6 +44,7 @@ void in_bands(std::size_t count, std::size_t band,
         const std::size_t threads = std::min(allowed_threads(), bands);
         while (others.size() + 1 < threads)
             others.emplace_back([&] {
+                const compute::DefaultFloats floats;
                 const ThreadLimit alone(1); // bands within a band are its own
                 share();
             });

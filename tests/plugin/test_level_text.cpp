@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <wadi/wadi.h>
 
@@ -143,4 +144,18 @@ TEST_CASE("level overrides: fused_stages is 1, -1 or 0") {
         if (!known) CHECK(std::string(wadi_get_last_error()).find("fused_stages") != std::string::npos);
         if (known) CHECK(wadi_destroy_world(world) == WADI_OK);
     }
+}
+
+TEST_CASE("what a host's read_file throws, of any type, becomes an error") {
+    const auto options = cpu_device();
+    const auto text = contents(canyon + "level.json");
+    wadi_world_id world{7, 7};
+    const auto throws_int = [](void*, const char*, void*, size_t*) -> int32_t { throw 42; };
+    const auto throws_text = [](void*, const char*, void*, size_t*) -> int32_t { throw std::runtime_error("the disk is out"); };
+    CHECK(wadi_create_world_from_level_text(text.c_str(), throws_int, nullptr, nullptr, &options, &world) == WADI_ERROR_INTERNAL);
+    CHECK(wadi::test::error_mentions("unknown type"));
+    CHECK(wadi_create_world_from_level_text(text.c_str(), throws_text, nullptr, nullptr, &options, &world) ==
+          WADI_ERROR_INTERNAL);
+    CHECK(wadi::test::error_mentions("the disk is out"));
+    CHECK(world.index == 7);
 }

@@ -174,3 +174,26 @@ TEST_CASE("a lost device ends every call with its text, and the world remembers 
         CHECK_FALSE(world->state().lost().message.empty());
     }
 }
+
+TEST_CASE("a save that the worker has begun to write is finished, whatever becomes of the device or of calls that are refused") {
+    auto scene = mixed_scene(300, 300);
+    for (const auto& backend : available_backends()) {
+        CAPTURE(backend);
+        auto world = make_world(scene, {backend});
+        step(*world, 2);
+        const auto expected = save(*world);
+        const auto ticket = world->snapshots().begin_save();
+        REQUIRE(ticket);
+        std::byte byte[1];
+        REQUIRE(world->device().read(world->state().device().memory().front().buffer, 0, byte)); // the copies are made
+        std::vector<std::byte> bytes(expected.size()), other(expected.size());
+        REQUIRE(world->snapshots().end_save(*ticket, bytes).code == Code::not_ready); // the worker has them from here on
+        CHECK(world->snapshots().end_save(*ticket, std::span(bytes).first(8)).code == Code::bad_argument);
+        CHECK(world->snapshots().end_save(*ticket, other).code == Code::bad_argument);
+        world->device().inject_device_lost();
+        REQUIRE(world->step(1).code == Code::device_lost);
+        CHECK(fetch(*world, *ticket, bytes));
+        CHECK(bytes == expected);
+        CHECK(other == std::vector<std::byte>(expected.size()));
+    }
+}

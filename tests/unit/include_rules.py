@@ -14,7 +14,7 @@ RULES = {
     # The rooms of the engine, floor by floor; the facade in the hall includes all of them.
     "engine": ["engine/"],
     "engine/compute": ["engine/compute/", "shaders/step_params.h", "shaders/effects.h"],
-    "engine/threads": ["engine/threads/"],
+    "engine/threads": ["engine/threads/", "engine/compute/"],
     "engine/settings": ["engine/settings/", "engine/threads/", "engine/compute/", "shaders/effect_rows.hpp"],
     "engine/image": ["engine/image/", "engine/threads/", "engine/compute/"],
     "engine/level": ["engine/level/", "engine/image/", "engine/settings/", "engine/threads/", "engine/compute/"],

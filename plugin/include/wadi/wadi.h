@@ -5,7 +5,8 @@
  * A struct that the caller fills begins with struct_size: call its wadi_default_*() function, then change what you need.
  * Every function that can fail returns a wadi_result; wadi_get_last_error() then has one line of text for this thread.
  * No function aborts, throws or prints. A world is used by one thread at a time: a call that meets another one inside the same
- * world does nothing and returns WADI_ERROR_BUSY. Different worlds are independent.
+ * world does nothing and returns WADI_ERROR_BUSY. Different worlds are independent. A forked child cannot use its parent's worlds.
+ * The calling thread's floating-point environment counts for nothing and is as it was after every call.
  */
 #ifndef WADI_H
 #define WADI_H
@@ -56,7 +57,7 @@ typedef struct wadi_world_id {
 
 /** Gets what the library has to tell: advice on a level (warning), each world made and each change of its effects (information), a
  *  lost device (error), messages of drivers and validation layers. level: 0 error, 1 warning, 2 information. Called during a call of
- *  the library, or from a driver's thread; it must not call the library. */
+ *  the library, or from a driver's thread; it must not call the library; what it throws is lost. */
 typedef void (*wadi_log_callback)(void* user, int level, const char* message);
 
 /** The cells (i, j) with i0 <= i < i0 + nx and j0 <= j < j0 + ny. */
@@ -410,9 +411,10 @@ WADI_API wadi_result wadi_world_load_file(wadi_world_id world, const char* path)
  *  that nobody has begun to fetch is forgotten. NOT_READY: the device or a worker is still at an earlier one. */
 WADI_API wadi_result wadi_world_begin_save(wadi_world_id world, uint64_t* ticket);
 /** Fetches it: NOT_READY until the snapshot lies in `data`, then OK, once. Never waits: a worker thread fills `data`, so from the
- *  first call on that memory must stay where it is, and the same pointer must be passed, until a call returns something else than
- *  NOT_READY or the world is destroyed. *size as in wadi_world_save; data may be NULL to ask the number.
- *  Errors: BAD_ARGUMENT (another ticket, another data, size NULL or too small), DEVICE_LOST. */
+ *  first call on that memory must stay where it is, and the same pointer must be passed, until a call returns OK or the world is
+ *  destroyed; an error does not end that. *size as in wadi_world_save; data may be NULL to ask the number.
+ *  Errors: BAD_ARGUMENT (another ticket, another data, size NULL or too small), DEVICE_LOST (before the copy aside was done),
+ *  OUT_OF_MEMORY (the system refuses the worker's thread: a later call may succeed). */
 WADI_API wadi_result wadi_world_end_save(wadi_world_id world, uint64_t ticket, void* data, size_t* size);
 
 /** Keeps earlier states on the device: the newest `frames` (0 ... 256; 0 = off, frees them) of the state now and of every later step
@@ -619,7 +621,8 @@ WADI_API wadi_result wadi_world_play_commands(wadi_world_id world, const void* d
 
 /** Reads a file that a level names, for the host's own file system. Called with data NULL first: sets *size to the file's bytes;
  *  then with room for *size bytes: fills it and sets *size to what it wrote. Returns 1, or 0 where there is no such file. `name` is
- *  as the level writes it, '/' between folders, and never leads out of the level's folder but with overrides.any_files. Called only inside wadi_create_world_from_level_text, on its thread. */
+ *  as the level writes it, '/' between folders, and never leads out of the level's folder but with overrides.any_files. Called only
+ *  inside wadi_create_world_from_level_text, on its thread. Should not throw: whatever it throws ends that call with INTERNAL. */
 typedef int32_t (*wadi_read_file_callback)(void* user, const char* name, void* data, size_t* size);
 
 /** A world from the text of a level file. Maps and series that it names come from read_file; with read_file NULL the text may name
