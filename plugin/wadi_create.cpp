@@ -28,6 +28,8 @@ compute::Log to_log(const wadi_device_options* options) {
 Result<std::unique_ptr<compute::Device>> open(const wadi_device_options* options, const compute::Log& log) {
     const auto defaults = wadi_default_device_options();
     if (options == nullptr) options = &defaults;
+    if (options->device < -1)
+        return error(Code::bad_argument, "wadi_device_options.device: " + std::to_string(options->device) + " is below -1");
     compute::DeviceOptions o;
     o.log = log;
     o.threads = options->threads;
@@ -139,6 +141,11 @@ wadi_result wadi_list_devices(wadi_device_info* infos, uint32_t* count, char* no
     return guarded(__func__, [&] {
         if (count == nullptr) return bad_argument("wadi_list_devices: count is NULL");
         const uint32_t capacity = infos != nullptr ? *count : 0;
+        for (uint32_t n = 0; n < capacity; ++n) {
+            if (!right_size(&infos[n]))
+                return bad_argument("wadi_list_devices: infos[" + std::to_string(n) + "].struct_size is not " +
+                                    std::to_string(sizeof(wadi_device_info)));
+        }
         uint32_t found = 0;
         std::string why_none;
         for (const auto& backend : backends::all()) {

@@ -58,7 +58,14 @@ CpuDevice::~CpuDevice() {
 Result<compute::Buffer> CpuDevice::create_buffer(const compute::BufferDesc& desc) {
     // Operating systems promise more memory than they have; refuse before a page fault kills the host.
     const std::uint64_t limit = capabilities_.memory_bytes / 10 * 9;
-    if (capabilities_.memory_bytes != 0 && (desc.bytes > limit || allocated_ > limit - desc.bytes)) {
+    const auto fits = [&] {
+        return capabilities_.memory_bytes == 0 || (desc.bytes <= limit && allocated_ <= limit - desc.bytes);
+    };
+    if (!fits() && !retired_buffers_.empty()) {
+        drain();
+        free_retired(submitted_);
+    }
+    if (!fits()) {
         return error(Code::out_of_memory, "buffer '" + desc.label + "': " + std::to_string(desc.bytes >> 20) +
                                               " MiB more than the " + std::to_string(limit >> 20) +
                                               " MiB that this machine can give");
@@ -82,21 +89,28 @@ std::span<std::byte> CpuDevice::mapped(compute::Buffer buffer) { return {at(buff
 
 Result<compute::NativeBuffer> CpuDevice::native(compute::Buffer buffer) {
     auto& memory = at(buffer);
-    if (memory.content && !memory.exposed) {
-        drain();
-        memory.content->expose();
+    if (!memory.exposed) {
+        std::unique_lock lock(mutex_);
+        memory.exposed = true;
+        const bool told = memory.content != nullptr;
+        lock.unlock();
+        if (told) {
+            drain();
+            memory.content->expose();
+        }
     }
-    memory.exposed = true;
     return compute::NativeBuffer{compute::NativeBuffer::Kind::host_pointer, reinterpret_cast<std::uintptr_t>(memory.data),
                                  memory.bytes};
 }
 
-void CpuDevice::destroy_buffer(compute::Buffer buffer) {
-    drain();
-    const auto& memory = at(buffer);
-    allocated_ -= memory.bytes;
-    Pages::forget(memory.data, memory.bytes);
-    buffers_.take(buffer.id);
+void CpuDevice::destroy_buffer(compute::Buffer buffer) { retired_buffers_.put(buffers_.take(buffer.id), submitted_); }
+
+void CpuDevice::free_retired(std::uint64_t finished) {
+    retired_programs_.release(finished);
+    retired_buffers_.release(finished, [this](Memory& memory) {
+        allocated_ -= memory.bytes;
+        Pages::forget(memory.data, memory.bytes);
+    });
 }
 
 void CpuDevice::drain() {
@@ -140,19 +154,19 @@ Result<compute::Program> CpuDevice::compile(const compute::ProgramBuilder& build
         if (const auto* d = std::get_if<compute::Dispatch>(&op)) {
             const auto& stage = compute::stage_table()[static_cast<std::size_t>(d->stage)];
             step.block = pipelines_[d->pipeline.id - 1];
+            step.stage = &stage;
+            step.effects = d->effects;
             for (const auto& binding : stage.bindings) {
                 auto* memory = binding.exists(d->effects) ? &at(d->slots[static_cast<std::size_t>(binding.slot)]) : nullptr;
                 step.buffers.push_back(memory != nullptr ? memory->data : nullptr);
                 step.sizes.push_back(memory != nullptr ? memory->bytes : 0);
+                step.bound.push_back(memory);
                 if (memory != nullptr && binding.access != compute::Access::in) step.written.push_back(memory);
             }
             step.range = d->range;
             step.input = static_cast<std::size_t>(d->input);
-            step.extent = stage.extent;
-            set_content(*d, stage, params, step);
-            step.rows_per_grab = std::max(1, step.rows() / (8 * pool_->size()));
             if (d->tiles.on()) {
-                if (auto status = set_active(*d, stage, params, step); !status) return status;
+                if (auto status = set_active(*d, stage, step); !status) return status;
             }
             largest = std::max(largest, area(d->range));
         } else if (const auto* copy = std::get_if<compute::Copy>(&op)) {
@@ -178,7 +192,7 @@ Result<compute::Program> CpuDevice::compile(const compute::ProgramBuilder& build
     return compute::Program{programs_.add(std::move(recorded))};
 }
 
-Status CpuDevice::set_active(const compute::Dispatch& d, const compute::StageInfo& stage, const WorldParams& params, Step& step) {
+Status CpuDevice::set_active(const compute::Dispatch& d, const compute::StageInfo& stage, Step& step) {
     const auto words = [&](compute::Buffer buffer) { return reinterpret_cast<std::uint32_t*>(at(buffer).data); };
     auto& active = step.active;
     active.activity = words(d.tiles.activity);
@@ -194,14 +208,15 @@ Status CpuDevice::set_active(const compute::Dispatch& d, const compute::StageInf
     if (active.outputs.size() > ActiveStage::most_outputs)
         return error(Code::internal,
                      "'" + d.label + "' writes more than " + std::to_string(ActiveStage::most_outputs) + " buffers");
-    step.rows_per_grab = std::min(step.rows_per_grab, params.tile_size);
     return ok_status();
 }
 
 BlockContent* CpuDevice::content_of(Memory& memory, FieldLayout layout) {
     if (memory.bytes < layout.size() * 4) return nullptr;
     if (!memory.content) {
-        memory.content = std::make_unique<BlockContent>(layout, reinterpret_cast<const std::uint32_t*>(memory.data));
+        auto content = std::make_unique<BlockContent>(layout, reinterpret_cast<const std::uint32_t*>(memory.data));
+        const std::lock_guard lock(mutex_);
+        memory.content = std::move(content);
         if (memory.exposed) memory.content->expose();
     }
     const auto& has = memory.content->blocks().layout;
@@ -214,28 +229,44 @@ StageBlock CpuDevice::lean_block(int stage, std::uint32_t effects) const {
     return &set_ != &base && block == base.select[stage](effects) ? nullptr : block;
 }
 
-void CpuDevice::set_content(const compute::Dispatch& d, const compute::StageInfo& stage, const WorldParams& params, Step& step) {
+void CpuDevice::set_content(const WorldParams& params, Step& step) {
     const FieldLayout layout{params.nx, params.ny};
-    const bool whole = d.range.i0 == 0 && d.range.j0 == 0 && d.range.i1 >= layout.nx && d.range.j1 >= layout.ny;
-    if (stage.lacks.empty() || d.tiles.on() || !whole || (d.effects & EFFECT_HALF_STORAGE) != 0) return;
-    drain(); // what runs may be asking
+    const auto& r = step.range;
+    const bool whole = r.i0 == 0 && r.j0 == 0 && r.i1 >= layout.nx && r.j1 >= layout.ny;
+    const bool tiles = step.active.activity != nullptr;
+    if (step.stage->lacks.empty() || tiles || !whole || (step.effects & EFFECT_HALF_STORAGE) != 0) return;
     std::vector<BlockContent*> contents;
-    for (const auto& binding : stage.bindings) {
-        const bool exists = binding.exists(d.effects);
-        contents.push_back(exists ? content_of(at(d.slots[static_cast<std::size_t>(binding.slot)]), layout) : nullptr);
-        if (exists && contents.back() == nullptr) return;
+    for (auto* memory : step.bound) {
+        contents.push_back(memory != nullptr ? content_of(*memory, layout) : nullptr);
+        if (memory != nullptr && contents.back() == nullptr) return;
     }
-    step.content = content_stage(stage, stage.lacks, d.effects, contents, step.buffers,
-                                 [&](std::uint32_t effects) { return lean_block(d.stage, effects); });
+    const auto stage = static_cast<int>(step.stage - compute::stage_table().data());
+    step.content = content_stage(*step.stage, step.stage->lacks, step.effects, contents, step.buffers,
+                                 [&](std::uint32_t effects) { return lean_block(stage, effects); });
 }
 
-void CpuDevice::destroy_program(compute::Program program) {
-    drain();
-    programs_.take(program.id);
+void CpuDevice::prepare(Recorded& program) {
+    for (auto& step : program.steps) {
+        if (step.stage == nullptr) continue;
+        try {
+            set_content(program.params, step);
+        } catch (const std::bad_alloc&) { // it computes everything then
+        }
+        step.rows_per_grab = std::max(1, step.rows() / (8 * pool_->size()));
+        if (step.active.activity != nullptr) step.rows_per_grab = std::min(step.rows_per_grab, program.params.tile_size);
+    }
+    program.prepared = true;
 }
+
+void CpuDevice::destroy_program(compute::Program program) { retired_programs_.put(programs_.take(program.id), submitted_); }
 
 Result<compute::Ticket> CpuDevice::submit_inputs(compute::Program program, std::span<const StepInput> inputs) {
     std::unique_lock lock(mutex_);
+    if (const auto finished = done_; !retired_programs_.empty() || !retired_buffers_.empty()) {
+        lock.unlock();
+        free_retired(finished);
+        lock.lock();
+    }
     changed_.wait(lock, [this] { return queue_.size() < most_in_flight; });
     queue_.push_back(
         {submitted_ + 1, programs_.find(program.id), {inputs.begin(), inputs.end()}}); // may throw: nothing is counted then
@@ -290,7 +321,7 @@ void CpuDevice::look_into_written(const Step& step) {
         auto* content = memory->content.get();
         if (content == nullptr) continue;
         const int nx = content->blocks().layout.nx, ny = content->blocks().layout.ny;
-        switch (step.block != nullptr ? step.extent : compute::Extent::points) {
+        switch (step.stage != nullptr ? step.stage->extent : compute::Extent::points) {
         case compute::Extent::strips:
             content->look({r.i0, r.j0 * STRIP, r.i1, r.j1 * STRIP});
             break;
@@ -323,6 +354,7 @@ void CpuDevice::run_rows(Step& step, const WorldParams& params, const StepInput&
 
 // A barrier waits for rows, not for threads: one that the system has put aside holds nothing up but the rows it has taken.
 void CpuDevice::execute(Recorded& program, std::span<const StepInput> inputs, std::vector<compute::Timing>& timings) {
+    if (!program.prepared) prepare(program);
     const std::size_t count = program.steps.size();
     for (std::size_t n = 0; n < count; ++n) {
         program.progress[n].next_row.store(0, std::memory_order_relaxed);

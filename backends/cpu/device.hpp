@@ -2,6 +2,7 @@
 // shares each pass with the pool.
 #pragma once
 #include "backends/common/handle_table.hpp"
+#include "backends/common/retired.hpp"
 #include "backends/cpu/active_tiles.hpp"
 #include "backends/cpu/content.hpp"
 #include "backends/cpu/host_memory.hpp"
@@ -42,7 +43,7 @@ class CpuDevice final : public compute::Device {
     Result<compute::NativeBuffer> native(compute::Buffer buffer) override;
 
   private:
-    struct Memory {
+    struct Memory : backends::Retirable<Memory> {
         std::shared_ptr<std::byte> block;
         std::byte* data = nullptr;
         std::uint64_t bytes = 0;
@@ -58,7 +59,9 @@ class CpuDevice final : public compute::Device {
         std::size_t input = 0; // of the submission
         ActiveStage active;
         ContentStage content;
-        compute::Extent extent{};     // of a stage
+        const compute::StageInfo* stage = nullptr;
+        std::uint32_t effects = 0;    // of a stage, as the rest
+        std::vector<Memory*> bound;   // by binding, null where the mask lacks it
         std::vector<Memory*> written; // by what has no content of its own
         int rows_per_grab = 1;
         std::byte* from = nullptr; // copy
@@ -78,12 +81,13 @@ class CpuDevice final : public compute::Device {
         std::atomic<int> rows_to_run{0}; // that nobody has run yet
         Remaining rows;
     };
-    struct Recorded {
+    struct Recorded : backends::Retirable<Recorded> {
         WorldParams params{};
         std::vector<Step> steps;
         std::vector<std::string> timestamp_labels;
         std::unique_ptr<Progress[]> progress; // per step
         bool small = false;                   // not worth waking other threads for
+        bool prepared = false;                // by the device thread, ahead of the first run
     };
     struct Submission {
         std::uint64_t ticket;
@@ -93,12 +97,16 @@ class CpuDevice final : public compute::Device {
 
     Memory& at(compute::Buffer buffer) const { return *buffers_.find(buffer.id); }
     void drain();
+    /// Frees what was destroyed and is not in use any more.
+    void free_retired(std::uint64_t finished);
     void device_thread();
     void execute(Recorded& program, std::span<const StepInput> inputs, std::vector<compute::Timing>& timings);
     /// Errors: internal (more outputs than any stage has).
-    Status set_active(const compute::Dispatch& dispatch, const compute::StageInfo& stage, const WorldParams& params, Step& step);
+    Status set_active(const compute::Dispatch& dispatch, const compute::StageInfo& stage, Step& step);
+    /// On the device thread, while nothing else runs: what depends on what fields hold.
+    void prepare(Recorded& program);
     /// Leaves the step's content off where it cannot be told.
-    void set_content(const compute::Dispatch& dispatch, const compute::StageInfo& stage, const WorldParams& params, Step& step);
+    void set_content(const WorldParams& params, Step& step);
     /// Null for a buffer that is no field of this layout.
     BlockContent* content_of(Memory& memory, FieldLayout layout);
     /// The stage of the step without some effects, null where its instruction set has no code of its own for it.
@@ -116,9 +124,11 @@ class CpuDevice final : public compute::Device {
     backends::HandleTable<Memory> buffers_;
     std::vector<StageBlock> pipelines_; // by id - 1
     backends::HandleTable<Recorded> programs_;
+    backends::Retired<Memory> retired_buffers_;
+    backends::Retired<Recorded> retired_programs_;
     std::uint64_t allocated_ = 0;
 
-    std::mutex mutex_;
+    std::mutex mutex_; // of what follows, and of Memory::content and ::exposed while it runs
     std::condition_variable changed_;
     std::deque<Submission> queue_;
     std::uint64_t submitted_ = 0, done_ = 0;

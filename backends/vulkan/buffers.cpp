@@ -32,9 +32,4 @@ Result<compute::Buffer> Buffers::create(const compute::BufferDesc& desc) {
     return compute::Buffer{buffers_.add(std::move(owner))};
 }
 
-void Buffers::destroy(compute::Buffer buffer) {
-    const auto owner = buffers_.take(buffer.id);
-    release(c_, *owner);
-}
-
 } // namespace wadi::vulkan

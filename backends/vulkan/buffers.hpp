@@ -14,8 +14,8 @@ class Buffers {
     Status open();
     /// Errors: out_of_memory.
     Result<compute::Buffer> create(const compute::BufferDesc& desc);
-    /// Nothing may use the buffer any more.
-    void destroy(compute::Buffer buffer);
+    /// Null for a handle that is not alive. Whoever takes a buffer releases it.
+    std::unique_ptr<Memory> take(compute::Buffer buffer) { return buffers_.take(buffer.id); }
     /// Null for a handle that is not alive.
     const Memory* find(compute::Buffer buffer) const { return buffers_.find(buffer.id); }
     /// Bound where a condition is off; no stage touches it. The validation layers do not know that: what they take for a write

@@ -9,7 +9,10 @@ class VulkanDevice final : public compute::Device {
   public:
     explicit VulkanDevice(std::unique_ptr<Context> context) : context_(std::move(context)) {}
 
-    ~VulkanDevice() override { context_->wait_idle(); }
+    ~VulkanDevice() override {
+        context_->wait_idle();
+        free_retired(UINT64_MAX);
+    }
 
     Status open() {
         if (Status s = once_.open(); !s) return s;
@@ -28,7 +31,13 @@ class VulkanDevice final : public compute::Device {
         return counters;
     }
 
-    Result<compute::Buffer> create_buffer(const compute::BufferDesc& desc) override { return buffers_.create(desc); }
+    Result<compute::Buffer> create_buffer(const compute::BufferDesc& desc) override {
+        auto made = buffers_.create(desc);
+        if (made || made.status().code != Code::out_of_memory || retired_buffers_.empty()) return made;
+        context_->wait_idle();
+        free_retired(submissions_.look_for_finished());
+        return buffers_.create(desc);
+    }
 
     std::span<std::byte> mapped(compute::Buffer buffer) override {
         const Memory& memory = *buffers_.find(buffer);
@@ -36,12 +45,8 @@ class VulkanDevice final : public compute::Device {
     }
 
     void destroy_buffer(compute::Buffer buffer) override {
-        if (recorded_in_flight()) {
-            doomed_buffers_.push_back(buffer);
-            return;
-        }
-        context_->wait_idle();
-        buffers_.destroy(buffer);
+        // A transfer that has no ticket is done when the next submission is.
+        retired_buffers_.put(buffers_.take(buffer), submissions_.newest() + (once_.in_flight() ? 1 : 0));
     }
 
     Status write(compute::Buffer buffer, std::uint64_t offset, std::span<const std::byte> bytes) override {
@@ -59,7 +64,7 @@ class VulkanDevice final : public compute::Device {
     }
 
     Result<compute::Program> compile(const compute::ProgramBuilder& builder, const WorldParams& params) override {
-        const ProgramParts parts{*context_, transfers_, buffers_, pipelines_, submissions_};
+        const ProgramParts parts{*context_, buffers_, pipelines_, submissions_};
         programs_.reserve();
         auto program = CompiledProgram::compile(parts, builder, params);
         if (!program) return program.status();
@@ -67,14 +72,13 @@ class VulkanDevice final : public compute::Device {
     }
 
     void destroy_program(compute::Program program) override {
-        auto taken = programs_.take(program.id); // destroying it waits for the queue
-        if (recorded_in_flight()) doomed_programs_.push_back(std::move(taken));
+        retired_programs_.put(programs_.take(program.id), submissions_.newest());
     }
 
     Result<compute::Ticket> submit_inputs(compute::Program program, std::span<const StepInput> inputs) override {
         if (!submissions_.recording()) {
             if (Status s = submissions_.check_order(); !s) return s;
-            destroy_doomed();
+            free_retired(submissions_.look_for_finished());
         }
         auto slot = submissions_.acquire();
         if (!slot) return slot.status();
@@ -82,7 +86,9 @@ class VulkanDevice final : public compute::Device {
         auto commands = submissions_.recording() ? compiled.secondary_for(*slot)
                                                  : compiled.commands_for(*slot, submissions_.own_commands(*slot));
         if (!commands) return commands.status();
-        return submissions_.submit(*slot, inputs, *commands, program);
+        auto ticket = submissions_.submit(*slot, inputs, compiled.first_update(), *commands, program);
+        if (ticket) compiled.submitted();
+        return ticket;
     }
 
     bool finished(compute::Ticket ticket) override {
@@ -106,15 +112,9 @@ class VulkanDevice final : public compute::Device {
     compute::HostSync* host_sync() override { return &submissions_; }
 
   private:
-    // The host's command buffers may refer to anything that was alive when they were recorded.
-    bool recorded_in_flight() { return !context_->lost && submissions_.check_order().code == Code::not_ready; }
-
-    void destroy_doomed() {
-        if (doomed_buffers_.empty() && doomed_programs_.empty()) return;
-        context_->wait_idle();
-        for (const compute::Buffer buffer : doomed_buffers_) buffers_.destroy(buffer);
-        doomed_buffers_.clear();
-        doomed_programs_.clear();
+    void free_retired(std::uint64_t finished) {
+        retired_programs_.release(finished);
+        retired_buffers_.release(finished, [this](Memory& memory) { release(*context_, memory); });
     }
 
     // Destroyed from the last to the first.
@@ -125,9 +125,9 @@ class VulkanDevice final : public compute::Device {
     Pipelines pipelines_{*context_};
     Submissions submissions_{*context_};
     backends::HandleTable<CompiledProgram> programs_;
-    // Destroyed once recorded work that may use them has run.
-    std::vector<std::unique_ptr<CompiledProgram>> doomed_programs_;
-    std::vector<compute::Buffer> doomed_buffers_;
+    // The host's command buffers, too, may refer to anything that was alive when they were recorded.
+    backends::Retired<CompiledProgram> retired_programs_;
+    backends::Retired<Memory> retired_buffers_;
 };
 
 } // namespace

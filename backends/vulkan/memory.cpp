@@ -111,42 +111,60 @@ Status OneTimeCommands::open() {
     info.commandPool = pool_;
     info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
     info.commandBufferCount = 1;
-    if (Status s = c_.check(c_.vk.vkAllocateCommandBuffers(c_.device, &info, &commands_), "vkAllocateCommandBuffers"); !s)
-        return s;
     const auto fence = vk_struct<VkFenceCreateInfo>(VK_STRUCTURE_TYPE_FENCE_CREATE_INFO);
-    return c_.check(c_.vk.vkCreateFence(c_.device, &fence, nullptr, &fence_), "vkCreateFence");
+    for (Set& set : sets_) {
+        if (Status s = c_.check(c_.vk.vkAllocateCommandBuffers(c_.device, &info, &set.commands), "vkAllocateCommandBuffers"); !s)
+            return s;
+        if (Status s = c_.check(c_.vk.vkCreateFence(c_.device, &fence, nullptr, &set.fence), "vkCreateFence"); !s) return s;
+    }
+    return ok_status();
 }
 
 OneTimeCommands::~OneTimeCommands() {
-    if (fence_ != VK_NULL_HANDLE) c_.vk.vkDestroyFence(c_.device, fence_, nullptr);
+    for (const Set& set : sets_)
+        if (set.fence != VK_NULL_HANDLE) c_.vk.vkDestroyFence(c_.device, set.fence, nullptr);
     if (pool_ != VK_NULL_HANDLE) c_.vk.vkDestroyCommandPool(c_.device, pool_, nullptr);
 }
 
 Result<VkCommandBuffer> OneTimeCommands::begin() {
-    if (Status s = wait(); !s) return s;
+    now_ = (now_ + 1) % sets_.size();
+    Set& set = sets_[now_];
+    if (Status s = wait(set); !s) return s;
     auto info = vk_struct<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
     info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-    if (Status s = c_.check(c_.vk.vkBeginCommandBuffer(commands_, &info), "vkBeginCommandBuffer"); !s) return s;
-    record_barrier(c_, commands_, everything, everything);
-    return commands_;
+    if (Status s = c_.check(c_.vk.vkBeginCommandBuffer(set.commands, &info), "vkBeginCommandBuffer"); !s) return s;
+    record_barrier(c_, set.commands, everything, everything);
+    return set.commands;
 }
 
 Status OneTimeCommands::submit() {
-    if (Status s = c_.check(c_.vk.vkEndCommandBuffer(commands_), "vkEndCommandBuffer"); !s) return s;
-    if (Status s = c_.check(c_.vk.vkResetFences(c_.device, 1, &fence_), "vkResetFences"); !s) return s;
+    Set& set = sets_[now_];
+    if (Status s = c_.check(c_.vk.vkEndCommandBuffer(set.commands), "vkEndCommandBuffer"); !s) return s;
+    if (Status s = c_.check(c_.vk.vkResetFences(c_.device, 1, &set.fence), "vkResetFences"); !s) return s;
     auto info = vk_struct<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
     info.commandBufferCount = 1;
-    info.pCommandBuffers = &commands_;
-    Status s = c_.check(c_.vk.vkQueueSubmit(c_.queue, 1, &info, fence_), "vkQueueSubmit");
-    in_flight_ = s.code == Code::ok;
+    info.pCommandBuffers = &set.commands;
+    Status s = c_.check(c_.vk.vkQueueSubmit(c_.queue, 1, &info, set.fence), "vkQueueSubmit");
+    set.in_flight = s.code == Code::ok;
+    return s;
+}
+
+Status OneTimeCommands::wait(Set& set) {
+    if (!set.in_flight) return ok_status();
+    Status s = c_.check(c_.vk.vkWaitForFences(c_.device, 1, &set.fence, VK_TRUE, UINT64_MAX), "vkWaitForFences");
+    if (s) set.in_flight = false;
     return s;
 }
 
 Status OneTimeCommands::wait() {
-    if (!in_flight_) return ok_status();
-    Status s = c_.check(c_.vk.vkWaitForFences(c_.device, 1, &fence_, VK_TRUE, UINT64_MAX), "vkWaitForFences");
-    if (s) in_flight_ = false;
-    return s;
+    for (Set& set : sets_) {
+        if (Status s = wait(set); !s) return s;
+    }
+    return ok_status();
+}
+
+bool OneTimeCommands::in_flight() const {
+    return std::any_of(sets_.begin(), sets_.end(), [](const Set& set) { return set.in_flight; });
 }
 
 Status Transfers::open() {
@@ -168,7 +186,8 @@ Status Transfers::zero(const Memory& memory) {
 Status Transfers::write(const Memory& to, std::uint64_t offset, std::span<const std::byte> bytes) {
     for (std::uint64_t done = 0; done < bytes.size(); done += chunk_bytes) {
         const auto part = bytes.subspan(done, std::min<std::uint64_t>(chunk_bytes, bytes.size() - done));
-        // Ahead of the host's copy: it waits until the previous chunk has left the staging buffer.
+        // Until the previous chunk has left the staging buffer.
+        if (Status s = once_.wait(); !s) return s;
         auto commands = once_.begin();
         if (!commands) return commands.status();
         std::copy(part.begin(), part.end(), static_cast<std::byte*>(staging_.mapped));

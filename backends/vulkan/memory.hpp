@@ -1,13 +1,15 @@
 // Device memory: one allocation per buffer, barriers between kinds of commands, and copies to and from the host.
 #pragma once
+#include "backends/common/retired.hpp"
 #include "backends/vulkan/context.hpp"
+#include <array>
 #include <cstddef>
 #include <span>
 
 namespace wadi::vulkan {
 
 /// A buffer with memory of its own; `mapped` only where the host may touch it.
-struct Memory {
+struct Memory : backends::Retirable<Memory> {
     VkBuffer buffer = VK_NULL_HANDLE;
     VkDeviceMemory memory = VK_NULL_HANDLE;
     std::uint64_t bytes = 0;     // as asked for; the Vulkan buffer is rounded up to whole words
@@ -34,7 +36,8 @@ struct Kinds {
 /// A global memory barrier: everything of the kinds `before` ahead of it, then everything of the kinds `after`.
 void record_barrier(const Context& context, VkCommandBuffer commands, Kinds before, Kinds after);
 
-/// Commands that run once: zero fills, transfers, the self-test. One set is in flight at a time.
+/// Commands that run once: zero fills, transfers, the self-test. Several sets may be in flight, so that many buffers can be made
+/// without waiting for the queue.
 class OneTimeCommands {
   public:
     explicit OneTimeCommands(Context& context) : c_(context) {}
@@ -42,17 +45,26 @@ class OneTimeCommands {
     OneTimeCommands(const OneTimeCommands&) = delete;
     OneTimeCommands& operator=(const OneTimeCommands&) = delete;
     Status open();
-    /// Waits for the previous set; what is recorded next sees everything submitted before it.
+    /// Waits for the oldest set where all are in flight; what is recorded next sees everything submitted before it.
     Result<VkCommandBuffer> begin();
     Status submit();
+    /// For all of them.
     Status wait();
+    /// Whether a set has been submitted since the last wait().
+    bool in_flight() const;
 
   private:
+    struct Set {
+        VkCommandBuffer commands = VK_NULL_HANDLE;
+        VkFence fence = VK_NULL_HANDLE;
+        bool in_flight = false;
+    };
+    Status wait(Set& set);
+
     Context& c_;
     VkCommandPool pool_ = VK_NULL_HANDLE;
-    VkCommandBuffer commands_ = VK_NULL_HANDLE;
-    VkFence fence_ = VK_NULL_HANDLE;
-    bool in_flight_ = false;
+    std::array<Set, 64> sets_; // more than the buffers that a change of effects makes
+    std::size_t now_ = 0;
 };
 
 /// Copies between host and device through one staging buffer, in chunks. Offsets and sizes are the caller's to check.

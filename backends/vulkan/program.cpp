@@ -5,9 +5,9 @@ namespace wadi::vulkan {
 
 Result<std::unique_ptr<CompiledProgram>>
 CompiledProgram::compile(const ProgramParts& parts, const compute::ProgramBuilder& builder, const WorldParams& params) {
-    std::unique_ptr<CompiledProgram> program(new CompiledProgram(parts.context));
+    std::unique_ptr<CompiledProgram> program(new CompiledProgram(parts.context, params));
     program->label_ = builder.label();
-    if (Status s = program->write_params(parts.transfers, params); !s) return s;
+    if (Status s = program->create_params(); !s) return s;
     Plan plan;
     const Status planned = plan_commands(parts, builder, program->params_.buffer, plan);
     program->descriptors_ = plan.descriptors;
@@ -21,18 +21,22 @@ CompiledProgram::compile(const ProgramParts& parts, const compute::ProgramBuilde
 }
 
 CompiledProgram::~CompiledProgram() {
-    c_.wait_idle(); // the parameters may still be on their way
     if (pool_ != VK_NULL_HANDLE) c_.vk.vkDestroyCommandPool(c_.device, pool_, nullptr);
     if (queries_ != VK_NULL_HANDLE) c_.vk.vkDestroyQueryPool(c_.device, queries_, nullptr);
     if (descriptors_ != VK_NULL_HANDLE) c_.vk.vkDestroyDescriptorPool(c_.device, descriptors_, nullptr);
     release(c_, params_);
 }
 
-Status CompiledProgram::write_params(Transfers& transfers, const WorldParams& params) {
-    auto memory = allocate(c_, sizeof(params), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, Place::device, label_ + " parameters");
+Status CompiledProgram::create_params() {
+    auto memory = allocate(c_, sizeof(values_), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, Place::device, label_ + " parameters");
     if (!memory) return memory.status();
     params_ = std::move(*memory);
-    return transfers.write(params_, 0, std::as_bytes(std::span(&params, 1)));
+    return ok_status();
+}
+
+Submissions::Update CompiledProgram::first_update() const {
+    if (parameters_sent_) return {};
+    return {params_.buffer, std::as_bytes(std::span(&values_, 1))};
 }
 
 Status CompiledProgram::create_queries(const compute::ProgramBuilder& builder) {

@@ -36,13 +36,12 @@ using Command = std::variant<BarrierCommand, DispatchCommand, CopyCommand, FillC
 /// What a program refers to.
 struct ProgramParts {
     Context& context;
-    Transfers& transfers;
     const Buffers& buffers;
     const Pipelines& pipelines;
     const Submissions& submissions;
 };
 
-class CompiledProgram {
+class CompiledProgram : public backends::Retirable<CompiledProgram> {
   public:
     /// Errors: not_supported (too many groups), out_of_memory.
     static Result<std::unique_ptr<CompiledProgram>> compile(const ProgramParts& parts, const compute::ProgramBuilder& builder,
@@ -55,12 +54,15 @@ class CompiledProgram {
     Result<VkCommandBuffer> commands_for(std::uint32_t slot, VkCommandBuffer own);
     /// The same as a secondary command buffer, for the host's to execute; recorded when first asked for.
     Result<VkCommandBuffer> secondary_for(std::uint32_t slot);
+    /// The parameters, for the first submission; nothing once that has gone out.
+    Submissions::Update first_update() const;
+    void submitted() { parameters_sent_ = true; }
     /// Of a finished submission that ran in `slot`.
     Result<std::vector<compute::Timing>> timings(std::uint32_t slot);
 
   private:
-    explicit CompiledProgram(Context& context) : c_(context) {}
-    Status write_params(Transfers& transfers, const WorldParams& params);
+    CompiledProgram(Context& context, const WorldParams& values) : c_(context), values_(values) {}
+    Status create_params();
     Status create_queries(const compute::ProgramBuilder& builder);
     Status record_replays(std::vector<VkCommandBuffer>& replays, VkCommandBufferLevel level);
     Status record(VkCommandBuffer commands, std::uint32_t slot, VkCommandBufferUsageFlags usage);
@@ -68,7 +70,9 @@ class CompiledProgram {
 
     Context& c_;
     std::string label_;
-    Memory params_;
+    const WorldParams values_;
+    Memory params_; // values_, from the first submission on
+    bool parameters_sent_ = false;
     VkDescriptorPool descriptors_ = VK_NULL_HANDLE;
     std::vector<Command> commands_;
     VkCommandPool pool_ = VK_NULL_HANDLE;

@@ -65,32 +65,33 @@ Result<std::uint32_t> Submissions::acquire() {
 }
 
 // Also the boundary between submissions: all earlier work is done and seen before anything of this one starts.
-void Submissions::record_boundary(VkCommandBuffer commands, std::span<const StepInput> inputs) {
+void Submissions::record_boundary(VkCommandBuffer commands, std::span<const StepInput> inputs, const Update& update) {
     const Kinds all{.compute = true, .transfer = true};
     record_barrier(c_, commands, all, all);
     for (std::size_t n = 0; n < inputs.size(); ++n)
         c_.vk.vkCmdUpdateBuffer(commands, inputs_.buffer, n * input_stride, sizeof(StepInput), &inputs[n]);
+    if (update.to != VK_NULL_HANDLE) c_.vk.vkCmdUpdateBuffer(commands, update.to, 0, update.bytes.size(), update.bytes.data());
     record_barrier(c_, commands, {.transfer = true}, {.compute = true});
 }
 
-Status Submissions::record_inputs(const Slot& slot, std::span<const StepInput> inputs) {
+Status Submissions::record_inputs(const Slot& slot, std::span<const StepInput> inputs, const Update& update) {
     auto info = vk_struct<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
     info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
     if (Status s = c_.check(c_.vk.vkBeginCommandBuffer(slot.input, &info), "vkBeginCommandBuffer"); !s) return s;
-    record_boundary(slot.input, inputs);
+    record_boundary(slot.input, inputs, update);
     return c_.check(c_.vk.vkEndCommandBuffer(slot.input), "vkEndCommandBuffer");
 }
 
-Result<compute::Ticket> Submissions::submit(std::uint32_t index, std::span<const StepInput> inputs, VkCommandBuffer commands,
-                                            compute::Program program) {
+Result<compute::Ticket> Submissions::submit(std::uint32_t index, std::span<const StepInput> inputs, const Update& update,
+                                            VkCommandBuffer commands, compute::Program program) {
     Slot& slot = slots_[index];
     const std::uint64_t ticket = last_ + 1;
     if (recording()) {
-        record_boundary(host_commands_, inputs);
+        record_boundary(host_commands_, inputs, update);
         c_.vk.vkCmdExecuteCommands(host_commands_, 1, &commands);
         last_recorded_ = ticket;
     } else {
-        if (Status s = record_inputs(slot, inputs); !s) return s;
+        if (Status s = record_inputs(slot, inputs, update); !s) return s;
         if (Status s = send(slot, ticket, commands); !s) return s;
     }
     ++c_.counters.submits;

@@ -25,9 +25,14 @@ class Submissions final : public compute::HostSync {
     Result<std::uint32_t> acquire();
     /// The slot's own command buffer, for programs that are recorded anew.
     VkCommandBuffer own_commands(std::uint32_t slot) const { return slots_[slot].own; }
-    /// Brings the inputs, then runs `commands`, after everything submitted before.
-    Result<compute::Ticket> submit(std::uint32_t slot, std::span<const StepInput> inputs, VkCommandBuffer commands,
-                                   compute::Program program);
+    /// Numbers that a buffer gets ahead of a submission, at most 64 KiB.
+    struct Update {
+        VkBuffer to = VK_NULL_HANDLE; // null: none
+        std::span<const std::byte> bytes;
+    };
+    /// Brings the inputs and the update, then runs `commands`, after everything submitted before.
+    Result<compute::Ticket> submit(std::uint32_t slot, std::span<const StepInput> inputs, const Update& update,
+                                   VkCommandBuffer commands, compute::Program program);
 
     Status wait_before(std::span<const compute::SyncPoint> points) override;
     Status signal_after(const compute::SyncPoint& point) override;
@@ -40,6 +45,13 @@ class Submissions final : public compute::HostSync {
 
     /// Errors: device_lost.
     Result<bool> finished(compute::Ticket ticket);
+    /// The newest ticket given out.
+    std::uint64_t newest() const { return last_; }
+    /// The newest one known to have finished, after a look.
+    std::uint64_t look_for_finished() {
+        static_cast<void>(finished({last_}));
+        return finished_;
+    }
     /// A recorded ticket that has not finished is not_ready: only the host can bring it about.
     Status wait(compute::Ticket ticket);
     /// The program that a ticket ran; null once its slot is in use again.
@@ -55,9 +67,9 @@ class Submissions final : public compute::HostSync {
         std::uint64_t ticket = 0;
         compute::SyncPoint promise; // of recorded work; semaphore 0 = went to the queue
     };
-    Status record_inputs(const Slot& slot, std::span<const StepInput> inputs);
+    Status record_inputs(const Slot& slot, std::span<const StepInput> inputs, const Update& update);
     Status send(const Slot& slot, std::uint64_t ticket, VkCommandBuffer commands);
-    void record_boundary(VkCommandBuffer commands, std::span<const StepInput> inputs);
+    void record_boundary(VkCommandBuffer commands, std::span<const StepInput> inputs, const Update& update);
     Status check_timeline() const;
     Result<std::uint64_t> value_of(VkSemaphore semaphore);
 

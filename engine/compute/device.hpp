@@ -134,7 +134,8 @@ class Device {
     /// here may be read once its ticket has finished. Such buffers take part in copies only: compile() refuses them in
     /// dispatches and fills.
     virtual std::span<std::byte> mapped(Buffer buffer) = 0;
-    /// Frees a buffer; programs that use it can only be destroyed after that. Null is ignored. Waits for work in flight.
+    /// Frees a buffer once work in flight is done with it; programs that use it can only be destroyed after that. Null is ignored.
+    /// Does not wait where the backend can help it (the CPU).
     virtual void destroy_buffer(Buffer buffer) = 0;
     /// Copies host bytes into a buffer, ordered after all earlier and before all later submissions. May wait.
     virtual Status write(Buffer buffer, std::uint64_t offset, std::span<const std::byte> bytes) = 0;
@@ -150,7 +151,7 @@ class Device {
     /// stage, other tested effects or other active tiles; a buffer bound twice and written; a copy past a buffer's end; more than
     /// most_inputs).
     virtual Result<Program> compile(const ProgramBuilder& builder, const WorldParams& params) = 0;
-    /// Frees a program. Null is ignored. Waits for work in flight.
+    /// Frees a program, likewise.
     virtual void destroy_program(Program program) = 0;
 
     /// Replays a program with its steps' inputs, ProgramBuilder::inputs() of them. Returns at once unless the queue of

@@ -101,9 +101,7 @@ Status CommandLog::play(std::span<const std::byte> bytes) {
             note(edit);
             edits_.schedule(edit);
         } else {
-            const auto later = std::find_if(played_.begin(), played_.end(),
-                                            [&](const Command& waiting) { return step_of(waiting) > step_of(command); });
-            played_.insert(later, command);
+            played_.emplace(step_of(command), command);
         }
     }
     return stepper_.parts_done() == 0 ? at_boundary() : ok_status();
@@ -116,8 +114,8 @@ Status CommandLog::run(const Command& command) {
 }
 
 Status CommandLog::at_boundary() {
-    while (!played_.empty() && step_of(played_.front()) <= state_.steps) {
-        const Command command = std::move(played_.front());
+    while (!played_.empty() && played_.begin()->first <= state_.steps) {
+        const Command command = std::move(played_.begin()->second);
         played_.erase(played_.begin());
         if (auto status = run(command); !status) return status;
     }

@@ -2,6 +2,7 @@
 // the same level, which then goes through the same states to the bit.
 #pragma once
 #include "engine/edits/regions.hpp"
+#include <map>
 #include <variant>
 
 namespace wadi {
@@ -59,7 +60,7 @@ class CommandLog {
     Status at_boundary();
     /// `most`, or fewer steps: those to the next boundary for which something was played.
     std::uint64_t undisturbed(std::uint64_t most) const {
-        return played_.empty() ? most : std::min(most, step_of(played_.front()) - state_.steps);
+        return played_.empty() ? most : std::min(most, played_.begin()->first - state_.steps);
     }
     /// The world went to another step: forgets what waits and what was remembered of later steps.
     void went_to(std::uint64_t step);
@@ -74,7 +75,7 @@ class CommandLog {
     Edits& edits_;
     bool remember_ = false;
     std::vector<Command> remembered_;
-    std::vector<Command> played_; // all but edits: they wait for their step, in order
+    std::multimap<std::uint64_t, Command> played_; // all but edits: they wait for their step, in order
 };
 
 } // namespace wadi

@@ -1,5 +1,6 @@
 #include "engine/edits/edits.hpp"
 #include "engine/settings/scripted_edits.hpp"
+#include "engine/step/step_number.hpp"
 #include <algorithm>
 
 namespace wadi {
@@ -16,11 +17,7 @@ Status Edits::check(const char* function, std::span<const Edit> edits, std::span
     return ok_status();
 }
 
-void Edits::schedule(const Edit& edit) {
-    const auto later =
-        std::upper_bound(waiting_.begin(), waiting_.end(), edit.step, [](auto step, const Edit& e) { return step < e.step; });
-    waiting_.insert(later, edit);
-}
+void Edits::schedule(const Edit& edit) { waiting_.emplace(edit.step, edit); }
 
 Result<std::uint32_t> Edits::create_stamp(int nx, int ny, std::span<const float> values) {
     if (auto status = check_stamp("create_stamp", nx, ny, values); !status) return status;
@@ -67,8 +64,8 @@ Status Edits::before_step() {
         append_scripted_edits(state_.settings(), state_.steps, due_);
         scripted_from_ = state_.steps + 1;
     }
-    const auto later = std::find_if(waiting_.begin(), waiting_.end(), [&](const Edit& edit) { return edit.step > state_.steps; });
-    due_.insert(due_.end(), waiting_.begin(), later);
+    const auto later = waiting_.upper_bound(state_.steps);
+    std::for_each(waiting_.begin(), later, [&](const auto& edit) { due_.push_back(edit.second); });
     waiting_.erase(waiting_.begin(), later);
     if (due_.empty()) return ok_status();
     if (auto status = promote(); !status) return status;
@@ -77,8 +74,8 @@ Status Edits::before_step() {
 }
 
 std::uint64_t Edits::undisturbed(std::uint64_t most) const {
-    const auto later = std::find_if(waiting_.begin(), waiting_.end(), [&](const Edit& edit) { return edit.step > state_.steps; });
-    if (later != waiting_.end()) most = std::min(most, later->step - state_.steps);
+    const auto later = waiting_.upper_bound(state_.steps);
+    if (later != waiting_.end()) most = std::min(most, later->first - state_.steps);
     std::vector<Edit> scripted;
     for (std::uint64_t n = 1; n < most; ++n) {
         append_scripted_edits(state_.settings(), state_.steps + n, scripted);
@@ -106,7 +103,7 @@ Status Edits::submit() {
     }
     while (!due_.empty()) {
         StepInput input{};
-        input.step = static_cast<int>(state_.steps);
+        input.step = stage_step(state_.steps);
         std::size_t taken = 0;
         for (; taken < due_.size() && input.edit_count < MAX_EDITS; ++taken) {
             vec4* to = input.edit + EDIT_VECTORS * input.edit_count;

@@ -3,6 +3,7 @@
 #include "engine/settings/edit_checks.hpp"
 #include "engine/step/state_program.hpp"
 #include "engine/step/stepper.hpp"
+#include <map>
 #include <span>
 
 namespace wadi {
@@ -44,9 +45,9 @@ class Edits {
 
     WorldState& state_;
     Stepper& stepper_;
-    std::vector<Edit> waiting_;       // by step; equal steps in the order of the calls
-    std::vector<Edit> due_;           // taken for the next step and not submitted yet
-    std::uint64_t scripted_from_ = 0; // the first step for which the level's own edits were not taken
+    std::multimap<std::uint64_t, Edit> waiting_; // by step; equal steps in the order of the calls
+    std::vector<Edit> due_;                      // taken for the next step and not submitted yet
+    std::uint64_t scripted_from_ = 0;            // the first step for which the level's own edits were not taken
     std::vector<Stamp> stamps_;
     compute::Buffer images_;
     std::uint64_t pages_ = 0, pages_used_ = 0;

@@ -1,4 +1,5 @@
 #include "engine/frames/output_tiles.hpp"
+#include "engine/step/step_number.hpp"
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -13,7 +14,7 @@ Tile Tiles::operator[](int n) const {
     std::memcpy(range.data(), ranges.data() + at * sizeof range, sizeof range);
     std::memcpy(&changed, changes.data() + at * sizeof changed, sizeof changed);
     const Region cells = {i * STRIP, j * STRIP, std::min(STRIP, layout.nx - i * STRIP), std::min(STRIP, layout.ny - j * STRIP)};
-    return {cells, range[0], range[1], range[2], range[3], changed};
+    return {cells, range[0], range[1], range[2], range[3], step_behind(changed, step)};
 }
 
 } // namespace wadi

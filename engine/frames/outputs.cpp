@@ -1,4 +1,5 @@
 #include "engine/frames/outputs.hpp"
+#include "engine/step/step_number.hpp"
 #include <algorithm>
 
 namespace wadi {
@@ -188,7 +189,7 @@ Status Outputs::publish(bool between_steps, double interpolation) {
             });
         }
         StepInput input{};
-        input.step = static_cast<int>(state_.steps);
+        input.step = stage_step(state_.steps);
         auto ticket = program->submit(input);
         if (!ticket) return ticket.status();
         sets_[set] = {state_.steps, *ticket};

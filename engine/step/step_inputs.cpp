@@ -2,6 +2,7 @@
 #include "engine/settings/setting_table.hpp"
 #include "engine/step/half.hpp"
 #include "engine/step/source_shapes.hpp"
+#include "engine/step/step_number.hpp"
 #include "engine/step/world_params.hpp"
 #include <algorithm>
 #include <cmath>
@@ -91,11 +92,11 @@ void StepInputs::set_sides(StepInput& input, double time) {
     }
 }
 
-StepInput StepInputs::next(int step) {
+StepInput StepInputs::next(std::uint64_t step) {
     before_ = totals_;
     StepInput input{};
-    const double time = step * settings_.dt;
-    input.step = step;
+    const double time = static_cast<double>(step) * settings_.dt;
+    input.step = stage_step(step);
     const std::size_t sources = settings_.sources.size();
     input.rain = advance(totals_[sources], settings_.rain.at(time));
     input.evaporation = advance(totals_[sources + 1], settings_.evaporation.at(time));

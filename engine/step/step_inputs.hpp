@@ -19,7 +19,7 @@ class StepInputs {
 
     explicit StepInputs(const Settings& settings);
     /// The input of step `step`, which must be one more than at the last call.
-    StepInput next(int step);
+    StepInput next(std::uint64_t step);
     /// Takes the last next() back: its step could not be submitted.
     void undo() { totals_ = before_; }
     const Totals& totals() const { return totals_; }

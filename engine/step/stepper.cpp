@@ -1,4 +1,5 @@
 #include "engine/step/stepper.hpp"
+#include "engine/step/step_number.hpp"
 #include <algorithm>
 #include <utility>
 
@@ -224,7 +225,8 @@ Status Stepper::complete_step() {
 }
 
 StepInput Stepper::next_input() {
-    StepInput input = inputs_.next(static_cast<int>(state_.steps));
+    StepInput input = inputs_.next(state_.steps);
+    if (turns(state_.steps)) state_.tiles().wake_all();
     state_.tiles().wake_inputs(input);
     state_.tiles().put(input);
     return input;

@@ -15,6 +15,7 @@ std::vector<std::string> abi_backends() {
     std::uint32_t count = 0;
     REQUIRE(wadi_list_devices(nullptr, &count, nullptr, 0) == WADI_OK);
     std::vector<wadi_device_info> devices(count);
+    for (auto& device : devices) device.struct_size = sizeof device;
     REQUIRE(wadi_list_devices(devices.data(), &count, nullptr, 0) == WADI_OK);
     std::vector<std::string> names;
     for (const auto& device : devices) {

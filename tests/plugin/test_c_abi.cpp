@@ -280,8 +280,24 @@ TEST_CASE("devices are listed, and a small buffer is filled no further") {
     infos[1].index = -77;
     uint32_t one = 1;
     char notes[8];
+    CHECK(wadi_list_devices(infos.data(), &one, notes, sizeof notes) == WADI_ERROR_BAD_ARGUMENT); // struct_size is 0
+    CHECK(infos[0].backend[0] == 0);
+    infos[0].struct_size = sizeof infos[0];
     REQUIRE(wadi_list_devices(infos.data(), &one, notes, sizeof notes) == WADI_OK);
     CHECK(one == count);
     CHECK(std::string(infos[0].backend) == "cpu");
     CHECK(infos[1].index == -77);
+}
+
+TEST_CASE("a device below -1 is refused, -1 is the best") {
+    auto options = wadi_default_device_options();
+    options.backend = "cpu";
+    wadi_world_id id{};
+    for (const int32_t device : {-2, INT32_MIN}) {
+        options.device = device;
+        CHECK(wadi_create_world_from_level_text(
+                  R"({"format_version": 1, "name": "x", "grid": {"nx": 4, "ny": 4, "dx": 1}, "dt": 0.1})", nullptr, nullptr,
+                  nullptr, &options, &id) == WADI_ERROR_BAD_ARGUMENT);
+        CHECK(std::string(wadi_get_last_error()).find("below -1") != std::string::npos);
+    }
 }

@@ -80,7 +80,7 @@ typedef struct wadi_device_options {
 WADI_API wadi_device_options wadi_default_device_options(void);
 
 typedef struct wadi_device_info {
-    uint32_t struct_size;
+    uint32_t struct_size;      /* sizeof(wadi_device_info), set by the caller */
     char backend[16];
     int32_t index;             /* within its backend */
     char name[256];
@@ -88,7 +88,8 @@ typedef struct wadi_device_info {
     uint64_t memory_bytes;     /* 0 = unknown */
 } wadi_device_info;
 /** Lists the devices of all backends of this build. *count: capacity in, number of devices out; infos may be NULL to ask the
- *  number. `notes` (may be NULL) receives one line per backend without a device, saying why. */
+ *  number. `notes` (may be NULL) receives one line per backend without a device, saying why. Errors: BAD_ARGUMENT (count NULL, a
+ *  struct_size among infos). */
 WADI_API wadi_result wadi_list_devices(wadi_device_info* infos, uint32_t* count, char* notes, size_t notes_size);
 
 /** Overrides for a level file; a value of 0 or NULL keeps the file's. */
@@ -587,7 +588,8 @@ WADI_API wadi_result wadi_world_get_material(wadi_world_id world, wadi_material_
  *  young_modulus, exchange_rate, diffusion_rate, bed_friction and manning, or bed_shear drops its effect (and the strain of the sand with
  *  elastoplastic), a value above 0 brings it, which allocates. Where effects stay, no pipeline is made: the step is recorded anew, once per
  *  change. Ahead of the first step the world becomes that of a level with the value, in every bit; later, sand keeps the strain that it has
- *  (with method.prestress, that in balance with the material it was drawn with). Waits for the device. The command log has it; snapshots
+ *  (with method.prestress, that in balance with the material it was drawn with). Waits for the device in these two cases alone: ahead of
+ *  the first step, and where young_modulus was 0. The command log has it; snapshots
  *  and kept steps hold the values of their moment and bring them back. The level's warnings are not asked again. Errors, nothing changed:
  *  NOT_FOUND (name), BAD_ARGUMENT (out of range, NaN, saturations out of order, or a number of an effect that the level forces off: the
  *  message says which), OUT_OF_MEMORY, NOT_READY (inside a recording), DEVICE_LOST. */
