@@ -1,9 +1,9 @@
 // What a device has made, by handle.
 #pragma once
-#include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
-#include <vector>
+#include <utility>
 
 namespace wadi::backends {
 
@@ -11,23 +11,38 @@ namespace wadi::backends {
 template <class T> class HandleTable {
   public:
     /// After this the next add() cannot fail.
-    void reserve() { items_.reserve(items_.size() + 1); }
+    void reserve() {
+        if (!spare_.empty()) return;
+        Items apart;
+        apart.emplace(0, nullptr);
+        spare_ = apart.extract(0);
+    }
     std::uint32_t add(std::unique_ptr<T> item) {
-        items_.push_back(std::move(item));
-        return static_cast<std::uint32_t>(items_.size());
+        reserve();
+        spare_.key() = ++newest_;
+        spare_.mapped() = std::move(item);
+        items_.insert(std::move(spare_));
+        return newest_;
     }
     /// Null for an id that is not alive.
-    T* find(std::uint32_t id) const { return id == 0 || id > items_.size() ? nullptr : items_[id - 1].get(); }
+    T* find(std::uint32_t id) const {
+        const auto found = items_.find(id);
+        return found == items_.end() ? nullptr : found->second.get();
+    }
     /// Null for an id that is not alive, and whoever had it finds nothing from now on.
-    std::unique_ptr<T> take(std::uint32_t id) { return find(id) == nullptr ? nullptr : std::move(items_[id - 1]); }
+    std::unique_ptr<T> take(std::uint32_t id) {
+        auto node = items_.extract(id);
+        return node.empty() ? nullptr : std::move(node.mapped());
+    }
     template <class Call> void for_each(Call call) {
-        for (const auto& item : items_) {
-            if (item) call(*item);
-        }
+        for (const auto& item : items_) call(*item.second);
     }
 
   private:
-    std::vector<std::unique_ptr<T>> items_;
+    using Items = std::map<std::uint32_t, std::unique_ptr<T>>;
+    Items items_; // those alive: a host that changes its world every frame makes and destroys without end
+    typename Items::node_type spare_;
+    std::uint32_t newest_ = 0;
 };
 
 } // namespace wadi::backends

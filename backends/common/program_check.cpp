@@ -1,4 +1,5 @@
 #include "backends/common/program_check.hpp"
+#include <string_view>
 
 namespace wadi::backends {
 
@@ -6,14 +7,31 @@ namespace {
 
 Status bad(const std::string& where, const std::string& what) { return error(Code::bad_argument, where + ": " + what); }
 
-Status check_buffer(const Objects& objects, compute::Buffer buffer, const std::string& where) {
+// Where in a program something is wrong: a text only where something is.
+struct Where {
+    const compute::ProgramBuilder& program;
+    const char* op;
+    const compute::Dispatch* dispatch = nullptr;
+    const compute::StageInfo* stage = nullptr;
+    std::string_view binding = {};
+
+    operator std::string() const {
+        std::string text = "program '" + program.label() + "', " + op;
+        if (dispatch != nullptr) text += " '" + dispatch->label + "'";
+        if (stage != nullptr) text += " of " + std::string(stage->name);
+        if (!binding.empty()) text += ", " + std::string(binding);
+        return text;
+    }
+};
+
+template <class Place> Status check_buffer(const Objects& objects, compute::Buffer buffer, const Place& where) {
     if (buffer.id == 0) return bad(where, "the buffer is null");
     if (objects.buffers.count(buffer.id) == 0) return bad(where, "no buffer has the handle " + std::to_string(buffer.id));
     return ok_status();
 }
 
 // A buffer for stages and fills.
-Status check_device_buffer(const Objects& objects, compute::Buffer buffer, const std::string& where) {
+Status check_device_buffer(const Objects& objects, compute::Buffer buffer, const Where& where) {
     if (auto status = check_buffer(objects, buffer, where); !status) return status;
     const auto& found = objects.buffers.at(buffer.id);
     if (found.host) return bad(where, "buffer '" + found.label + "' is the host's memory, which only copies may use");
@@ -30,14 +48,16 @@ class Checker {
         : program_(program), params_(params), objects_(objects) {}
 
     Status check(const compute::Dispatch& d) const {
-        const std::string where = "program '" + program_.label() + "', dispatch '" + d.label + "'";
-        if (auto status = check_stage(d.stage); !status) return bad(where, status.message);
+        Where here{program_, "dispatch", &d};
+        if (auto status = check_stage(d.stage); !status) return bad(here, status.message);
         const auto& stage = compute::stage_table()[static_cast<std::size_t>(d.stage)];
-        const std::string here = where + " of " + std::string(stage.name);
+        here.stage = &stage;
         if (auto status = check_pipeline(d, stage, here); !status) return status;
         if (d.tiles.on()) {
+            Where lists = here;
+            lists.binding = "lists of active tiles";
             for (const auto list : {d.tiles.activity, d.tiles.flags, d.tiles.counts, d.tiles.list, d.tiles.dispatch}) {
-                if (auto status = check_device_buffer(objects_, list, here + ", lists of active tiles"); !status) return status;
+                if (auto status = check_device_buffer(objects_, list, lists); !status) return status;
             }
         }
         return check_slots(d, stage, here);
@@ -51,14 +71,12 @@ class Checker {
         return ok_status();
     }
 
-    Status check(const compute::Fill& fill) const {
-        return check_device_buffer(objects_, fill.buffer, "program '" + program_.label() + "', fill");
-    }
+    Status check(const compute::Fill& fill) const { return check_device_buffer(objects_, fill.buffer, {program_, "fill"}); }
 
     Status check(const compute::Timestamp&) const { return ok_status(); }
 
   private:
-    Status check_pipeline(const compute::Dispatch& d, const compute::StageInfo& stage, const std::string& where) const {
+    Status check_pipeline(const compute::Dispatch& d, const compute::StageInfo& stage, const Where& where) const {
         if (d.pipeline.id == 0) return bad(where, "the pipeline is null");
         const auto found = objects_.pipelines.find(d.pipeline.id);
         if (found == objects_.pipelines.end()) return bad(where, "no pipeline has the handle " + std::to_string(d.pipeline.id));
@@ -77,7 +95,7 @@ class Checker {
         return ok_status();
     }
 
-    Status check_slots(const compute::Dispatch& d, const compute::StageInfo& stage, const std::string& where) const {
+    Status check_slots(const compute::Dispatch& d, const compute::StageInfo& stage, Where where) const {
         if (d.slots.size() != stage.bindings.size()) {
             return bad(where, std::to_string(d.slots.size()) + " slots, the stage has " + std::to_string(stage.bindings.size()));
         }
@@ -85,12 +103,12 @@ class Checker {
         for (const auto& binding : stage.bindings) {
             if (!binding.exists(d.effects)) continue;
             const auto buffer = d.slots[static_cast<std::size_t>(binding.slot)];
-            const std::string here = where + ", " + std::string(binding.name);
-            if (auto status = check_device_buffer(objects_, buffer, here); !status) return status;
+            where.binding = binding.name;
+            if (auto status = check_device_buffer(objects_, buffer, where); !status) return status;
             const bool writes = binding.access != compute::Access::in;
             const auto [seen, first] = written.emplace(buffer.id, writes);
             if (!first && (seen->second || writes))
-                return bad(here, "buffer '" + objects_.buffers.at(buffer.id).label + "' is bound twice and written");
+                return bad(where, "buffer '" + objects_.buffers.at(buffer.id).label + "' is bound twice and written");
         }
         return ok_status();
     }

@@ -1,5 +1,6 @@
 // What was destroyed while submissions in flight may still use it.
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <utility>
@@ -22,9 +23,10 @@ template <class T> class Retired {
         newest_ = std::move(thing);
     }
     bool empty() const { return newest_ == nullptr; }
-    /// Takes those out that no submission uses after `finished` and calls gone(thing) ahead of each one's destruction.
-    template <class Call> void release(std::uint64_t finished, Call gone) {
-        for (std::unique_ptr<T>* at = &newest_; *at;) {
+    /// Takes those out that no submission uses after `finished`, at most `most` of them, and calls gone(thing) ahead of each
+    /// one's destruction.
+    template <class Call> void release(std::uint64_t finished, std::size_t most, Call gone) {
+        for (std::unique_ptr<T>* at = &newest_; *at && most > 0;) {
             if ((*at)->last_use > finished) {
                 at = &(*at)->older;
                 continue;
@@ -32,10 +34,8 @@ template <class T> class Retired {
             const std::unique_ptr<T> thing = std::move(*at);
             *at = std::move(thing->older);
             gone(*thing);
+            --most;
         }
-    }
-    void release(std::uint64_t finished) {
-        release(finished, [](T&) {});
     }
 
   private:

@@ -56,20 +56,19 @@ CpuDevice::~CpuDevice() {
 }
 
 Result<compute::Buffer> CpuDevice::create_buffer(const compute::BufferDesc& desc) {
-    // Operating systems promise more memory than they have; refuse before a page fault kills the host.
-    const std::uint64_t limit = capabilities_.memory_bytes / 10 * 9;
-    const auto fits = [&] {
-        return capabilities_.memory_bytes == 0 || (desc.bytes <= limit && allocated_ <= limit - desc.bytes);
-    };
-    if (!fits() && !retired_buffers_.empty()) {
+    auto& budget = MemoryBudget::of_process();
+    bool fits = budget.take(desc.bytes);
+    if (!fits && !retired_buffers_.empty()) {
         drain();
-        free_retired(submitted_);
+        free_buffers(submitted_, SIZE_MAX);
+        fits = budget.take(desc.bytes);
     }
-    if (!fits()) {
+    if (!fits) {
         return error(Code::out_of_memory, "buffer '" + desc.label + "': " + std::to_string(desc.bytes >> 20) +
-                                              " MiB more than the " + std::to_string(limit >> 20) +
+                                              " MiB more than the " + std::to_string(budget.room() >> 20) +
                                               " MiB that this machine can give");
     }
+    BudgetShare share(desc.bytes);
     // Fields start 64 bytes apart modulo 4 KiB: equal offsets in many arrays would share cache sets.
     const std::size_t stagger = 64 * ((counters_.allocations + 1) % 64);
     buffers_.reserve();
@@ -80,7 +79,7 @@ Result<compute::Buffer> CpuDevice::create_buffer(const compute::BufferDesc& desc
         return error(Code::out_of_memory, "buffer '" + desc.label + "': no memory for " + std::to_string(desc.bytes) + " bytes");
     memory.data = memory.block.get();
     memory.bytes = desc.bytes;
-    allocated_ += desc.bytes;
+    memory.share = std::move(share);
     ++counters_.allocations;
     return compute::Buffer{buffers_.add(std::move(owner))};
 }
@@ -105,12 +104,8 @@ Result<compute::NativeBuffer> CpuDevice::native(compute::Buffer buffer) {
 
 void CpuDevice::destroy_buffer(compute::Buffer buffer) { retired_buffers_.put(buffers_.take(buffer.id), submitted_); }
 
-void CpuDevice::free_retired(std::uint64_t finished) {
-    retired_programs_.release(finished);
-    retired_buffers_.release(finished, [this](Memory& memory) {
-        allocated_ -= memory.bytes;
-        Pages::forget(memory.data, memory.bytes);
-    });
+void CpuDevice::free_buffers(std::uint64_t finished, std::size_t most) {
+    retired_buffers_.release(finished, most, [](Memory& memory) { Pages::forget(memory.data, memory.bytes); });
 }
 
 void CpuDevice::drain() {
@@ -258,15 +253,20 @@ void CpuDevice::prepare(Recorded& program) {
     program.prepared = true;
 }
 
-void CpuDevice::destroy_program(compute::Program program) { retired_programs_.put(programs_.take(program.id), submitted_); }
+// Those that went before are freed here and not in submissions, which a host waits for in every frame.
+void CpuDevice::destroy_program(compute::Program program) {
+    if (!retired_programs_.empty()) retired_programs_.release(finished_so_far(), SIZE_MAX, [](Recorded&) {});
+    retired_programs_.put(programs_.take(program.id), submitted_);
+}
+
+std::uint64_t CpuDevice::finished_so_far() {
+    const std::lock_guard lock(mutex_);
+    return done_;
+}
 
 Result<compute::Ticket> CpuDevice::submit_inputs(compute::Program program, std::span<const StepInput> inputs) {
+    if (!retired_buffers_.empty()) free_buffers(finished_so_far(), 1); // a promotion leaves many
     std::unique_lock lock(mutex_);
-    if (const auto finished = done_; !retired_programs_.empty() || !retired_buffers_.empty()) {
-        lock.unlock();
-        free_retired(finished);
-        lock.lock();
-    }
     changed_.wait(lock, [this] { return queue_.size() < most_in_flight; });
     queue_.push_back(
         {submitted_ + 1, programs_.find(program.id), {inputs.begin(), inputs.end()}}); // may throw: nothing is counted then
@@ -277,10 +277,7 @@ Result<compute::Ticket> CpuDevice::submit_inputs(compute::Program program, std::
     return compute::Ticket{submitted_};
 }
 
-bool CpuDevice::finished(compute::Ticket ticket) {
-    const std::lock_guard lock(mutex_);
-    return done_ >= ticket.value;
-}
+bool CpuDevice::finished(compute::Ticket ticket) { return finished_so_far() >= ticket.value; }
 
 Status CpuDevice::wait(compute::Ticket ticket) {
     std::unique_lock lock(mutex_);

@@ -6,6 +6,7 @@
 #include "backends/cpu/active_tiles.hpp"
 #include "backends/cpu/content.hpp"
 #include "backends/cpu/host_memory.hpp"
+#include "backends/cpu/memory_budget.hpp"
 #include "backends/cpu/thread_pool.hpp"
 #include "engine/compute/device.hpp"
 #include <atomic>
@@ -44,6 +45,7 @@ class CpuDevice final : public compute::Device {
 
   private:
     struct Memory : backends::Retirable<Memory> {
+        BudgetShare share;
         std::shared_ptr<std::byte> block;
         std::byte* data = nullptr;
         std::uint64_t bytes = 0;
@@ -97,8 +99,10 @@ class CpuDevice final : public compute::Device {
 
     Memory& at(compute::Buffer buffer) const { return *buffers_.find(buffer.id); }
     void drain();
-    /// Frees what was destroyed and is not in use any more.
-    void free_retired(std::uint64_t finished);
+    /// The newest submission that has.
+    std::uint64_t finished_so_far();
+    /// Frees buffers that were destroyed and are not in use any more, at most so many.
+    void free_buffers(std::uint64_t finished, std::size_t most);
     void device_thread();
     void execute(Recorded& program, std::span<const StepInput> inputs, std::vector<compute::Timing>& timings);
     /// Errors: internal (more outputs than any stage has).
@@ -126,7 +130,6 @@ class CpuDevice final : public compute::Device {
     backends::HandleTable<Recorded> programs_;
     backends::Retired<Memory> retired_buffers_;
     backends::Retired<Recorded> retired_programs_;
-    std::uint64_t allocated_ = 0;
 
     std::mutex mutex_; // of what follows, and of Memory::content and ::exposed while it runs
     std::condition_variable changed_;

@@ -14,7 +14,7 @@ class Pages {
   public:
     /// Null where there is no memory.
     static std::shared_ptr<Pages> map(std::size_t bytes);
-    Pages(std::byte* data, std::size_t bytes) : data_(data), bytes_(bytes) {}
+    Pages(std::byte* data, std::size_t bytes);
     ~Pages();
     Pages(const Pages&) = delete;
     Pages& operator=(const Pages&) = delete;
@@ -23,6 +23,8 @@ class Pages {
     std::size_t bytes() const { return bytes_; }
     /// Gives back the pages that lie within [data, data + bytes).
     static void forget(std::byte* data, std::size_t bytes);
+    /// Of all Pages of the process, what was touched.
+    static std::uint64_t resident_bytes();
 
   private:
     std::byte* data_;

@@ -1,9 +1,12 @@
 #include "backends/cpu/host_memory.hpp"
 #include <algorithm>
 #include <fstream>
+#include <mutex>
 #include <new>
+#include <set>
 #include <sys/mman.h>
 #include <unistd.h>
+#include <vector>
 
 namespace wadi::cpu {
 
@@ -23,6 +26,16 @@ std::string processor_name() {
 namespace {
 constexpr std::size_t small_page = 4096, large_page = std::size_t{2} << 20;
 std::size_t rounded_up(std::size_t bytes, std::size_t unit) { return (bytes + unit - 1) / unit * unit; }
+
+// Never destroyed: worlds may outlive the process's static objects.
+struct Mapped {
+    std::mutex mutex;
+    std::set<const Pages*> pages;
+};
+Mapped& mapped() {
+    static Mapped& all = *new Mapped;
+    return all;
+}
 } // namespace
 
 std::shared_ptr<Pages> Pages::map(std::size_t bytes) {
@@ -46,7 +59,29 @@ std::shared_ptr<Pages> Pages::map(std::size_t bytes) {
     }
 }
 
-Pages::~Pages() { munmap(data_, bytes_); }
+Pages::Pages(std::byte* data, std::size_t bytes) : data_(data), bytes_(bytes) {
+    const std::lock_guard lock(mapped().mutex);
+    mapped().pages.insert(this);
+}
+
+Pages::~Pages() {
+    const std::lock_guard lock(mapped().mutex);
+    mapped().pages.erase(this);
+    munmap(data_, bytes_);
+}
+
+std::uint64_t Pages::resident_bytes() {
+    const std::lock_guard lock(mapped().mutex);
+    std::vector<unsigned char> resident;
+    std::uint64_t pages = 0;
+    for (const auto* mapping : mapped().pages) {
+        resident.resize(mapping->bytes() / small_page);
+        if (mincore(mapping->data(), mapping->bytes(), resident.data()) != 0) continue;
+        pages +=
+            static_cast<std::uint64_t>(std::count_if(resident.begin(), resident.end(), [](unsigned char r) { return r & 1; }));
+    }
+    return pages * small_page;
+}
 
 void Pages::forget(std::byte* data, std::size_t bytes) {
     const auto begin = reinterpret_cast<std::uintptr_t>(data), end = (begin + bytes) / small_page * small_page;

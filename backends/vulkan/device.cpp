@@ -11,7 +11,7 @@ class VulkanDevice final : public compute::Device {
 
     ~VulkanDevice() override {
         context_->wait_idle();
-        free_retired(UINT64_MAX);
+        free_retired(UINT64_MAX, SIZE_MAX);
     }
 
     Status open() {
@@ -35,7 +35,7 @@ class VulkanDevice final : public compute::Device {
         auto made = buffers_.create(desc);
         if (made || made.status().code != Code::out_of_memory || retired_buffers_.empty()) return made;
         context_->wait_idle();
-        free_retired(submissions_.look_for_finished());
+        free_retired(submissions_.look_for_finished(), SIZE_MAX);
         return buffers_.create(desc);
     }
 
@@ -78,7 +78,7 @@ class VulkanDevice final : public compute::Device {
     Result<compute::Ticket> submit_inputs(compute::Program program, std::span<const StepInput> inputs) override {
         if (!submissions_.recording()) {
             if (Status s = submissions_.check_order(); !s) return s;
-            free_retired(submissions_.look_for_finished());
+            free_retired(submissions_.look_for_finished(), 1); // a promotion leaves many
         }
         auto slot = submissions_.acquire();
         if (!slot) return slot.status();
@@ -112,9 +112,9 @@ class VulkanDevice final : public compute::Device {
     compute::HostSync* host_sync() override { return &submissions_; }
 
   private:
-    void free_retired(std::uint64_t finished) {
-        retired_programs_.release(finished);
-        retired_buffers_.release(finished, [this](Memory& memory) { release(*context_, memory); });
+    void free_retired(std::uint64_t finished, std::size_t most) {
+        retired_programs_.release(finished, most, [](CompiledProgram&) {});
+        retired_buffers_.release(finished, most, [this](Memory& memory) { release(*context_, memory); });
     }
 
     // Destroyed from the last to the first.

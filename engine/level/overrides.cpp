@@ -1,4 +1,5 @@
 #include "engine/level/overrides.hpp"
+#include "engine/compute/available_memory.hpp"
 #include "engine/settings/accuracy_presets.hpp"
 #include "engine/settings/messages.hpp"
 #include "engine/settings/method_presets.hpp"
@@ -6,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <utility>
 
@@ -55,6 +57,16 @@ void stretch(Settings& settings, double factor) {
     }
 }
 
+// Before anything of the grid's size is asked for: the system may end a process that touches more than there is.
+Status check_memory(const Grid& grid) {
+    constexpr std::uint64_t drawn = 32; // bytes per cell: terrain, sand, water, four velocities, roughness
+    const std::uint64_t bytes = std::uint64_t(grid.nx) * std::uint64_t(grid.ny) * drawn, available = available_memory();
+    if (available == 0 || bytes <= available / 10 * 9) return ok_status();
+    return error(Code::out_of_memory, "grid: " + std::to_string(grid.nx) + " x " + std::to_string(grid.ny) + " cells need " +
+                                          std::to_string(bytes >> 20) + " MiB while they are drawn; " +
+                                          std::to_string(available >> 20) + " MiB are available");
+}
+
 } // namespace
 
 Result<LevelGrid> apply_overrides(const LevelOverrides& overrides, Settings& settings) {
@@ -68,6 +80,7 @@ Result<LevelGrid> apply_overrides(const LevelOverrides& overrides, Settings& set
         grid = {size->first, size->second, dx};
         stretch(settings, level_grid.stretch_y);
     }
+    if (auto status = check_memory(settings.grid); !status) return status;
     if (overrides.dt) settings.dt = *overrides.dt;
     if (overrides.fused_stages) settings.fused_stages = *overrides.fused_stages;
     if (overrides.active_tiles) settings.active_tiles = *overrides.active_tiles;

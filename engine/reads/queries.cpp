@@ -61,7 +61,14 @@ Result<std::uint64_t> Queries::ask(std::span<const float> xy) {
     if (batch.ticket != 0 && (!batch.submitted || !state_.device().finished(batch.sampled)))
         return error(Code::not_ready, "query: " + std::to_string(most_batches) + " batches are under way");
     batch.ticket = 0;
-    if (auto status = reserve(batch, place, static_cast<std::uint32_t>(count)); !status) return status;
+    if (count > batch.capacity) {
+        // Room for the next ones as well: eight calls in a row would otherwise take longer than later ones.
+        for (std::size_t n = 0; n < batches_.size(); ++n) {
+            if (batches_[n].ticket != 0) continue;
+            if (auto status = reserve(batches_[n], n, static_cast<std::uint32_t>(count)); !status) return status;
+        }
+        record();
+    }
     std::memcpy(state_.device().mapped(batch.buffers[upload]).data(), xy.data(), xy.size_bytes());
     batch.count = static_cast<std::uint32_t>(count);
     batch.submitted = false;
@@ -83,7 +90,14 @@ Status Queries::submit(Batch& batch) {
     return ok_status();
 }
 
+// Where that fails the batch's own submission says so.
+void Queries::record() {
+    for (auto& batch : batches_)
+        if (batch.program) static_cast<void>(batch.program->record());
+}
+
 Status Queries::at_boundary() {
+    record(); // after a promotion: in the step that takes long anyway, not in the host's next eight queries
     for (auto& batch : batches_) {
         if (batch.ticket == 0 || batch.submitted) continue;
         if (auto status = submit(batch); !status) return status;

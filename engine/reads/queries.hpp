@@ -22,7 +22,7 @@ class Queries {
 
     /// Asks for the state after the steps submitted so far; in the middle of a step, after that step. x, y of each point in
     /// metres. Returns a ticket; the answer of the oldest batch is given up. Allocates where a batch is larger than the
-    /// earlier ones in its place, and then waits for the device.
+    /// earlier ones in its place.
     /// Errors: bad_argument (no points, too many, a coordinate that is not finite), not_ready (all batches are under way).
     Result<std::uint64_t> ask(std::span<const float> xy);
     /// Valid until `most_batches` - 1 further batches were asked for. Errors: not_ready, bad_argument (unknown ticket, or given
@@ -44,6 +44,8 @@ class Queries {
 
     Status reserve(Batch& batch, std::size_t place, std::uint32_t count);
     Status submit(Batch& batch);
+    /// The programs of all batches that have room, ahead of their use.
+    void record();
 
     WorldState& state_;
     Stepper& stepper_;

@@ -17,6 +17,8 @@ class StateProgram {
     StateProgram(const StateProgram&) = delete;
     StateProgram& operator=(const StateProgram&) = delete;
 
+    /// Records it for the current parity, where that has not been done.
+    Status record();
     /// Submits it for the current parity.
     Result<compute::Ticket> submit(const StepInput& input = {});
     /// Drops what was recorded: its buffers changed.
