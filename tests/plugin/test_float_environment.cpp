@@ -20,7 +20,7 @@ struct EnvironmentKept {
 
 // Numbers whose last bit depends on the rounding, wherever the host's side of the library computes: reading, brushes, sources,
 // sides.
-const char* const uneven = R"({"format_version": 1, "name": "uneven", "dt": 0.013, "grid": {"nx": 41, "ny": 37, "dx": 0.31},
+const char* const uneven_level = R"({"format_version": 1, "name": "uneven", "dt": 0.013, "grid": {"nx": 41, "ny": 37, "dx": 0.31},
     "terrain": [{"shape": "plane", "height": 0.1, "slope_x": 0.053}], "sand": [{"shape": "cone", "center": [7.1, 5.3], "radius": 2.3, "height": 0.7}],
     "water": [{"shape": "box", "from": [0, 0], "to": [3.1, 11], "height": 1.1}], "material": {"cohesion_dry": 333.3},
     "sources": [{"shape": "disc", "center": [3.3, 3.7], "radius": 1.1, "rate": [[0, 0.013], [0.1, 0.17], [3, 0.7]]}],
@@ -31,7 +31,7 @@ std::uint64_t hash_of_session(const std::string& backend) {
     options.backend = backend.c_str();
     options.threads = 2;
     wadi_world_id id{};
-    REQUIRE_MESSAGE(wadi_create_world_from_level_text(uneven, nullptr, nullptr, nullptr, &options, &id) == WADI_OK,
+    REQUIRE_MESSAGE(wadi_create_world_from_level_text(uneven_level, nullptr, nullptr, nullptr, &options, &id) == WADI_OK,
                     std::string(wadi_get_last_error()));
     const AbiWorld world(id);
     auto edit = wadi_default_edit();
@@ -92,11 +92,11 @@ TEST_CASE("a host that traps floating-point exceptions meets none of the library
 
 namespace {
 
-std::uint32_t callbacks = 0;
+std::uint32_t rude_calls = 0;
 bool denormals_kept = true;
 
 void rude_log(void*, int, const char*) {
-    ++callbacks;
+    ++rude_calls;
 #if defined(__SSE__)
     denormals_kept = denormals_kept && (_mm_getcsr() & 0x8040) == 0;
 #endif
@@ -111,7 +111,7 @@ TEST_CASE("a callback that leaves another rounding mode changes no bit, nor do d
         auto options = cpu_device();
         options.log = log;
         wadi_world_id id{};
-        REQUIRE(wadi_create_world_from_level_text(uneven, nullptr, nullptr, nullptr, &options, &id) == WADI_OK);
+        REQUIRE(wadi_create_world_from_level_text(uneven_level, nullptr, nullptr, nullptr, &options, &id) == WADI_OK);
         const AbiWorld world(id);
         auto edit = wadi_default_edit();
         edit.layer = WADI_LAYER_SAND;
@@ -127,7 +127,7 @@ TEST_CASE("a callback that leaves another rounding mode changes no bit, nor do d
 #endif
     const auto hash = with_log(rude_log);
     CHECK(std::fegetround() == FE_TONEAREST);
-    CHECK(callbacks > 0);
+    CHECK(rude_calls > 0);
     CHECK(denormals_kept);
 #if defined(__SSE__)
     CHECK((_mm_getcsr() & 0x8040) == 0x8040);

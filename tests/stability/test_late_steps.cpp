@@ -10,7 +10,7 @@ using namespace wadi::test;
 
 namespace {
 
-constexpr std::uint64_t limit = std::uint64_t{1} << 31;
+constexpr std::uint64_t int_end = std::uint64_t{1} << 31;
 
 // The world goes on from that step, as if it had run so long.
 void pretend(World& world, std::uint64_t at_step) {
@@ -42,7 +42,7 @@ Scene growing_scene() {
 } // namespace
 
 TEST_CASE("numbers that stages get of steps are positive, count on by one, and lead back to the step") {
-    for (const std::uint64_t from : {std::uint64_t{0}, limit - 40, limit + STEP_TURN - 40, 9 * limit - 40}) {
+    for (const std::uint64_t from : {std::uint64_t{0}, int_end - 40, int_end + STEP_TURN - 40, 9 * int_end - 40}) {
         for (std::uint64_t step = from; step < from + 80; ++step) {
             CHECK((stage_step(step) > 0 || step == 0));
             CHECK((stage_step(step + 1) == stage_step(step) + 1) == !turns(step + 1));
@@ -50,7 +50,7 @@ TEST_CASE("numbers that stages get of steps are positive, count on by one, and l
                 CHECK(step_behind(stage_step(step), later) == static_cast<std::int64_t>(step));
         }
     }
-    CHECK(stage_step(limit - 1) == 2147483647);
+    CHECK(stage_step(int_end - 1) == 2147483647);
 }
 
 TEST_CASE("sources, rain and sides hold their last value past step 2^31, in the ledger too") {
@@ -58,7 +58,7 @@ TEST_CASE("sources, rain and sides hold their last value past step 2^31, in the 
         CAPTURE(backend);
         auto world = make_world(growing_scene(), {backend});
         step(*world, 3);
-        pretend(*world, limit - 4);
+        pretend(*world, int_end - 4);
         std::vector<std::int64_t> came;
         std::int64_t before = world->reader().stats()->ledger.water_in;
         for (int n = 0; n < 8; ++n) {
@@ -68,7 +68,7 @@ TEST_CASE("sources, rain and sides hold their last value past step 2^31, in the 
             came.push_back(stats->ledger.water_in - before);
             before = stats->ledger.water_in;
         }
-        CHECK(world->steps() == limit + 4);
+        CHECK(world->steps() == int_end + 4);
         for (const auto quanta : came) {
             CHECK(quanta > 0);
             CHECK(static_cast<double>(quanta) == doctest::Approx(static_cast<double>(came.front())).epsilon(0.02));
@@ -86,7 +86,7 @@ TEST_CASE("active tiles and output tiles pass step 2^31 without another bit or a
         REQUIRE(plain->outputs().set_mask(tiles_bit));
         for (auto* world : {plain.get(), tiles.get()}) {
             step(*world, 3);
-            pretend(*world, limit - 6);
+            pretend(*world, int_end - 6);
         }
         std::int64_t newest = 0;
         for (int n = 0; n < 12; ++n) {
@@ -102,6 +102,6 @@ TEST_CASE("active tiles and output tiles pass step 2^31 without another bit or a
             for (int t = 0; t < found->count(); ++t) newest = std::max(newest, (*found)[t].changed_step);
             CHECK(newest == static_cast<std::int64_t>(found->step));
         }
-        CHECK(newest > static_cast<std::int64_t>(limit));
+        CHECK(newest > static_cast<std::int64_t>(int_end));
     }
 }

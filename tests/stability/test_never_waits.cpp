@@ -15,12 +15,12 @@ compute::Ticket queue_steps(World& world) {
     return world.stepper().ticket();
 }
 
-void drain(World& world) {
+void wait_until_done(World& world) {
     std::byte byte[1];
     REQUIRE(world.device().read(world.state().device().memory().front().buffer, 0, byte));
 }
 
-void ask(World& world, int times) {
+void ask_points(World& world, int times) {
     const float xy[] = {3, 3, 5, 5};
     for (int n = 0; n < times; ++n) {
         const auto ticket = world.queries().ask(xy);
@@ -30,7 +30,7 @@ void ask(World& world, int times) {
 
 void fetch_save(World& world, std::uint64_t ticket) {
     std::vector<std::byte> bytes(*world.snapshots().saved_bytes(ticket));
-    while (world.snapshots().end_save(ticket, bytes).code == Code::not_ready) drain(world);
+    while (world.snapshots().end_save(ticket, bytes).code == Code::not_ready) wait_until_done(world);
 }
 
 } // namespace
@@ -44,14 +44,14 @@ TEST_CASE("queries, saves, changes of the material and promotions do not wait fo
         options.threads = 1;
         auto world = make_world(scene, {backend, options});
         REQUIRE(world->stepper().prepare()); // compilers of drivers are not meant here
-        ask(*world, 8);
+        ask_points(*world, 8);
         fetch_save(*world, *world->snapshots().begin_save());
         edit_world(*world, {brush(EditLayer::sand, 3, 3, 2, 0.1)});
         step(*world, 16);
         for (const std::string moment : {"at rest", "material", "promotion"}) {
             CAPTURE(backend);
             CAPTURE(moment);
-            drain(*world);
+            wait_until_done(*world);
             auto last = queue_steps(*world);
             if (moment == "material") {
                 const int key = find_material_key("cohesion_dry");
@@ -64,10 +64,10 @@ TEST_CASE("queries, saves, changes of the material and promotions do not wait fo
             }
             CHECK_FALSE(world->device().finished(last));
             // Where a stage meets new effects its first query has it compiled.
-            ask(*world, 1);
-            drain(*world);
+            ask_points(*world, 1);
+            wait_until_done(*world);
             last = queue_steps(*world);
-            ask(*world, 7);
+            ask_points(*world, 7);
             const auto save = world->snapshots().begin_save();
             REQUIRE(save);
             CHECK_FALSE(world->device().finished(last));

@@ -12,7 +12,7 @@ using namespace wadi;
 
 namespace {
 
-constexpr std::uint64_t mib = std::uint64_t{1} << 20;
+constexpr std::uint64_t one_mib = std::uint64_t{1} << 20;
 
 // A machine as its files describe it.
 struct FilesOfMachine {
@@ -31,20 +31,20 @@ struct FilesOfMachine {
 TEST_CASE("available memory: the machine's, or less where a control group of version 2 has a limit, itself or above") {
     const FilesOfMachine files;
     CHECK(available_memory("/nowhere-at-all/") == 0);
-    CHECK(files.available() == 1024 * mib);
+    CHECK(files.available() == 1024 * one_mib);
     files.put("proc/self/cgroup", "0::/a/b\n");
-    CHECK(files.available() == 1024 * mib); // no such folders: another's name space
+    CHECK(files.available() == 1024 * one_mib); // no such folders: another's name space
     files.put("sys/fs/cgroup/a/b/memory.max", "max\n");
     files.put("sys/fs/cgroup/a/b/memory.current", "1000\n");
-    CHECK(files.available() == 1024 * mib);
-    files.put("sys/fs/cgroup/a/memory.max", std::to_string(500 * mib));
-    files.put("sys/fs/cgroup/a/memory.current", std::to_string(300 * mib));
-    CHECK(files.available() == 200 * mib);
-    files.put("sys/fs/cgroup/a/memory.stat", "anon 5\ninactive_file " + std::to_string(50 * mib) + "\n");
-    CHECK(files.available() == 250 * mib); // file pages can go
-    files.put("sys/fs/cgroup/a/b/memory.max", std::to_string(10 * mib));
-    CHECK(files.available() == 10 * mib - 1000);
-    files.put("sys/fs/cgroup/a/b/memory.current", std::to_string(11 * mib)); // above its limit
+    CHECK(files.available() == 1024 * one_mib);
+    files.put("sys/fs/cgroup/a/memory.max", std::to_string(500 * one_mib));
+    files.put("sys/fs/cgroup/a/memory.current", std::to_string(300 * one_mib));
+    CHECK(files.available() == 200 * one_mib);
+    files.put("sys/fs/cgroup/a/memory.stat", "anon 5\ninactive_file " + std::to_string(50 * one_mib) + "\n");
+    CHECK(files.available() == 250 * one_mib); // file pages can go
+    files.put("sys/fs/cgroup/a/b/memory.max", std::to_string(10 * one_mib));
+    CHECK(files.available() == 10 * one_mib - 1000);
+    files.put("sys/fs/cgroup/a/b/memory.current", std::to_string(11 * one_mib)); // above its limit
     CHECK(files.available() == 0);
 }
 
@@ -52,12 +52,12 @@ TEST_CASE("available memory: a control group of version 1, in a container that s
     const FilesOfMachine files;
     files.put("proc/self/cgroup", "5:cpu,cpuacct:/x\n4:hugetlb,memory:/docker/0123\n0::/\n");
     files.put("sys/fs/cgroup/memory/memory.limit_in_bytes", "9223372036854771712\n");
-    files.put("sys/fs/cgroup/memory/memory.usage_in_bytes", std::to_string(100 * mib));
-    CHECK(files.available() == 1024 * mib);
-    files.put("sys/fs/cgroup/memory/memory.limit_in_bytes", std::to_string(128 * mib));
-    CHECK(files.available() == 28 * mib);
-    files.put("sys/fs/cgroup/memory/memory.stat", "inactive_file 9\ntotal_inactive_file " + std::to_string(4 * mib) + "\n");
-    CHECK(files.available() == 32 * mib);
+    files.put("sys/fs/cgroup/memory/memory.usage_in_bytes", std::to_string(100 * one_mib));
+    CHECK(files.available() == 1024 * one_mib);
+    files.put("sys/fs/cgroup/memory/memory.limit_in_bytes", std::to_string(128 * one_mib));
+    CHECK(files.available() == 28 * one_mib);
+    files.put("sys/fs/cgroup/memory/memory.stat", "inactive_file 9\ntotal_inactive_file " + std::to_string(4 * one_mib) + "\n");
+    CHECK(files.available() == 32 * one_mib);
 }
 
 TEST_CASE("buffers that other devices of the process were promised and nobody touched yet count as taken") {
