@@ -17,7 +17,7 @@ const char* const head = "#version 450\n#extension GL_GOOGLE_include_directive :
 
 // Rows of a group begin at multiples of four elements, in memory as in shared rows: each buffer has a second name, for four
 // floats at once.
-const char* const four_at_once =
+const char* const four_floats =
     "#define WIDE 4\n#define COPY(TO, T, FROM, F) { vec4 four = wide_##FROM[(F) >> 2]; TO[T] = four.x; TO[(T) + 1] = four.y; "
     "TO[(T) + 2] = four.z; TO[(T) + 3] = four.w; }\n"
     "#define ZERO(TO, T) { TO[T] = 0.0f; TO[(T) + 1] = 0.0f; TO[(T) + 2] = 0.0f; TO[(T) + 3] = 0.0f; }\n#define COPIED\n"
@@ -105,7 +105,7 @@ std::string write_glsl(const FusedStage& whole, const Effects& effects) {
       << "#define Place ivec2\n#define PLACE(X, Y) ivec2(X, Y)\n"
       << index_macros << shared_macros() << "#ifdef WADI_HALF\n"
       << one_by_one << "#else\n"
-      << four_at_once << wide_names(s) << "#endif\n#define LANE int(gl_LocalInvocationIndex)\n#define LANES "
+      << four_floats << wide_names(s) << "#endif\n#define LANE int(gl_LocalInvocationIndex)\n#define LANES "
       << fused_group_x * fused_group_y
       << "\n#define BARRIER barrier()\n#define ROLLED\n#define PART_FUNCTION\n#define NOT_KEPT(X)\n"
       << keep_stored;
