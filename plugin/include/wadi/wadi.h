@@ -103,8 +103,8 @@ typedef struct wadi_level_overrides {
                                   two sand steps per water step, "accurate" also second order for water; NULL = what the level says.
                                   samples/report has errors and costs */
     int32_t active_tiles;      /* side of the active tiles in cells: 8, 16, 32 or 64; -1 = off, 1 = on while little of the world is
-                                  awake, 0 = as 1 in large grids on GPUs. Tiles in which nothing changes any more are left out of a
-                                  step; every bit stays, also in snapshots */
+                                  awake, 0 = as the level says, which by default is 1 in large grids on GPUs. Tiles in which
+                                  nothing changes any more are left out of a step; every bit stays, also in snapshots */
     int32_t fused_stages;      /* 1 = several stages in one pass wherever the effects allow, -1 = one by one. Every bit stays */
     int32_t any_files;         /* 1 = maps and series may lie anywhere that the process can read; 0 = in the level's folder and below it
                                   alone, links followed: no "..", no path from the root on. For levels of one's own */
