@@ -143,7 +143,7 @@ class Lab:
                 (scratch / name).write_bytes(values)
             (scratch / "level.json").write_text(json.dumps(text, indent=1))
             out = scratch / "out"
-            command = [str(self.recorder), str(scratch / "level.json"), *arguments, "--out", str(out), "--summary", str(out / "summary.json")]
+            command = [str(self.recorder), str(scratch / "level.json"), "--any-files", *arguments, "--out", str(out), "--summary", str(out / "summary.json")]
             out.mkdir()
             done = subprocess.run(command, capture_output=True, text=True, check=False)
             if done.returncode != 0:
