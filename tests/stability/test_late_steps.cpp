@@ -45,7 +45,7 @@ TEST_CASE("numbers that stages get of steps are positive, count on by one, and l
     for (const std::uint64_t from : {std::uint64_t{0}, int_end - 40, int_end + STEP_TURN - 40, 9 * int_end - 40}) {
         for (std::uint64_t step = from; step < from + 80; ++step) {
             CHECK((stage_step(step) > 0 || step == 0));
-            CHECK((stage_step(step + 1) == stage_step(step) + 1) == !turns(step + 1));
+            CHECK((stage_step(step + 1) == std::int64_t{stage_step(step)} + 1) == !turns(step + 1));
             for (const std::uint64_t later : {step, step + 70})
                 CHECK(step_behind(stage_step(step), later) == static_cast<std::int64_t>(step));
         }
