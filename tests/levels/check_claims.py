@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 """Runs a level as its expected.json says and checks every claim, each with a control that must break it. README.md has the format.
 
 usage: check_claims.py RECORDER LEVEL_FOLDER [--backend cpu] [--full] [--keep DIR] [--first-steps N --equal-to BACKEND]

@@ -1,3 +1,4 @@
+#!/usr/bin/env python3
 """The quick report from start to end: its pages, that a run that was broken off goes on, that a point repeats, that bad input is refused
 in one line, and that what it measures is what the solver promises.
 
