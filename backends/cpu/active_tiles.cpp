@@ -1,4 +1,5 @@
 #include "backends/cpu/active_tiles.hpp"
+#include "backends/cpu/processor.hpp"
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -60,8 +61,8 @@ class Runner {
     };
 
     std::uint32_t now() const { return static_cast<std::uint32_t>(call_.input.step); }
-    bool stamped(int tile) const { return std::atomic_ref(s_.activity[tile]).load(std::memory_order_relaxed) == now(); }
-    void stamp(int tile) const { std::atomic_ref(s_.activity[tile]).store(now(), std::memory_order_relaxed); }
+    bool stamped(int tile) const { return SharedNumber(s_.activity[tile]).load() == now(); }
+    void stamp(int tile) const { SharedNumber(s_.activity[tile]).store(now()); }
 
     // Runs `count` tiles from `tile` on, the cells [i0, i1) x [j0, j1), and compares what tiles without a stamp write with what
     // was there: some rows at a time, and no further than the first that differs.

@@ -56,7 +56,7 @@ class CpuDevice final : public compute::Device {
     struct Step {
         StageBlock block = nullptr; // null for copies and fills
         std::vector<void*> buffers;
-        std::vector<unsigned long> sizes;
+        std::vector<unsigned long long> sizes;
         compute::Range2 range{};
         std::size_t input = 0; // of the submission
         ActiveStage active;

@@ -9,6 +9,16 @@ namespace wadi::cpu {
 std::uint64_t physical_memory(); // bytes; 0 = unknown
 std::string processor_name();
 
+// By the system's own calls; a page has 4 KiB, addresses and sizes are multiples of it.
+/// Zeros at a multiple of `alignment` where the system has pages that gain by it; null where there is no memory.
+std::byte* map_pages(std::size_t bytes, std::size_t alignment);
+/// The whole of what map_pages gave.
+void unmap_pages(std::byte* data, std::size_t bytes);
+/// How many of these pages are in memory; 0 where the system does not say.
+std::uint64_t resident_pages(std::byte* data, std::size_t pages, std::size_t page);
+/// Gives the memory back; the pages hold zeros when they are touched again.
+void forget_pages(std::byte* data, std::size_t bytes);
+
 /// Zeros in pages as large as the system gives; the memory of pages that nobody has touched is not taken yet.
 class Pages {
   public:

@@ -7,7 +7,7 @@
 namespace wadi::cpu {
 
 /// Runs a stage over [i0, i1) x [j0, j1). `sizes` are the buffers' sizes in bytes, read only in index-checked builds.
-using StageBlock = void (*)(void* const* buffers, const unsigned long* sizes, const void* params, const void* input, int i0,
+using StageBlock = void (*)(void* const* buffers, const unsigned long long* sizes, const void* params, const void* input, int i0,
                             int i1, int j0, int j1);
 using StageSelect = StageBlock (*)(unsigned effects);
 
@@ -15,7 +15,7 @@ using StageSelect = StageBlock (*)(unsigned effects);
 struct StageCall {
     StageBlock block;
     void* const* buffers;
-    const unsigned long* sizes;
+    const unsigned long long* sizes;
     const WorldParams& params;
     const StepInput& input;
     compute::Range2 range;

@@ -1,4 +1,5 @@
 #include "backends/cpu/thread_pool.hpp"
+#include "backends/cpu/processor.hpp"
 #include "engine/compute/float_environment.hpp"
 #include <exception>
 
@@ -9,30 +10,22 @@ namespace {
 // About 20 us: longer than two threads drift apart within a pass, far shorter than a time slice.
 constexpr int spins = 2000;
 
-void pause() {
-#if defined(__x86_64__)
-    __builtin_ia32_pause();
-#endif
-}
-
-// Waits until done(value) and returns the value.
-template <class Number, class Done> Number wait_until(const std::atomic<Number>& value, Done done) {
+// Waits until done(value) and returns the value. Whoever changes the value wakes.
+template <class Number, class Done> Number wait_until(const std::atomic<Number>& value, compute::Waiter& changed, Done done) {
+    Number now = 0;
+    const auto look = [&] { return done(now = value.load(std::memory_order_acquire)); };
     for (int n = 0; n < spins; ++n) {
-        const Number now = value.load(std::memory_order_acquire);
-        if (done(now)) return now;
+        if (look()) return now;
         pause();
     }
-    for (;;) {
-        const Number now = value.load(std::memory_order_acquire);
-        if (done(now)) return now;
-        value.wait(now, std::memory_order_acquire);
-    }
+    changed.wait(look);
+    return now;
 }
 
 } // namespace
 
-void Remaining::wait() const {
-    wait_until(count_, [](int left) { return left == 0; });
+void Remaining::wait() {
+    wait_until(count_, done_, [](int left) { return left == 0; });
 }
 
 ThreadPool::ThreadPool(int threads) {
@@ -45,22 +38,22 @@ ThreadPool::ThreadPool(int threads) {
 ThreadPool::~ThreadPool() {
     stop_.store(true);
     job_.fetch_add(one_generation);
-    job_.notify_all();
+    changed_.wake();
     for (auto& thread : workers_) thread.join();
 }
 
 void ThreadPool::run(const std::function<void()>& work) {
     work_ = &work;
     job_.fetch_add(one_generation + open_bit, std::memory_order_acq_rel);
-    job_.notify_all();
+    changed_.wake();
     work();
     job_.fetch_sub(open_bit, std::memory_order_acq_rel);
-    wait_until(job_, [](std::uint64_t job) { return (job & inside) == 0; });
+    wait_until(job_, changed_, [](std::uint64_t job) { return (job & inside) == 0; });
 }
 
 // False: the job that was seen is closed already, or the pool stops.
 bool ThreadPool::enter(std::uint64_t& seen) {
-    std::uint64_t job = wait_until(job_, [&](std::uint64_t now) { return now / one_generation != seen; });
+    std::uint64_t job = wait_until(job_, changed_, [&](std::uint64_t now) { return now / one_generation != seen; });
     seen = job / one_generation;
     while ((job & open_bit) != 0 && job / one_generation == seen) {
         if (job_.compare_exchange_weak(job, job + 1, std::memory_order_acq_rel)) return true;
@@ -74,7 +67,7 @@ void ThreadPool::worker() {
     while (!stop_.load()) {
         if (!enter(seen)) continue;
         (*work_)();
-        if (((job_.fetch_sub(1, std::memory_order_acq_rel) - 1) & (inside | open_bit)) == 0) job_.notify_all();
+        if (((job_.fetch_sub(1, std::memory_order_acq_rel) - 1) & (inside | open_bit)) == 0) changed_.wake();
     }
 }
 

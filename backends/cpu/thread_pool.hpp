@@ -1,6 +1,7 @@
 // Threads that run one function together and sleep in between. Nothing ever waits for a thread that has not begun: on busy cores
 // the others do its share.
 #pragma once
+#include "engine/compute/waiter.hpp"
 #include <atomic>
 #include <cstdint>
 #include <functional>
@@ -14,12 +15,13 @@ class Remaining {
   public:
     void set(int count) { count_.store(count, std::memory_order_relaxed); }
     void finish(int count) {
-        if (count_.fetch_sub(count, std::memory_order_acq_rel) == count) count_.notify_all();
+        if (count_.fetch_sub(count, std::memory_order_acq_rel) == count) done_.wake();
     }
-    void wait() const;
+    void wait();
 
   private:
     std::atomic<int> count_{0};
+    compute::Waiter done_;
 };
 
 class ThreadPool {
@@ -46,6 +48,7 @@ class ThreadPool {
 
     const std::function<void()>* work_ = nullptr;
     std::atomic<std::uint64_t> job_{0};
+    compute::Waiter changed_; // job_
     std::atomic<bool> stop_{false};
     std::vector<std::thread> workers_;
 };

@@ -138,7 +138,10 @@ Result<std::unique_ptr<Instance>> Instance::create(const compute::DeviceOptions&
 
 Status Instance::open(const compute::DeviceOptions& options) {
     std::string why;
-    entry_ = loader_entry(why);
+    {
+        const std::lock_guard lock(volk_mutex);
+        entry_ = loader_entry(why);
+    }
     if (entry_ == nullptr) return error(Code::not_supported, why);
     PFN_vkEnumerateInstanceVersion enumerate_version = nullptr;
     PFN_vkEnumerateInstanceLayerProperties enumerate_layers = nullptr;

@@ -79,6 +79,23 @@ Status FrameDriver::take_run() {
     return status;
 }
 
+// Once for each world: a host that does not look at what it drops simulates less than it thinks.
+void FrameDriver::tell_of_dropped_time(const Frame& frame) const {
+    if (!state_.log) return;
+    const bool most = frame.steps >= settings_.max_steps_per_update;
+    state_.log(
+        1,
+        "an update dropped " + std::to_string(static_cast<double>(frame.dropped) * 1e-9) + " s of the host's time, because " +
+            (most ? "it was more than max_steps_per_update (" + std::to_string(settings_.max_steps_per_update) + ") water steps"
+                  : "the device had max_steps_in_flight (" + std::to_string(settings_.max_steps_in_flight) +
+                        ") unfinished water steps or a full queue") +
+            "; " +
+            (most
+                 ? "update more often or raise it"
+                 : "a host without frame pacing sets max_steps_in_flight to 0, which waits for the device in place of dropping") +
+            ". This is said once; wadi_frame counts what is dropped");
+}
+
 Status FrameDriver::take_steps(std::uint64_t nanoseconds, Frame& frame) {
     if (!state_.lost()) return state_.lost();
     frame = {};
@@ -100,6 +117,7 @@ Status FrameDriver::take_steps(std::uint64_t nanoseconds, Frame& frame) {
         clock_.take();
     }
     frame.dropped = add(frame.dropped, clock_.drop());
+    if (frame.dropped > 0 && dropped_total_ == 0) tell_of_dropped_time(frame);
     dropped_total_ = add(dropped_total_, frame.dropped);
     frame.dropped_total = dropped_total_;
     frame.total_steps = state_.steps;

@@ -50,6 +50,7 @@ class FrameDriver {
     /// Whether so many steps are due at once, and the device may have them, that they go to it as one run.
     bool run_is_due(std::uint32_t taken);
     Status take_run();
+    void tell_of_dropped_time(const Frame& frame) const;
 
     WorldState& state_;
     Stepper& stepper_;

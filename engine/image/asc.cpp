@@ -1,6 +1,6 @@
 // Esri ASCII grids: a header of "key value" lines, then values in rows from the north, separated by blanks or line ends.
 #include "engine/image/map.hpp"
-#include <charconv>
+#include "engine/image/number_text.hpp"
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -23,8 +23,7 @@ std::string lower_case(std::string_view word) {
 
 bool parse(std::string_view word, double& number) {
     if (word.starts_with('+')) word.remove_prefix(1);
-    const auto parsed = std::from_chars(word.data(), word.data() + word.size(), number);
-    return parsed.ec == std::errc{} && parsed.ptr == word.data() + word.size();
+    return parse_number(word, number);
 }
 
 /// Cuts a text into words and counts lines.

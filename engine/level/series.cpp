@@ -1,6 +1,6 @@
 #include "engine/image/map.hpp"
+#include "engine/image/number_text.hpp"
 #include "engine/level/settings_reader.hpp"
-#include <charconv>
 #include <cstddef>
 #include <string_view>
 
@@ -15,12 +15,6 @@ std::string_view trimmed(std::string_view text) {
     const std::size_t first = text.find_first_not_of(blank);
     if (first == std::string_view::npos) return {};
     return text.substr(first, text.find_last_not_of(blank) - first + 1);
-}
-
-bool parse_number(std::string_view text, double& number) {
-    text = trimmed(text);
-    const auto parsed = std::from_chars(text.data(), text.data() + text.size(), number);
-    return parsed.ec == std::errc{} && parsed.ptr == text.data() + text.size();
 }
 
 } // namespace
@@ -40,8 +34,8 @@ Result<TimeSeries> read_series_file(const std::string& path, LevelFiles& files) 
         const std::size_t comma = line.find(',');
         double time = 0;
         double value = 0;
-        const bool numbers = comma != std::string_view::npos && parse_number(line.substr(0, comma), time) &&
-                             parse_number(line.substr(comma + 1), value);
+        const bool numbers = comma != std::string_view::npos && parse_number(trimmed(line.substr(0, comma)), time) &&
+                             parse_number(trimmed(line.substr(comma + 1)), value);
         if (!numbers && !heading_allowed)
             return error(Code::bad_file, path + ": line " + std::to_string(line_number) + " is not \"time,value\"");
         heading_allowed = false;

@@ -6,10 +6,10 @@ namespace wadi {
 
 Worker::~Worker() {
     if (!thread_.joinable()) return;
-    while (busy()) busy_.wait(true);
+    changed_.wait([this] { return !busy(); });
     stop_ = true;
     jobs_.fetch_add(1, std::memory_order_release);
-    jobs_.notify_one();
+    changed_.wake();
     thread_.join();
 }
 
@@ -22,18 +22,18 @@ Status Worker::start(std::function<void()> job) {
     job_ = std::move(job);
     busy_.store(true, std::memory_order_relaxed);
     jobs_.fetch_add(1, std::memory_order_release);
-    jobs_.notify_one();
+    changed_.wake();
     return ok_status();
 }
 
 void Worker::run() {
     const compute::DefaultFloats floats;
     for (unsigned done = 0;; ++done) {
-        jobs_.wait(done, std::memory_order_acquire);
+        changed_.wait([&] { return jobs_.load(std::memory_order_acquire) != done; });
         if (stop_) return;
         job_();
         busy_.store(false, std::memory_order_release);
-        busy_.notify_one();
+        changed_.wake();
     }
 }
 

@@ -1,6 +1,7 @@
 // A thread that does one job at a time beside the caller's.
 #pragma once
 #include "engine/compute/status.hpp"
+#include "engine/compute/waiter.hpp"
 #include <atomic>
 #include <functional>
 #include <thread>
@@ -27,6 +28,7 @@ class Worker {
     std::atomic<bool> busy_{false};
     std::atomic<unsigned> jobs_{0}; // handed over so far, the order to stop among them
     bool stop_ = false;             // written before jobs_ counts up
+    compute::Waiter changed_;       // busy_ or jobs_
     std::thread thread_;
 };
 

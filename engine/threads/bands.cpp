@@ -39,7 +39,7 @@ void in_bands(std::size_t count, std::size_t band,
             next = bands;
         }
     };
-    std::vector<std::jthread> others;
+    std::vector<std::thread> others;
     try {
         const std::size_t threads = std::min(allowed_threads(), bands);
         while (others.size() + 1 < threads)
@@ -52,7 +52,7 @@ void in_bands(std::size_t count, std::size_t band,
     } catch (const std::bad_alloc&) {
     }
     share();
-    others.clear();
+    for (auto& other : others) other.join();
     if (failure) std::rethrow_exception(failure);
 }
 

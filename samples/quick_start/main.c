@@ -1,6 +1,5 @@
 #include <stdio.h>
 #include <stdlib.h>
-#include <threads.h>
 #include <wadi/wadi.h>
 
 static void check(wadi_result result) {
@@ -15,6 +14,10 @@ int main(int argc, char** argv) {
     check(wadi_create_world_from_level(argc > 1 ? argv[1] : "canyon/level.json", NULL, NULL, &world));
     check(wadi_world_set_host_outputs(world, WADI_OUTPUT_BIT(WADI_OUTPUT_FREE_SURFACE)));
 
+    wadi_update_settings pace = wadi_default_update_settings();
+    pace.max_steps_in_flight = 0; /* nothing paces this loop: wait for the device where a game would drop time that it cannot follow */
+    check(wadi_world_set_update_settings(world, &pace));
+
     wadi_edit spring = wadi_default_edit(); /* a brush that pours water at (30, 20) m */
     spring.layer = WADI_LAYER_WATER;
     spring.x0 = 30;
@@ -23,8 +26,7 @@ int main(int argc, char** argv) {
     for (int image = 0; image < 120; ++image) {
         wadi_frame frame = wadi_default_frame();
         check(wadi_world_edit(world, &spring, 1));
-        check(wadi_world_update(world, 16666667, &frame));         /* 1/60 s; returns at once */
-        thrd_sleep(&(struct timespec){.tv_nsec = 16666667}, NULL); /* here a host draws */
+        check(wadi_world_update(world, 16666667, &frame)); /* 1/60 s; then a host draws */
         const float* heights;
         uint64_t row_pitch, step;
         if (wadi_world_get_host_output(world, WADI_OUTPUT_FREE_SURFACE, &heights, &row_pitch, &step) == WADI_OK &&

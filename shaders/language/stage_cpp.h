@@ -12,14 +12,14 @@ typedef unsigned int uint;
 #include "../step_params.h"
 
 #ifdef WADI_STAGE_CHECKED
-[[noreturn]] void stage_index_error(const char* stage, const char* buffer, long index, unsigned long size);
+[[noreturn]] void stage_index_error(const char* stage, const char* buffer, long index, unsigned long long size);
 template <class T> struct StageBuffer {
     T* data;
-    unsigned long size;
+    unsigned long long size;
     const char* stage;
     const char* name;
     inline T& operator[](long index) const {
-        if (index < 0 || static_cast<unsigned long>(index) >= size) stage_index_error(stage, name, index, size);
+        if (index < 0 || static_cast<unsigned long long>(index) >= size) stage_index_error(stage, name, index, size);
         return data[index];
     }
 };

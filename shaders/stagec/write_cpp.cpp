@@ -22,7 +22,8 @@ std::string buffer_members(const Stage& s) {
 }
 
 std::string block_head() {
-    return "template <unsigned E> static void block(void* const* b, const unsigned long* sizes, const void* params, const void* "
+    return "template <unsigned E> static void block(void* const* b, const unsigned long long* sizes, const void* params, const "
+           "void* "
            "input,"
            " int i0, int i1, int j0, int j1) {\n    (void)b;\n    (void)sizes;\n"
            "    const WorldParams P = *static_cast<const WorldParams*>(params);\n"
@@ -43,7 +44,7 @@ std::string select_function(const Stage& s, const std::string& isa, unsigned tes
         if (!all_masks) masks = largest(masks, ~(effects.at(first_choice) - 1));
     }
     std::ostringstream o;
-    o << "using Block = void (*)(void* const*, const unsigned long*, const void*, const void*, int, int, int, int);\n";
+    o << "using Block = void (*)(void* const*, const unsigned long long*, const void*, const void*, int, int, int, int);\n";
     if (!base) o << "extern \"C\" Block wadi_cpu_base_" << s.name << "(unsigned effects);\n";
     o << "extern \"C\" Block wadi_cpu_" << isa << "_" << s.name << "(unsigned effects) {\n    switch (effects & " << tested
       << "u) {\n";
@@ -82,7 +83,7 @@ std::string write_cpp(const FusedStage& f, const std::string& isa, const Effects
       << index_macros << shared_macros() << one_by_one
       << "#define LANE 0\n#define LANES 1\n#define BARRIER (void)0\n#define ANY(X) (X)\n#define ROLLED\n#define "
          "KEEP_STORED(FIELD, AT, TYPE) FIELD[AT] = TYPE(stored);\n"
-      << "#define PART_FUNCTION inline __attribute__((always_inline))\n#define NOT_KEPT(X) (void)(X)\n"
+      << "#define PART_FUNCTION HELPER\n#define NOT_KEPT(X) (void)(X)\n"
       << "template <unsigned FREE> struct " << s.struct_name << " {\n    static constexpr unsigned EFFECTS = FREE | " << f.needs
       << "u;\n    typedef Stored<EFFECTS> float_or_half;\n    const WorldParams& P;\n    const StepInput& S;\n";
     for (const auto& b : s.bindings)

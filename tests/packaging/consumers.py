@@ -51,6 +51,9 @@ def cmake_consumer(folder, *options):
 
 
 def check_package(prefix, folder):
+    run("cmake", "-S", prefix / "share/wadi/examples", "-B", folder / "example", "-G", "Ninja", f"-DCMAKE_PREFIX_PATH={prefix}")
+    run("cmake", "--build", folder / "example")
+    check_host(folder / "example/minimal_host")
     cmake_consumer(folder, "-DWADI_AS=package", f"-DCMAKE_PREFIX_PATH={prefix}")
     run("cmake", "--build", folder)
     check_host(folder / "consumer")
@@ -64,6 +67,8 @@ def check_pkg_config(prefix, folder, libraries):
     environment = dict(os.environ, PKG_CONFIG_PATH=str(libraries / "pkgconfig"), LD_LIBRARY_PATH=str(libraries))
     flags = run("pkg-config", "--cflags", "--libs", "wadi", env=environment).split()
     expect(any(str(prefix) in flag for flag in flags), f"pkg-config finds the moved prefix: {flags}")
+    levels = pathlib.Path(run("pkg-config", "--variable=levelsdir", "wadi", env=environment).strip())
+    expect((levels / "canyon/level.json").exists(), f"pkg-config's levelsdir {levels} has the levels")
     run("cc", "-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", host, "-o", folder / "pkg", *flags)
     check_host(folder / "pkg", env=environment)
 
@@ -76,14 +81,24 @@ def check_zip(folder):
     expect(len(tops) == 1, f"the zip has one folder, not {tops}")
     inner = {name.split("/", 1)[1] for name in names}
     expect({name.split("/")[0] for name in inner} == {"plugin"}, "the zip holds plugin/ alone")
-    expect({name.split("/")[1] for name in inner} == {"include", "lib", "levels", "README.md", "NOTICE.md"}, f"plugin/ holds {inner}")
+    expect({name.split("/")[1] for name in inner} == {"include", "lib", "levels", "examples", "cmake", "README.md", "NOTICE.md"}, f"plugin/ holds {inner}")
+    size = sum(file.compress_size for file in archive.infolist())
+    expect(size < 10e6, f"the zip is below 10 MB; it has {size / 1e6:.1f}")
     headers = {f"plugin/include/wadi/{path.name}" for path in (source / "plugin/include/wadi").iterdir()}
     expect(headers <= inner, f"every header is in the zip: {headers - inner} is not")
     archive.extractall(folder / "engine")
     plugin = folder / "engine" / tops.pop() / "plugin"
     library = next((plugin / "lib").iterdir())
     run("cc", "-std=c99", host, "-o", folder / "zipped", "-I", plugin / "include", library)
-    check_host(folder / "zipped", env=dict(os.environ, LD_LIBRARY_PATH=str(library.parent)))
+    environment = dict(os.environ, LD_LIBRARY_PATH=str(library.parent))
+    check_host(folder / "zipped", env=environment)
+    run("cmake", "-S", plugin / "examples", "-B", folder / "example", "-G", "Ninja", f"-Dwadi_DIR={plugin / 'cmake'}")
+    run("cmake", "--build", folder / "example")
+    check_host(folder / "example/minimal_host")
+    if shutil.which("pkg-config") is not None:
+        flags = run("pkg-config", "--cflags", "--libs", "wadi", env=dict(os.environ, PKG_CONFIG_PATH=str(plugin / "cmake"))).split()
+        run("cc", "-std=c99", host, "-o", folder / "zipped_pkg", *flags)
+        check_host(folder / "zipped_pkg", env=environment)
 
 
 with tempfile.TemporaryDirectory() as name:

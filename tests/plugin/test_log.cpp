@@ -1,5 +1,6 @@
 // What the log callback hears, and a callback that throws.
 #include "tests/plugin/abi_worlds.hpp"
+#include <algorithm>
 #include <doctest/doctest.h>
 #include <stdexcept>
 
@@ -63,5 +64,26 @@ TEST_CASE("the log callback hears advice, the world and a promotion; what it thr
             step(world, 1);
             CHECK(heard.has(2, "step 3: effects water, sand"));
         }
+    }
+}
+
+TEST_CASE("the log is told once when time of the host is dropped, and why") {
+    for (const bool by_update : {true, false}) {
+        CAPTURE(by_update);
+        Heard heard;
+        const auto world = deep_pond("cpu", heard);
+        auto settings = wadi_default_update_settings();
+        settings.max_steps_per_update = by_update ? 1 : 64;
+        settings.max_steps_in_flight = by_update ? 0 : 1;
+        REQUIRE(wadi_world_set_update_settings(world.id, &settings) == WADI_OK);
+        auto frame = wadi_default_frame();
+        REQUIRE(wadi_world_update(world.id, 99999999, &frame) == WADI_OK);
+        CHECK_FALSE(heard.has(1, "dropped"));
+        for (int n = 0; n < 50 || (frame.dropped_nanoseconds_total == 0 && n < 5000); ++n)
+            REQUIRE(wadi_world_update(world.id, 5000000000, &frame) == WADI_OK);
+        REQUIRE(frame.dropped_nanoseconds_total > 0);
+        CHECK(heard.has(1, by_update ? "max_steps_per_update (1)" : "max_steps_in_flight (1)"));
+        CHECK(std::count_if(heard.messages.begin(), heard.messages.end(),
+                            [](const auto& message) { return message.second.find("dropped") != std::string::npos; }) == 1);
     }
 }

@@ -1,0 +1,76 @@
+#include "backends/cpu/host_memory.hpp"
+#include <algorithm>
+#include <mutex>
+#include <new>
+#include <set>
+
+namespace wadi::cpu {
+
+namespace {
+constexpr std::size_t small_page = 4096, large_page = std::size_t{2} << 20;
+std::size_t rounded_up(std::size_t bytes, std::size_t unit) { return (bytes + unit - 1) / unit * unit; }
+
+// Never destroyed: worlds may outlive the process's static objects.
+struct Mapped {
+    std::mutex mutex;
+    std::set<const Pages*> pages;
+};
+Mapped& mapped() {
+    static Mapped& all = *new Mapped;
+    return all;
+}
+} // namespace
+
+std::shared_ptr<Pages> Pages::map(std::size_t bytes) {
+    const std::size_t whole = rounded_up(bytes, large_page);
+    std::byte* const data = map_pages(whole, large_page);
+    if (data == nullptr) return nullptr;
+    try {
+        return std::make_shared<Pages>(data, whole);
+    } catch (const std::bad_alloc&) {
+        unmap_pages(data, whole);
+        throw;
+    }
+}
+
+Pages::Pages(std::byte* data, std::size_t bytes) : data_(data), bytes_(bytes) {
+    const std::lock_guard lock(mapped().mutex);
+    mapped().pages.insert(this);
+}
+
+Pages::~Pages() {
+    const std::lock_guard lock(mapped().mutex);
+    mapped().pages.erase(this);
+    unmap_pages(data_, bytes_);
+}
+
+std::uint64_t Pages::resident_bytes() {
+    const std::lock_guard lock(mapped().mutex);
+    std::uint64_t pages = 0;
+    for (const auto* mapping : mapped().pages)
+        pages += resident_pages(mapping->data(), mapping->bytes() / small_page, small_page);
+    return pages * small_page;
+}
+
+void Pages::forget(std::byte* data, std::size_t bytes) {
+    const auto begin = reinterpret_cast<std::uintptr_t>(data), end = (begin + bytes) / small_page * small_page;
+    const std::size_t first = rounded_up(begin, small_page) - begin;
+    if (begin + first < end) forget_pages(data + first, end - begin - first);
+}
+
+std::shared_ptr<std::byte> PageArena::take(std::size_t bytes, std::size_t offset) {
+    constexpr std::size_t least = std::size_t{64} << 20;
+    const auto place = [&](std::size_t used) { return rounded_up(used, small_page) + offset; };
+    auto pages = pages_.lock();
+    if (!pages || place(used_) + bytes > pages->bytes()) {
+        pages = Pages::map(std::max(least, offset + bytes));
+        if (!pages) return nullptr;
+        pages_ = pages;
+        used_ = 0;
+    }
+    std::byte* const data = pages->data() + place(used_);
+    used_ = place(used_) + bytes;
+    return {std::move(pages), data};
+}
+
+} // namespace wadi::cpu
