@@ -70,6 +70,15 @@ template <class Call> wadi_result with_world(const char* function, wadi_world_id
     });
 }
 
+/// For what leaves a world as it was where the host's memory ends: no later call is refused for it.
+template <class Call> wadi_result or_unchanged(const char* function, Call call) {
+    try {
+        return call();
+    } catch (const std::bad_alloc&) {
+        return report_out_of_memory(function);
+    }
+}
+
 // A struct from a caller built against another version has another size: refuse rather than read past its end.
 template <class Struct> bool right_size(const Struct* s) { return s != nullptr && s->struct_size == sizeof(Struct); }
 

@@ -9,6 +9,12 @@ namespace {
 
 std::span<std::byte> bytes_at(void* data, size_t size) { return {static_cast<std::byte*>(data), size}; }
 
+/// A step that was begun in parts is finished first: that may end in the middle, a load may not.
+template <class Call> wadi_result load_at_boundary(HostedWorld& hosted, Call call) {
+    if (auto status = hosted.world->step(0); !status) return report(status);
+    return or_unchanged("wadi_world_load", [&] { return report(call()); });
+}
+
 } // namespace
 
 extern "C" {
@@ -25,7 +31,9 @@ wadi_result wadi_world_save(wadi_world_id id, void* data, size_t* size) {
 wadi_result wadi_world_load(wadi_world_id id, const void* data, size_t size) {
     return with_world(__func__, id, [&](HostedWorld& hosted) {
         if (data == nullptr) return bad_argument("wadi_world_load: data is NULL");
-        return report(hosted.world->snapshots().load({static_cast<const std::byte*>(data), size}));
+        return load_at_boundary(hosted, [&] {
+            return hosted.world->snapshots().load({static_cast<const std::byte*>(data), size});
+        });
     });
 }
 
@@ -41,8 +49,10 @@ wadi_result wadi_world_save_file(wadi_world_id id, const char* path) {
 wadi_result wadi_world_load_file(wadi_world_id id, const char* path) {
     return with_world(__func__, id, [&](HostedWorld& hosted) {
         if (path == nullptr) return bad_argument("wadi_world_load_file: path is NULL");
-        auto bytes = read_snapshot_file(path, hosted.world->snapshots().most_bytes());
-        return report(bytes ? hosted.world->snapshots().load(*bytes) : bytes.status());
+        return load_at_boundary(hosted, [&] {
+            auto bytes = read_snapshot_file(path, hosted.world->snapshots().most_bytes());
+            return bytes ? hosted.world->snapshots().load(*bytes) : bytes.status();
+        });
     });
 }
 

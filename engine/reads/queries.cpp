@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <new>
 
 namespace wadi {
 
@@ -92,8 +93,11 @@ Status Queries::submit(Batch& batch) {
 
 // Where that fails the batch's own submission says so.
 void Queries::record() {
-    for (auto& batch : batches_)
-        if (batch.program) static_cast<void>(batch.program->record());
+    try {
+        for (auto& batch : batches_)
+            if (batch.program) static_cast<void>(batch.program->record());
+    } catch (const std::bad_alloc&) { // as above
+    }
 }
 
 Status Queries::at_boundary() {

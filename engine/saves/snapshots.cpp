@@ -76,9 +76,9 @@ Status Snapshots::check(const SnapshotHeader& header) const {
     return ok_status();
 }
 
-// A field that the snapshot lacks was zero there, but without mixture the water in the sand moved with the rest of the water.
+// A field that the snapshot lacks was zero there, but without mixture the water in the sand moved with the rest of the water. All
+// that needs memory comes ahead of the first field that is written.
 Status Snapshots::write_fields(const SnapshotHeader& header, std::span<const std::byte> from) {
-    std::vector<std::byte> zeros;
     const auto find = [&](const std::string& name) {
         std::span<const std::byte> contents;
         for (std::size_t n = 0; n < header.fields.size(); ++n) {
@@ -87,46 +87,52 @@ Status Snapshots::write_fields(const SnapshotHeader& header, std::span<const std
         return contents;
     };
     const bool one_layer = (header.effects & (EFFECT_WATER | EFFECT_SAND)) == (EFFECT_WATER | EFFECT_SAND);
-    for (const auto& field : state_.fields().kept()) {
+    std::vector<std::pair<compute::Buffer, std::span<const std::byte>>> writes;
+    std::size_t most_zeros = 0;
+    const auto kept = state_.fields().kept();
+    for (const auto& field : kept) {
         auto contents = find(field.name);
         if (contents.empty() && one_layer && field.name.starts_with("mixed_")) contents = find("water_" + field.name.substr(6));
-        if (contents.empty()) {
-            zeros.resize(std::max<std::size_t>(zeros.size(), field.bytes));
-            contents = std::span(zeros).first(field.bytes);
-        }
-        if (auto status = state_.device().write(state_.fields().buffer(field.name), 0, contents); !status) return status;
+        if (contents.empty()) most_zeros = std::max<std::size_t>(most_zeros, field.bytes);
+        writes.emplace_back(state_.fields().buffer(field.name), contents);
+    }
+    const std::vector<std::byte> zeros(most_zeros);
+    for (std::size_t n = 0; n < writes.size(); ++n) {
+        const auto [buffer, contents] = writes[n];
+        const auto bytes = contents.empty() ? std::span(zeros).first(kept[n].bytes) : contents;
+        if (auto status = state_.device().write(buffer, 0, bytes); !status) return status;
     }
     return ok_status();
 }
 
-// A list that does not fit into memory is refused like any other: nothing has changed so far.
-Result<SnapshotHeader> Snapshots::read_and_check(std::span<const std::byte> snapshot) const {
-    try {
-        auto header = read_header(snapshot);
-        if (!header) return header;
-        if (auto status = check(*header); !status) return status;
-        return header;
-    } catch (const std::bad_alloc&) {
-        return error(Code::out_of_memory, "load: there is no memory to read the snapshot");
-    }
+// What the world must be able to hold: no more than now where the snapshot's material asks for all of its effects.
+Content Snapshots::content_for(const SnapshotHeader& header) const {
+    Settings settings = state_.settings();
+    settings.material = header.material;
+    const auto now = effects_required(settings, state_.content);
+    return now && (header.effects & ~now->mask) == 0 ? state_.content : content_under(header.effects) | state_.content;
 }
 
 Status Snapshots::load(std::span<const std::byte> from) {
     if (auto status = stepper_.finish_step(); !status) return status;
-    auto header = read_and_check(from);
+    auto header = read_header(from);
     if (!header) return header.status();
-    const Material before = state_.settings().material;
-    if (auto status = stepper_.set_material(header->material); !status) return status;
-    if ((header->effects & ~state_.plan().effects) != 0) {
-        auto status = stepper_.set_content(content_under(header->effects) | state_.content);
-        if (!status) {
-            if (auto back = stepper_.set_material(before); !back) return back;
-            return status;
-        }
-    }
-    if (auto status = write_fields(*header, from); !status) return status;
+    if (auto status = check(*header); !status) return status;
+    const std::string no_roll_back = "load: no memory to keep the state for roll-back";
+    const auto write = [&] { return write_fields(*header, from); };
+    if (auto status = stepper_.change(header->material, content_for(*header), write); !status) return status;
     if (auto status = stepper_.go_to(header->totals); !status) return status;
-    return roll_back_.restart();
+    keep_for_roll_back(no_roll_back);
+    return state_.lost();
+}
+
+// The snapshot is loaded by now, whatever this comes to.
+void Snapshots::keep_for_roll_back(const std::string& trouble) {
+    try {
+        if (auto status = roll_back_.restart(); status.code == Code::out_of_memory) state_.tell(1, trouble);
+    } catch (const std::bad_alloc&) {
+        state_.tell(1, trouble);
+    }
 }
 
 Status Snapshots::make_buffers() {

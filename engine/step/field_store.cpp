@@ -67,17 +67,28 @@ std::vector<compute::BufferDesc> FieldStore::wanted_by(const StepPlan& plan) con
 }
 
 Status FieldStore::set_plan(const StepPlan& plan) {
-    const auto wanted = wanted_by(plan);
+    auto wanted = wanted_by(plan);
+    auto fields = plan.fields;
     if (auto status = buffers_.keep_also(wanted); !status) return status;
     // Before turn 0 the first buffer of each pair is the current one.
     for (const auto& name : parity()) buffers_.exchange(name, next_name(name));
-    buffers_.keep_only(wanted);
-    fields_ = plan.fields;
+    wanted_ = std::move(wanted);
+    fields_ = std::move(fields);
     parities_ = {};
     turn_ = 0;
     set_way(plan.active_tiles);
     ++recording_;
     return ok_status();
+}
+
+void FieldStore::go_back(Replaced&& before) noexcept {
+    fields_ = std::move(before.fields);
+    wanted_ = std::move(before.wanted);
+    buffers_.go_back(std::move(before.buffers));
+    parities_ = std::move(before.parities);
+    way_ = before.way;
+    turn_ = before.turn;
+    ++recording_;
 }
 
 const PlanField* FieldStore::find(const std::string& name) const {

@@ -38,10 +38,25 @@ class FieldStore {
     FieldStore(WorldDevice& device, const Settings& settings);
 
     /// Changes to the fields of a plan at a boundary between two steps. Those there already keep their values to the bit, new
-    /// ones are zero, others are freed; the next step is turn 0 and every program must be recorded anew. Waits for the device
-    /// where it frees. Errors: out_of_memory, nothing changed.
+    /// ones are zero, others stay until settle(); the next step is turn 0 and every program must be recorded anew. Errors:
+    /// out_of_memory, nothing changed.
     Status set_plan(const StepPlan& plan);
-    /// Counts up with every set_plan().
+    /// Frees what the plan has no use for. Waits for the device where its backend waits.
+    void settle() noexcept { buffers_.keep_only(wanted_); }
+
+    /// What set_plan() and set_parity() replace.
+    struct Replaced {
+        std::vector<PlanField> fields;
+        std::vector<compute::BufferDesc> wanted;
+        NamedBuffers::Made buffers;
+        std::array<std::array<Parity, 2>, 2> parities;
+        std::size_t way = 0;
+        int turn = 0;
+    };
+    Replaced now() const { return {fields_, wanted_, buffers_.made(), parities_, way_, turn_}; }
+    /// Only before settle(). Programs recorded since must not run.
+    void go_back(Replaced&& before) noexcept;
+    /// Counts up with every set_plan() and go_back().
     std::uint64_t recording() const { return recording_; }
 
     /// The buffer of a field under a parity; with the suffix "_next" its partner. Null where there is no such field.
@@ -80,6 +95,7 @@ class FieldStore {
     const FieldLayout layout_;
     const int tile_columns_, tile_rows_; // of active tiles
     std::vector<PlanField> fields_;
+    std::vector<compute::BufferDesc> wanted_;
     NamedBuffers buffers_;
     std::array<std::array<Parity, 2>, 2> parities_{}; // of both ways, before each turn
     std::size_t way_ = 0;

@@ -4,18 +4,30 @@
 namespace wadi {
 
 Status NamedBuffers::keep_also(const std::vector<compute::BufferDesc>& wanted) {
-    std::map<std::string, compute::Buffer> fresh;
+    struct Fresh {
+        WorldDevice& device;
+        Made made;
+        ~Fresh() {
+            for (const auto& [label, buffer] : made) device.destroy_buffer(buffer);
+        }
+    } fresh{device_, {}};
     for (const auto& desc : wanted) {
         if (made_.contains(desc.label)) continue;
+        auto& place = fresh.made[desc.label];
         auto buffer = device_.create_buffer(desc);
-        if (!buffer) {
-            for (const auto& [label, made] : fresh) device_.destroy_buffer(made);
-            return buffer.status();
-        }
-        fresh[desc.label] = *buffer;
+        if (!buffer) return buffer.status();
+        place = *buffer;
     }
-    made_.merge(fresh);
+    made_.merge(fresh.made);
     return ok_status();
+}
+
+void NamedBuffers::go_back(Made&& made) noexcept {
+    for (const auto& [label, buffer] : made_) {
+        const bool old = std::any_of(made.begin(), made.end(), [&, b = buffer](const auto& entry) { return entry.second == b; });
+        if (!old) device_.destroy_buffer(buffer);
+    }
+    made_ = std::move(made);
 }
 
 void NamedBuffers::keep_only(const std::vector<compute::BufferDesc>& wanted) {

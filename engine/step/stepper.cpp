@@ -7,7 +7,35 @@ namespace wadi {
 
 int Stepper::parts() const { return state_.plan().substep_passes.empty() ? 1 : 1 + state_.plan().substeps; }
 
-void Stepper::drop_programs() {
+/// Keeps what a change replaces. All is as it was before unless the change is settled.
+class Stepper::Change {
+  public:
+    explicit Change(Stepper& stepper)
+        : stepper_(stepper), state_(stepper.state_.now()), programs_(std::exchange(stepper.programs_, {})) {}
+    ~Change() {
+        if (settled_) return;
+        stepper_.drop_programs();
+        stepper_.programs_ = std::move(programs_);
+        stepper_.state_.go_back(std::move(state_));
+    }
+    Change(const Change&) = delete;
+    Change& operator=(const Change&) = delete;
+
+    void settle() noexcept {
+        std::swap(stepper_.programs_, programs_);
+        stepper_.drop_programs();
+        stepper_.programs_ = std::exchange(programs_, {});
+        settled_ = true;
+    }
+
+  private:
+    Stepper& stepper_;
+    WorldState::Replaced state_;
+    std::array<Programs, 2> programs_;
+    bool settled_ = false;
+};
+
+void Stepper::drop_programs() noexcept {
     const auto drop = [&](auto& programs) {
         for (auto& program : programs) state_.device().destroy_program(program);
     };
@@ -73,68 +101,58 @@ Status Stepper::record_way() {
     return ok_status();
 }
 
-Status Stepper::record() {
-    auto before = std::exchange(programs_, {});
+Status Stepper::record_ways() {
     auto status = record_way();
+    if (status && profiling_) status = record_timed();
     if (status && state_.chooses_tiles()) {
         const bool tiles = state_.plan().active_tiles;
         state_.use_tiles(!tiles);
         status = record_way();
         state_.use_tiles(tiles);
     }
-    if (!status) {
-        drop_programs();
-        programs_ = std::move(before);
-        return status;
-    }
-    std::swap(programs_, before);
-    drop_programs();
-    programs_ = std::move(before);
-    choice_.restart();
-    if (!profiling_) return ok_status();
-    profiling_ = false;
-    return set_profiling(true);
+    if (status) choice_.restart();
+    return status;
 }
 
-Status Stepper::set_content(Content content) {
-    auto choice = effects_required(state_.settings(), content);
+Status Stepper::record() {
+    Change changing(*this);
+    auto status = record_ways();
+    if (status) changing.settle();
+    return status;
+}
+
+Status Stepper::change(const Material& material, Content content, const std::function<Status()>& then) {
+    Settings settings = state_.settings();
+    settings.material = material;
+    auto choice = effects_required(settings, content);
     if (!choice) return choice.status();
-    if (choice->mask != state_.effects().mask) {
-        const EffectChoice before = state_.effects();
-        auto status = state_.set_effects(*choice);
+    const bool same_mask = choice->mask == state_.effects().mask;
+    if (same_mask && material == state_.settings().material) {
+        auto status = then ? then() : ok_status();
         if (!status) return status;
-        status = record();
-        if (!status) {
-            if (auto back = state_.set_effects(before); !back) return back;
-            if (auto back = record(); !back) return back;
-            return status;
-        }
-        state_.tell(2, "effects " + effect_names(choice->mask));
+        state_.set_reasons(std::move(*choice));
+        state_.content = content;
+        return status;
+    }
+    const std::string news = same_mask ? std::string() : "effects " + effect_names(choice->mask);
+    if (auto status = collect_timings(true); !status) return status; // of the passes until now
+    {
+        Change changing(*this);
+        state_.set_material(material);
+        auto status = same_mask ? ok_status() : state_.set_effects(*choice);
+        if (status) status = record_ways();
+        if (status && then) status = then();
+        if (!status) return status;
+        changing.settle();
     }
     state_.content = content;
+    state_.set_reasons(std::move(*choice));
+    stage_milliseconds_.clear();
+    timed_steps_ = 0;
+    if (same_mask) return ok_status();
+    state_.fields().settle();
+    state_.tell(2, news);
     return ok_status();
-}
-
-Status Stepper::set_material(const Material& material) {
-    const Material before = state_.settings().material;
-    if (material == before) return ok_status();
-    state_.set_material(material);
-    auto choice = effects_required(state_.settings(), state_.content);
-    if (!choice) {
-        state_.set_material(before);
-        return choice.status();
-    }
-    const bool same = choice->mask == state_.effects().mask;
-    const auto status = same ? record() : set_content(state_.content);
-    if (status) {
-        state_.set_reasons(*choice);
-        return status;
-    }
-    state_.set_material(before);
-    if (!same) { // set_content() went back to the effects, but recorded them with the new numbers
-        if (auto back = record(); !back) return back;
-    }
-    return status;
 }
 
 Status Stepper::prepare() {
@@ -170,11 +188,16 @@ Result<compute::Program> Stepper::record_part(int part, bool start, Parity& pari
 
 Status Stepper::record_parts(std::size_t turn) {
     Parity parity = state_.fields().parity(static_cast<int>(turn));
-    for (int part = 0; part < parts(); ++part) {
-        auto program = record_part(part, false, parity);
-        if (!program) return program.status();
-        programs().parts[turn].push_back(*program);
+    std::vector<compute::Program> recorded(static_cast<std::size_t>(parts()));
+    for (std::size_t part = 0; part < recorded.size(); ++part) {
+        auto program = record_part(static_cast<int>(part), false, parity);
+        if (!program) {
+            for (auto& earlier : recorded) state_.device().destroy_program(earlier);
+            return program.status();
+        }
+        recorded[part] = *program;
     }
+    programs().parts[turn] = std::move(recorded);
     return ok_status();
 }
 

@@ -47,14 +47,14 @@ class Stepper {
     /// Of the newest submission; null before the first.
     compute::Ticket ticket() const { return ticket_; }
 
-    /// Chooses the effects for what the world holds from now on; between two steps only. Where that changes the mask, buffers are
-    /// allocated and freed and everything is recorded anew, the state kept to the bit. Errors: out_of_memory, nothing changed.
-    Status set_content(Content content);
-
-    /// Other numbers for sand and water from the next step on; between two steps only. Effects follow as in set_content(); waits
-    /// for the device, but builds no pipeline where they stay. Errors: out_of_memory, not_ready (inside a recording), nothing
-    /// changed.
-    Status set_material(const Material& material);
+    /// Other numbers for sand and water from the next step on, and effects for what the world holds from now on; between two
+    /// steps only. Where that changes the mask, buffers are allocated and freed and everything is recorded anew, the state kept
+    /// to the bit; no pipeline is built where it does not. `then` runs under the new plan; nothing that it leaves undone can
+    /// fail. Errors: out_of_memory, not_ready (inside a recording), those of `then`. An error or an exception leaves all as it
+    /// was.
+    Status change(const Material& material, Content content, const std::function<Status()>& then = {});
+    Status set_content(Content content) { return change(state_.settings().material, content); }
+    Status set_material(const Material& material) { return change(material, state_.content); }
 
     /// For tests: with fewer rings of active tiles than the plan's reach calls for, bits must turn out wrong.
     Status set_tile_rings(int rings) {
@@ -96,6 +96,8 @@ class Stepper {
         std::array<compute::Program, 2> starts{}; // the water part of step 0
     };
 
+    class Change;
+
     Status append_step(compute::ProgramBuilder& builder, int turn, Parity& parity, bool timestamps);
     Result<compute::Program> record_step(int turn, Parity& parity, bool timestamps);
     Result<compute::Program> record_run(int turn);
@@ -116,10 +118,11 @@ class Stepper {
     Status finish(int parts);
     Status complete_step();
     Status collect_timings(bool all);
-    void drop_programs();
+    void drop_programs() noexcept;
     /// Of the plan in force.
     Programs& programs() { return programs_[state_.plan().active_tiles ? 1 : 0]; }
     Status record_way();
+    Status record_ways();
     /// In a world that chooses whether steps run over active tiles: goes to the better way where that is possible.
     void choose_tiles();
     /// The input of the step that comes, with the tiles that it wakes.

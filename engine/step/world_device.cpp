@@ -27,8 +27,10 @@ std::uint64_t WorldDevice::bytes() const {
 }
 
 Result<compute::Buffer> WorldDevice::create_buffer(const compute::BufferDesc& desc) {
+    memory_.push_back({{}, desc.label, desc.bytes}); // ahead: what was made is never lost for want of the host's memory
     auto made = noted(device_->create_buffer(desc));
-    if (made) memory_.push_back({*made, desc.label, desc.bytes});
+    if (made) memory_.back().buffer = *made;
+    if (!made) memory_.pop_back();
     return made;
 }
 

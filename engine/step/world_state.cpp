@@ -1,6 +1,7 @@
 #include "engine/step/world_state.hpp"
 #include "engine/settings/level_digest.hpp"
 #include "engine/step/world_params.hpp"
+#include <new>
 #include <utility>
 
 namespace wadi {
@@ -11,7 +12,11 @@ WorldState::WorldState(const Settings& settings, std::unique_ptr<compute::Device
       device_(std::move(device), [this](const Status& lost) { tell(0, lost.message); }) {}
 
 void WorldState::tell(int severity, const std::string& text) const {
-    if (log) log(severity, "step " + std::to_string(steps) + ": " + text);
+    if (!log) return;
+    try {
+        log(severity, "step " + std::to_string(steps) + ": " + text);
+    } catch (const std::bad_alloc&) { // a message is no reason to stop in the middle of a change
+    }
 }
 
 bool WorldState::fuses() const {
@@ -72,16 +77,22 @@ Status WorldState::set_effects(const EffectChoice& effects) {
     }
     if (auto status = fields_.set_plan(plan); !status) return status;
     if (plan.find("roughness") != nullptr) {
-        if (auto status = fields_.write("roughness", 0, with_ghosts(layout_, settings_.roughness, true)); !status) {
-            if (auto back = fields_.set_plan(plan_); !back) return back;
-            return status;
-        }
+        if (auto status = fields_.write("roughness", 0, with_ghosts(layout_, settings_.roughness, true)); !status) return status;
     }
     plan_ = std::move(plan);
     other_plan_ = std::move(other);
     effects_ = effects;
     derive();
     return ok_status();
+}
+
+void WorldState::go_back(Replaced&& before) noexcept {
+    settings_.material = before.material;
+    params_ = before.params;
+    effects_ = std::move(before.effects);
+    plan_ = std::move(before.plan);
+    other_plan_ = std::move(before.other_plan);
+    fields_.go_back(std::move(before.fields));
 }
 
 void WorldState::set_material(const Material& material) {

@@ -18,7 +18,7 @@ class WorldState {
     WorldState& operator=(const WorldState&) = delete;
 
     /// Plans for a mask and changes to its fields (FieldStore::set_plan), at a boundary between two steps. Errors: out_of_memory,
-    /// not_supported (fused stages, half storage or fields larger than the device can have); the old plan is then in force.
+    /// not_supported (fused stages, half storage or fields larger than the device can have); the caller goes back then.
     Status set_effects(const EffectChoice& effects);
     /// Creates the pipelines that a plan of another mask would need, so that taking it later records but compiles nothing.
     Status prepare(std::uint32_t effects);
@@ -31,7 +31,19 @@ class WorldState {
     /// Other numbers for sand and water. The step programs must be recorded anew; no other program reads what depends on them.
     void set_material(const Material& material);
     /// Other reasons for the same mask.
-    void set_reasons(const EffectChoice& effects) { effects_.reasons = effects.reasons; }
+    void set_reasons(EffectChoice&& effects) noexcept { effects_.reasons = std::move(effects.reasons); }
+
+    /// What set_effects() and set_material() replace.
+    struct Replaced {
+        Material material;
+        WorldParams params;
+        EffectChoice effects;
+        StepPlan plan;
+        std::optional<StepPlan> other_plan;
+        FieldStore::Replaced fields;
+    };
+    Replaced now() const { return {settings_.material, params_, effects_, plan_, other_plan_, fields_.now()}; }
+    void go_back(Replaced&& before) noexcept;
     const EffectChoice& effects() const { return effects_; }
     const StepPlan& plan() const { return plan_; }
     /// Whether steps may run with active tiles or without: Settings::active_tiles where that may gain on this device.

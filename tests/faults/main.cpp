@@ -1,5 +1,5 @@
 // wadi-test-faults: a library whose host runs out of memory at every allocation in turn, is killed while it saves, or has a full
-// disk. Usage: wadi-test-faults memory | save | disk; "saver PATH" is the child that is killed.
+// disk. Usage: wadi-test-faults memory | load [STRIDE] | save | disk; "saver PATH" is the child that is killed.
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -154,6 +154,77 @@ int memory() {
     return wrong;
 }
 
+/// A snapshot is taken whole or not at all, whichever allocations fail: of the same effects, of more, of another material. Of the
+/// latter two one allocation in `stride` fails.
+int load(long stride) {
+    const auto bytes_of = [](wadi_world_id world) {
+        size_t size = 0;
+        expect(wadi_world_save(world, nullptr, &size) == WADI_OK, "save: size");
+        std::vector<unsigned char> bytes(size);
+        expect(wadi_world_save(world, bytes.data(), &size) == WADI_OK, "save");
+        return bytes;
+    };
+    const auto hash_of = [](wadi_world_id world) {
+        std::uint64_t hash = 0;
+        expect(wadi_world_get_hash(world, &hash) == WADI_OK, "hash");
+        return hash;
+    };
+    const auto other = make_world();
+    expect(wadi_world_step(other, 3) == WADI_OK, "step");
+    std::vector<std::vector<unsigned char>> snapshots{bytes_of(other)};
+    auto edit = wadi_default_edit();
+    edit.layer = WADI_LAYER_SAND;
+    edit.x0 = edit.y0 = 1.2;
+    edit.radius = 1;
+    edit.amount = 0.3;
+    expect(wadi_world_edit(other, &edit, 1) == WADI_OK && wadi_world_step(other, 2) == WADI_OK, "promotion");
+    snapshots.push_back(bytes_of(other));
+    expect(wadi_world_set_material(other, "sand_density", 1700) == WADI_OK && wadi_world_step(other, 1) == WADI_OK, "material");
+    snapshots.push_back(bytes_of(other));
+    wadi_destroy_world(other);
+    int refused = 0, loads = 0;
+    for (std::size_t n = 0; n < snapshots.size(); ++n) {
+        const auto& snapshot = snapshots[n];
+        for (const bool lasting : {false, true}) {
+            bool failed = true;
+            for (long at = 1; failed && wrong < 10; at += n == 0 ? 1 : stride, ++loads) {
+                const std::string which = "snapshot " + std::to_string(n) + ", allocation " + std::to_string(at);
+                const auto world = make_world();
+                const float xy[2] = {1, 1};
+                uint64_t ticket = 0;
+                expect(wadi_world_set_rollback(world, 2, 1) == WADI_OK && wadi_world_step(world, 2) == WADI_OK &&
+                           wadi_world_query(world, xy, 1, &ticket) == WADI_OK,
+                       which + ": a world in use");
+                const std::uint64_t before = hash_of(world);
+                for_ever = lasting;
+                allocations = 0;
+                fail_at = at;
+                const auto result = wadi_world_load(world, snapshot.data(), snapshot.size());
+                failed = allocations >= at;
+                fail_at = 0;
+                if (result == WADI_OK) {
+                    expect(bytes_of(world) == snapshot, which + ": what was loaded is the snapshot");
+                } else {
+                    ++refused;
+                    uint64_t kept[2];
+                    uint32_t count = 2;
+                    expect(result == WADI_ERROR_OUT_OF_MEMORY, which + ": answered " + std::to_string(result));
+                    expect(hash_of(world) == before, which + ": the world is as it was");
+                    expect(wadi_world_get_rollback_steps(world, kept, &count) == WADI_OK && count == 2,
+                           which + ": so are its kept states");
+                    expect(wadi_world_load(world, snapshot.data(), snapshot.size()) == WADI_OK && bytes_of(world) == snapshot,
+                           which + ": with memory it loads");
+                }
+                expect(wadi_world_step(world, 2) == WADI_OK, which + ": the world runs on");
+                wadi_destroy_world(world);
+            }
+        }
+    }
+    std::printf("%d loads of %zu snapshots, %d refused\n", loads, snapshots.size(), refused);
+    expect(refused > loads / 2, "most are refused");
+    return wrong;
+}
+
 std::string path_of(const char* name) {
     return (std::filesystem::temp_directory_path() / (std::string("wadi-") + name + "-" + std::to_string(getpid()))).string();
 }
@@ -241,11 +312,14 @@ int disk() {
 int main(int argc, char** argv) {
     const std::string what = argc > 1 ? argv[1] : "";
     if (what == "saver" && argc > 2) return saver(argv[2]);
-    if (what != "memory" && what != "save" && what != "disk") {
-        std::fprintf(stderr, "wadi-test-faults memory | save | disk\n");
+    if (what != "memory" && what != "load" && what != "save" && what != "disk") {
+        std::fprintf(stderr, "wadi-test-faults memory | load [STRIDE] | save | disk\n");
         return 2;
     }
-    const int failures = what == "memory" ? memory() : what == "save" ? save(argv[0]) : disk();
+    const int failures = what == "memory" ? memory()
+                         : what == "load" ? load(argc > 2 ? std::atol(argv[2]) : 13)
+                         : what == "save" ? save(argv[0])
+                                          : disk();
     std::puts(failures == 0 ? "passed" : "FAILED");
     return failures == 0 ? 0 : 1;
 }

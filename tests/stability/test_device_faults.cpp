@@ -103,7 +103,7 @@ Edit pour(EditLayer layer) {
 }
 
 /// Everything that talks to a device: making, stepping, a promotion, outputs, queries, saves, roll-back. `note` hears each
-/// result.
+/// result, and what the log says where no call can.
 template <class Note> void session(Device& device, FaultyDevice::Plan& plan, Note note) {
     auto scene = flat_scene(9, 7, 0.25, 0.02);
     scene.fill(scene.fields.water, [](double x, double) { return x < 1 ? 0.6 : 0.1; });
@@ -111,6 +111,9 @@ template <class Note> void session(Device& device, FaultyDevice::Plan& plan, Not
     note(made.status());
     if (!made) return;
     World& world = **made;
+    world.set_log([&](int severity, const std::string& message) {
+        if (severity == 1 && message.find("for roll-back") != std::string::npos) note(error(Code::out_of_memory, message));
+    });
     note(world.roll_back().set(2, 1));
     note(world.outputs().set_mask(1));
     note(world.step(2));
