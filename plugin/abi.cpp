@@ -12,6 +12,12 @@ struct LastError {
 };
 thread_local LastError last;
 
+// A file may have a word of megabytes: of a long text its begin and its end.
+std::string shown(const std::string& message) {
+    constexpr std::size_t most = 1000;
+    return message.size() <= most ? message : message.substr(0, most / 2) + " ... " + message.substr(message.size() - most / 2);
+}
+
 } // namespace
 
 const char* last_error() { return text_gone ? "" : last.text.c_str(); }
@@ -27,7 +33,7 @@ wadi_result report_out_of_memory(const char* function) noexcept {
 }
 
 wadi_result report(const Status& status) {
-    if (!text_gone) last.text = status ? std::string() : status.message;
+    if (!text_gone) last.text = status ? std::string() : shown(status.message);
     switch (status.code) {
     case Code::ok:
         return WADI_OK;

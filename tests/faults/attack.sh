@@ -1,0 +1,41 @@
+#!/usr/bin/env bash
+# The attack on the library as a host would see it: a minute of it, or with --full all of it (about an hour on two cores).
+# Usage: tests/faults/attack.sh BIN [--full]; BIN: the folder of the programs, such as build/release/bin.
+set -uo pipefail
+bin=$1
+full=${2:-}
+if [ -n "$full" ] && [ "$full" != --full ]; then
+    echo "usage: tests/faults/attack.sh BIN [--full]" >&2
+    exit 2
+fi
+steps=8000 count=120 seconds=5 gpu_steps=600 gpu_count=8
+if [ "$full" = --full ]; then steps=200000 count=1000 seconds=120 gpu_steps=10000 gpu_count=1000; fi
+failed=0
+run() {
+    local begin=$SECONDS
+    "$@" || { failed=1; echo "FAILED: $*" >&2; }
+    echo "$(basename "$1") ${*:2}: $((SECONDS - begin)) s"
+}
+attack=$bin/wadi-test-attack
+run "$attack" environment
+run "$attack" memory
+run "$attack" files
+run "$attack" hosts "$seconds"
+run "$attack" soak cpu "$steps"
+run "$attack" cycles cpu "$count"
+if "$attack" has vulkan; then
+    run "$attack" environment vulkan
+    run "$attack" soak vulkan "$gpu_steps"
+    run "$attack" cycles vulkan "$gpu_count"
+else
+    echo "vulkan: no device"
+fi
+if [ "$full" = --full ]; then # ctest runs each of these by itself
+    run "$bin/wadi-test-faults" memory
+    run "$bin/wadi-test-faults" load 1
+    for what in save disk; do run "$bin/wadi-test-faults" "$what"; done
+    for what in snapshots savers memory; do run "$bin/wadi-test-files" "$what"; done
+    for what in threads exit fork; do run "$bin/wadi-test-process" "$what"; done
+    run "$bin/wadi-test-plugin" -tc='*rounding*,*traps*,*thread*,*handle*,*snapshot*'
+fi
+exit $failed
