@@ -1,39 +1,42 @@
 #include "plugin/abi.hpp"
+#include <string_view>
 
 namespace wadi::plugin {
 
 namespace {
 
-// A host may call from destructors that run after those of its thread's variables: then errors have no text.
-thread_local bool text_gone = false;
-struct LastError {
-    std::string text;
-    ~LastError() { text_gone = true; }
-};
-thread_local LastError last;
+// Fixed room without a destructor: hosts keep the pointer, and call from destructors that run after those of the thread's
+// variables.
+constexpr std::size_t most = 1024;
+thread_local char text[most] = "";
 
 // A file may have a word of megabytes: of a long text its begin and its end.
-std::string shown(const std::string& message) {
-    constexpr std::size_t most = 1000;
-    return message.size() <= most ? message : message.substr(0, most / 2) + " ... " + message.substr(message.size() - most / 2);
+void keep(std::string_view head, std::string_view message) {
+    constexpr std::string_view between = " ... ";
+    auto add = [used = std::size_t{0}](std::string_view part) mutable {
+        std::memcpy(text + used, part.data(), part.size());
+        text[used += part.size()] = 0;
+    };
+    const std::size_t room = most - 1 - head.size();
+    add(head);
+    if (message.size() <= room) return add(message);
+    const std::size_t half = (room - between.size()) / 2;
+    add(message.substr(0, half));
+    add(between);
+    add(message.substr(message.size() - half));
 }
 
 } // namespace
 
-const char* last_error() { return text_gone ? "" : last.text.c_str(); }
+const char* last_error() { return text; }
 
 wadi_result report_out_of_memory(const char* function) noexcept {
-    if (text_gone) return WADI_ERROR_OUT_OF_MEMORY;
-    try {
-        last.text = std::string(function) + ": out of memory";
-    } catch (const std::bad_alloc&) {
-        last.text.clear();
-    }
+    keep(function, ": out of memory");
     return WADI_ERROR_OUT_OF_MEMORY;
 }
 
 wadi_result report(const Status& status) {
-    if (!text_gone) last.text = status ? std::string() : shown(status.message);
+    if (!status) keep("", status.message);
     switch (status.code) {
     case Code::ok:
         return WADI_OK;

@@ -3,6 +3,7 @@
 #include "engine/compute/float_environment.hpp"
 #include "engine/threads/bands.hpp"
 #include "plugin/include/wadi/wadi.h"
+#include "plugin/struct_sizes.hpp"
 #include "plugin/world_table.hpp"
 #include <algorithm>
 #include <cstring>
@@ -77,21 +78,6 @@ template <class Call> wadi_result or_unchanged(const char* function, Call call) 
     } catch (const std::bad_alloc&) {
         return report_out_of_memory(function);
     }
-}
-
-// A struct from a caller built against another version has another size: refuse rather than read past its end.
-template <class Struct> bool right_size(const Struct* s) { return s != nullptr && s->struct_size == sizeof(Struct); }
-
-template <class Struct> wadi_result wrong_struct(const char* function, const char* name) {
-    return bad_argument(std::string(function) + ": " + name + " is NULL or its struct_size is not " +
-                        std::to_string(sizeof(Struct)) + "; use wadi_default_...()");
-}
-
-template <class Struct> Struct sized() {
-    Struct s;
-    std::memset(&s, 0, sizeof s);
-    s.struct_size = sizeof s;
-    return s;
 }
 
 template <std::size_t N> void copy_text(char (&to)[N], const std::string& text) {

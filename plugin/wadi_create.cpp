@@ -12,9 +12,9 @@ using namespace wadi::plugin;
 namespace {
 
 // What a host's callback throws ends here: behind it are drivers, which no exception may pass.
-compute::Log to_log(const wadi_device_options* options) {
-    if (options == nullptr || options->log == nullptr) return {};
-    return [log = options->log, user = options->log_user](int severity, const std::string& message) {
+compute::Log to_log(const wadi_device_options& options) {
+    if (options.log == nullptr) return {};
+    return [log = options.log, user = options.log_user](int severity, const std::string& message) {
         const compute::DefaultFloats kept; // whatever the host's code sets
         try {
             log(user, severity, message.c_str());
@@ -25,46 +25,37 @@ compute::Log to_log(const wadi_device_options* options) {
     };
 }
 
-Result<std::unique_ptr<compute::Device>> open(const wadi_device_options* options, const compute::Log& log) {
-    const auto defaults = wadi_default_device_options();
-    if (options == nullptr) options = &defaults;
-    if (options->device < -1)
-        return error(Code::bad_argument, "wadi_device_options.device: " + std::to_string(options->device) + " is below -1");
+Result<std::unique_ptr<compute::Device>> open(const wadi_device_options& options, const compute::Log& log) {
+    if (options.device < -1)
+        return error(Code::bad_argument, "wadi_device_options.device: " + std::to_string(options.device) + " is below -1");
     compute::DeviceOptions o;
     o.log = log;
-    o.threads = options->threads;
-    o.validate = options->validate != 0;
-    if (options->vulkan_host != nullptr) {
+    o.threads = options.threads;
+    o.validate = options.validate != 0;
+    if (options.vulkan_host != nullptr) {
 #ifdef WADI_HAS_VULKAN
-        auto host = to_host_device(options->vulkan_host);
+        auto host = to_host_device(options.vulkan_host);
         if (!host) return host.status();
         o.host = std::move(*host);
 #else
         return error(Code::not_supported, "vulkan_host was given, but this build has no Vulkan");
 #endif
     }
-    return backends::open_device(options->backend != nullptr ? options->backend : "auto", options->device, o);
+    return backends::open_device(options.backend != nullptr ? options.backend : "auto", options.device, o);
 }
 
-int threads_of(const wadi_device_options* options) { return options != nullptr ? options->threads : 0; }
-
-LevelOverrides to_overrides(const wadi_level_overrides* o) {
+LevelOverrides to_overrides(const wadi_level_overrides& o) {
     LevelOverrides overrides;
-    if (o == nullptr) return overrides;
-    if (o->nx != 0 || o->ny != 0) overrides.size = {o->nx, o->ny};
-    if (o->dt != 0) overrides.dt = o->dt;
-    if (o->method != nullptr) overrides.method = o->method;
-    if (o->variant != nullptr) overrides.variant = o->variant;
-    if (o->accuracy != nullptr) overrides.accuracy = o->accuracy;
-    if (o->fused_stages != 0) overrides.fused_stages = o->fused_stages > 0 ? FusedStages::always : FusedStages::never;
-    if (o->active_tiles != 0) overrides.active_tiles = o->active_tiles == -1 ? 0 : o->active_tiles;
-    overrides.files = o->any_files != 0 ? FilesFrom::anywhere : FilesFrom::below;
+    if (o.nx != 0 || o.ny != 0) overrides.size = {o.nx, o.ny};
+    if (o.dt != 0) overrides.dt = o.dt;
+    if (o.method != nullptr) overrides.method = o.method;
+    if (o.variant != nullptr) overrides.variant = o.variant;
+    if (o.accuracy != nullptr) overrides.accuracy = o.accuracy;
+    if (o.fused_stages != 0) overrides.fused_stages = o.fused_stages > 0 ? FusedStages::always : FusedStages::never;
+    if (o.active_tiles != 0) overrides.active_tiles = o.active_tiles == -1 ? 0 : o.active_tiles;
+    overrides.files = o.any_files != 0 ? FilesFrom::anywhere : FilesFrom::below;
     return overrides;
 }
-
-// What no setting refuses later, since its kind has no such value.
-bool known_fused_stages(const wadi_level_overrides* o) { return o == nullptr || (o->fused_stages >= -1 && o->fused_stages <= 1); }
-constexpr const char* unknown_fused_stages = ": overrides.fused_stages is neither 1, -1 nor 0 (as the level says)";
 
 // The host's files: asked for their size first, then for their bytes.
 FileReader host_files(wadi_read_file_callback read_file, void* user) {
@@ -85,7 +76,23 @@ FileReader host_files(wadi_read_file_callback read_file, void* user) {
     };
 }
 
-wadi_result host(Result<Level> level, const wadi_device_options* options, wadi_world_id* id) {
+// What a creating call was given; NULL: defaults.
+struct Asked {
+    wadi_device_options options = wadi_default_device_options();
+    wadi_level_overrides overrides = wadi_default_level_overrides();
+    Status status = ok_status();
+
+    Asked(const char* function, const wadi_level_overrides* level, const wadi_device_options* device) {
+        const std::string call = std::string(function) + ": ";
+        if (level != nullptr && (status = understood(call + "overrides", level))) overrides = taken(level, overrides);
+        if (status && device != nullptr && (status = understood(call + "options", device))) options = taken(device, options);
+        if (status && (overrides.fused_stages < -1 ||
+                       overrides.fused_stages > 1)) // no setting refuses it later: its kind has no such value
+            status = error(Code::bad_argument, call + "overrides.fused_stages is neither 1, -1 nor 0 (as the level says)");
+    }
+};
+
+wadi_result host(Result<Level> level, const wadi_device_options& options, wadi_world_id* id) {
     if (!level) return report(level.status());
     const auto log = to_log(options);
     auto device = open(options, log);
@@ -103,23 +110,13 @@ wadi_result host(Result<Level> level, const wadi_device_options* options, wadi_w
         log(2, level->name + ": " + std::to_string(grid.nx) + " x " + std::to_string(grid.ny) + " cells on " +
                    (*world)->device().capabilities().name + ", effects " + effect_names((*world)->state().effects().mask));
     }
-    *id = plugin::worlds().add({std::move(*world), level->name, level->duration, level->warnings, threads_of(options), {}});
+    *id = plugin::worlds().add({std::move(*world), level->name, level->duration, level->warnings, options.threads, {}});
     return report(ok_status());
 }
 
 } // namespace
 
 extern "C" {
-
-wadi_device_options wadi_default_device_options(void) {
-    auto o = sized<wadi_device_options>();
-    o.backend = "auto";
-    o.device = -1;
-    return o;
-}
-
-wadi_level_overrides wadi_default_level_overrides(void) { return sized<wadi_level_overrides>(); }
-wadi_world_arrays wadi_default_world_arrays(void) { return sized<wadi_world_arrays>(); }
 
 wadi_result wadi_list_accuracy_presets(wadi_accuracy_preset* presets, uint32_t* count) {
     return guarded(__func__, [&] {
@@ -142,9 +139,10 @@ wadi_result wadi_list_devices(wadi_device_info* infos, uint32_t* count, char* no
         if (count == nullptr) return bad_argument("wadi_list_devices: count is NULL");
         const uint32_t capacity = infos != nullptr ? *count : 0;
         for (uint32_t n = 0; n < capacity; ++n) {
-            if (!right_size(&infos[n]))
-                return bad_argument("wadi_list_devices: infos[" + std::to_string(n) + "].struct_size is not " +
-                                    std::to_string(sizeof(wadi_device_info)));
+            const std::string what = "wadi_list_devices: infos[" + std::to_string(n) + "]";
+            if (auto status = understood(what, element(infos, n)); !status) return report(status);
+            if (element(infos, n)->struct_size != infos->struct_size)
+                return bad_argument(what + ".struct_size is not that of infos[0]");
         }
         uint32_t found = 0;
         std::string why_none;
@@ -154,14 +152,14 @@ wadi_result wadi_list_devices(wadi_device_info* infos, uint32_t* count, char* no
             if (devices.empty()) why_none += std::string(backend.name) + ": " + why + "\n";
             for (const auto& device : devices) {
                 if (found < capacity) {
-                    auto& info = infos[found];
-                    info = sized<wadi_device_info>();
+                    wadi_device_info info = wadi_default_device_info();
                     copy_text(info.backend, device.backend);
                     copy_text(info.name, device.name);
                     info.index = device.index;
                     info.is_software =
                         device.kind == compute::DeviceKind::cpu || device.kind == compute::DeviceKind::software_gpu;
                     info.memory_bytes = device.memory_bytes;
+                    give(element(infos, found), info);
                 }
                 ++found;
             }
@@ -176,16 +174,13 @@ wadi_result wadi_create_world_from_level(const char* path, const wadi_level_over
                                          const wadi_device_options* options, wadi_world_id* world) {
     return guarded(__func__, [&] {
         if (path == nullptr || world == nullptr) return bad_argument("wadi_create_world_from_level: path or world is NULL");
-        if (overrides != nullptr && !right_size(overrides))
-            return wrong_struct<wadi_level_overrides>("wadi_create_world_from_level", "overrides");
-        if (options != nullptr && !right_size(options))
-            return wrong_struct<wadi_device_options>("wadi_create_world_from_level", "options");
-        if (!known_fused_stages(overrides))
-            return bad_argument("wadi_create_world_from_level" + std::string(unknown_fused_stages));
-        const ThreadLimit limit(threads_of(options));
+        const Asked asked("wadi_create_world_from_level", overrides, options);
+        if (!asked.status) return report(asked.status);
+        const ThreadLimit limit(asked.options.threads);
         const bool json = std::string(path).ends_with(".json");
-        return host(json ? load_level(path, to_overrides(overrides)) : level_from_terrain(path, to_overrides(overrides)), options,
-                    world);
+        return host(json ? load_level(path, to_overrides(asked.overrides))
+                         : level_from_terrain(path, to_overrides(asked.overrides)),
+                    asked.options, world);
     });
 }
 
@@ -194,49 +189,46 @@ wadi_result wadi_create_world_from_level_text(const char* json, wadi_read_file_c
                                               wadi_world_id* world) {
     return guarded(__func__, [&] {
         if (json == nullptr || world == nullptr) return bad_argument("wadi_create_world_from_level_text: json or world is NULL");
-        if (overrides != nullptr && !right_size(overrides))
-            return wrong_struct<wadi_level_overrides>("wadi_create_world_from_level_text", "overrides");
-        if (options != nullptr && !right_size(options))
-            return wrong_struct<wadi_device_options>("wadi_create_world_from_level_text", "options");
-        if (!known_fused_stages(overrides))
-            return bad_argument("wadi_create_world_from_level_text" + std::string(unknown_fused_stages));
-        const ThreadLimit limit(threads_of(options));
-        return host(parse_level(json, host_files(read_file, user), to_overrides(overrides)), options, world);
+        const Asked asked("wadi_create_world_from_level_text", overrides, options);
+        if (!asked.status) return report(asked.status);
+        const ThreadLimit limit(asked.options.threads);
+        return host(parse_level(json, host_files(read_file, user), to_overrides(asked.overrides)), asked.options, world);
     });
 }
 
 wadi_result wadi_create_world_from_arrays(const wadi_world_arrays* arrays, const wadi_device_options* options,
                                           wadi_world_id* world) {
     return guarded(__func__, [&] {
-        if (!right_size(arrays)) return wrong_struct<wadi_world_arrays>("wadi_create_world_from_arrays", "arrays");
-        if (options != nullptr && !right_size(options))
-            return wrong_struct<wadi_device_options>("wadi_create_world_from_arrays", "options");
-        if (arrays->settings_json == nullptr || world == nullptr)
+        if (auto status = understood("wadi_create_world_from_arrays: arrays", arrays); !status) return report(status);
+        const auto own = taken(arrays, wadi_default_world_arrays());
+        const Asked asked("wadi_create_world_from_arrays", nullptr, options);
+        if (!asked.status) return report(asked.status);
+        if (own.settings_json == nullptr || world == nullptr)
             return bad_argument("wadi_create_world_from_arrays: settings_json or world is NULL");
-        const ThreadLimit limit(threads_of(options));
+        const ThreadLimit limit(asked.options.threads);
         const FileReader no_files = [](const std::string& name, std::uint64_t) -> Result<std::vector<std::uint8_t>> {
             return error(Code::bad_argument, name + ": settings_json may name no files");
         };
-        auto level = parse_level(arrays->settings_json, no_files, {});
+        auto level = parse_level(own.settings_json, no_files, {});
         if (!level) return report(level.status());
         const auto& grid = level->settings.grid;
-        if (arrays->nx != grid.nx || arrays->ny != grid.ny) {
-            return bad_argument("wadi_create_world_from_arrays: arrays of " + std::to_string(arrays->nx) + " x " +
-                                std::to_string(arrays->ny) + " cells, but the settings' grid is " + std::to_string(grid.nx) +
-                                " x " + std::to_string(grid.ny));
+        if (own.nx != grid.nx || own.ny != grid.ny) {
+            return bad_argument("wadi_create_world_from_arrays: arrays of " + std::to_string(own.nx) + " x " +
+                                std::to_string(own.ny) + " cells, but the settings' grid is " + std::to_string(grid.nx) + " x " +
+                                std::to_string(grid.ny));
         }
         const auto cells = static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny);
         const auto copy = [&](std::vector<float>& to, const float* from) {
             if (from != nullptr) to.assign(from, from + cells);
         };
-        copy(level->fields.terrain, arrays->terrain);
-        copy(level->fields.sand, arrays->sand);
-        copy(level->fields.water, arrays->water);
-        copy(level->fields.velocity_x, arrays->velocity_x);
-        copy(level->fields.velocity_y, arrays->velocity_y);
-        copy(level->settings.roughness, arrays->roughness);
+        copy(level->fields.terrain, own.terrain);
+        copy(level->fields.sand, own.sand);
+        copy(level->fields.water, own.water);
+        copy(level->fields.velocity_x, own.velocity_x);
+        copy(level->fields.velocity_y, own.velocity_y);
+        copy(level->settings.roughness, own.roughness);
         level->warnings = level_warnings(level->settings, level->fields);
-        return host(std::move(level), options, world);
+        return host(std::move(level), asked.options, world);
     });
 }
 

@@ -9,11 +9,15 @@ using namespace wadi::plugin;
 namespace {
 
 // What the engine's types cannot hold is refused here.
-Result<Edit> to_edit(const wadi_edit& e, uint32_t index) {
-    const auto refuse = [&](const std::string& text) {
-        return error(Code::bad_argument, "wadi_world_edit: edits[" + std::to_string(index) + "]." + text);
-    };
-    if (e.struct_size != sizeof e) return refuse("struct_size is not " + std::to_string(sizeof e) + "; use wadi_default_edit()");
+Result<Edit> to_edit(const wadi_edit* edits, uint32_t index) {
+    const auto which = [&] { return "wadi_world_edit: edits[" + std::to_string(index) + "]"; };
+    const auto refuse = [&](const std::string& text) { return error(Code::bad_argument, which() + "." + text); };
+    const wadi_edit* const given = element(edits, index);
+    if (given->struct_size != sizeof(wadi_edit)) { // the text is made for these alone: thousands of edits may come at once
+        if (auto status = understood(which(), given); !status) return status;
+    }
+    if (given->struct_size != edits->struct_size) return refuse("struct_size is not that of edits[0]");
+    const wadi_edit e = taken(given, wadi_default_edit());
     if (e.kind < WADI_EDIT_BRUSH || e.kind > WADI_EDIT_PUSH)
         return refuse("kind: " + std::to_string(e.kind) + " is no wadi_edit_kind (0 ... 2)");
     if (e.layer < WADI_LAYER_TERRAIN || e.layer > WADI_LAYER_WATER)
@@ -43,21 +47,13 @@ Region to_region(const wadi_region& r) { return {r.i0, r.j0, r.nx, r.ny}; }
 
 extern "C" {
 
-wadi_edit wadi_default_edit(void) {
-    auto edit = sized<wadi_edit>();
-    edit.radius = 1;
-    edit.softness = 0.5;
-    edit.strength = 1;
-    return edit;
-}
-
 wadi_result wadi_world_edit(wadi_world_id id, const wadi_edit* edits, uint32_t count) {
     return with_world(__func__, id, [&](HostedWorld& hosted) {
         if (edits == nullptr && count > 0) return bad_argument("wadi_world_edit: edits is NULL");
         std::vector<Edit>& list = hosted.edits;
         list.clear();
         for (uint32_t n = 0; n < count; ++n) {
-            auto edit = to_edit(edits[n], n);
+            auto edit = to_edit(edits, n);
             if (!edit) return report(edit.status());
             list.push_back(*edit);
         }

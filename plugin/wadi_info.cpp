@@ -10,31 +10,34 @@ extern "C" {
 
 uint32_t wadi_get_abi_version(void) { return WADI_ABI_VERSION; }
 
-const char* wadi_get_last_error(void) { return last_error(); }
+static_assert(WADI_VERSION == WADI_PROJECT_VERSION, "wadi.h and CMakeLists.txt say the same");
 
-wadi_world_info wadi_default_world_info(void) { return sized<wadi_world_info>(); }
+uint32_t wadi_get_version(void) { return WADI_VERSION; }
+
+const char* wadi_get_last_error(void) { return last_error(); }
 
 wadi_result wadi_world_get_info(wadi_world_id id, wadi_world_info* info) {
     return with_world(__func__, id, [&](HostedWorld& hosted) {
-        if (!right_size(info)) return wrong_struct<wadi_world_info>("wadi_world_get_info", "info");
+        if (auto status = understood("wadi_world_get_info: info", info); !status) return report(status);
         const auto& world = *hosted.world;
         const auto& capabilities = world.device().capabilities();
-        *info = sized<wadi_world_info>();
-        copy_text(info->name, hosted.name);
-        info->nx = world.settings().grid.nx;
-        info->ny = world.settings().grid.ny;
-        info->dx = world.settings().grid.dx;
-        info->dt = world.settings().dt;
-        info->substeps = world.plan().substeps;
-        info->duration = hosted.duration;
-        info->passes_per_water_step = static_cast<uint32_t>(world.plan().water_passes.size());
-        info->passes_per_sand_substep = static_cast<uint32_t>(world.plan().substep_passes.size());
-        info->bytes_per_cell = world.plan().bytes_per_cell();
-        info->device_bytes = world.state().device().bytes();
-        copy_text(info->backend, capabilities.backend);
-        copy_text(info->device_name, capabilities.name + " (" + capabilities.driver + ")");
-        info->exact_float = capabilities.exact_float ? 1 : 0;
-        info->warning_count = static_cast<uint32_t>(hosted.warnings.size());
+        wadi_world_info own = wadi_default_world_info();
+        copy_text(own.name, hosted.name);
+        own.nx = world.settings().grid.nx;
+        own.ny = world.settings().grid.ny;
+        own.dx = world.settings().grid.dx;
+        own.dt = world.settings().dt;
+        own.substeps = world.plan().substeps;
+        own.duration = hosted.duration;
+        own.passes_per_water_step = static_cast<uint32_t>(world.plan().water_passes.size());
+        own.passes_per_sand_substep = static_cast<uint32_t>(world.plan().substep_passes.size());
+        own.bytes_per_cell = world.plan().bytes_per_cell();
+        own.device_bytes = world.state().device().bytes();
+        copy_text(own.backend, capabilities.backend);
+        copy_text(own.device_name, capabilities.name + " (" + capabilities.driver + ")");
+        own.exact_float = capabilities.exact_float ? 1 : 0;
+        own.warning_count = static_cast<uint32_t>(hosted.warnings.size());
+        give(info, own);
         return report(ok_status());
     });
 }

@@ -47,29 +47,28 @@ wadi_result wadi_world_set_host_outputs(wadi_world_id id, uint32_t mask) {
     });
 }
 
-wadi_output_view wadi_default_output_view(void) { return sized<wadi_output_view>(); }
-
 wadi_result wadi_world_get_view(wadi_world_id id, wadi_output output, wadi_output_set set, wadi_output_view* view) {
     constexpr const char* function = "wadi_world_get_view";
     return with_world(function, id, [&](HostedWorld& hosted) {
-        if (!right_size(view)) return wrong_struct<wadi_output_view>(function, "view");
+        if (auto status = understood(std::string(function) + ": view", view); !status) return report(status);
         if (auto status = check_output(function, output); !status) return report(status);
         const int which = static_cast<int>(set);
         if (which < 0 || which > WADI_OUTPUT_INTERPOLATED)
             return bad_argument(std::string(function) + ": set: " + std::to_string(which) + " is outside 0 ... 2");
         auto found = hosted.world->outputs().view(static_cast<Output>(output), static_cast<OutputSet>(which));
         if (!found) return report(named(function, found.status()));
-        *view = sized<wadi_output_view>();
-        view->handle_kind = static_cast<wadi_handle_kind>(found->buffer.kind);
-        view->handle = found->buffer.handle;
-        view->offset = found->offset;
-        view->row_pitch = found->row_pitch;
-        view->buffer_bytes = found->buffer.bytes;
-        view->nx = found->nx;
-        view->ny = found->ny;
-        view->format = static_cast<wadi_format>(found->components);
-        view->step = found->step;
-        view->finished = found->finished ? 1 : 0;
+        wadi_output_view own = wadi_default_output_view();
+        own.handle_kind = static_cast<wadi_handle_kind>(found->buffer.kind);
+        own.handle = found->buffer.handle;
+        own.offset = found->offset;
+        own.row_pitch = found->row_pitch;
+        own.buffer_bytes = found->buffer.bytes;
+        own.nx = found->nx;
+        own.ny = found->ny;
+        own.format = static_cast<wadi_format>(found->components);
+        own.step = found->step;
+        own.finished = found->finished ? 1 : 0;
+        give(view, own);
         return report(ok_status());
     });
 }

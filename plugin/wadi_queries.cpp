@@ -14,27 +14,25 @@ wadi_query_result to_result(std::span<const float, SAMPLE_FLOATS> s) {
 Vector3 to_vector(const float (&v)[3]) { return {v[0], v[1], v[2]}; }
 
 // ok, or why the body is refused.
-Status to_body(const char* function, const wadi_body* from, Body& body) {
-    if (!right_size(from)) {
-        wrong_struct<wadi_body>(function, "body");
-        return error(Code::bad_argument, last_error());
-    }
-    if (from->shape != WADI_BODY_BOX && from->shape != WADI_BODY_SPHERE)
-        return error(Code::bad_argument, std::string(function) + ": body.shape is " + std::to_string(from->shape) +
+Status to_body(const char* function, const wadi_body* given, Body& body) {
+    if (auto status = understood(std::string(function) + ": body", given); !status) return status;
+    const auto from = taken(given, wadi_default_body());
+    if (from.shape != WADI_BODY_BOX && from.shape != WADI_BODY_SPHERE)
+        return error(Code::bad_argument, std::string(function) + ": body.shape is " + std::to_string(from.shape) +
                                              ", allowed are 0 (box) and 1 (sphere)");
-    const auto& q = from->orientation;
-    body = {from->shape == WADI_BODY_BOX ? BodyShape::box : BodyShape::sphere,
-            to_vector(from->position),
+    const auto& q = from.orientation;
+    body = {from.shape == WADI_BODY_BOX ? BodyShape::box : BodyShape::sphere,
+            to_vector(from.position),
             {q[0], q[1], q[2], q[3]},
-            to_vector(from->half_size),
-            from->radius,
-            to_vector(from->velocity),
-            to_vector(from->angular_velocity),
-            from->water_density,
-            from->gravity,
-            from->linear_drag,
-            from->quadratic_drag,
-            from->samples};
+            to_vector(from.half_size),
+            from.radius,
+            to_vector(from.velocity),
+            to_vector(from.angular_velocity),
+            from.water_density,
+            from.gravity,
+            from.linear_drag,
+            from.quadratic_drag,
+            from.samples};
     auto status = validate(body);
     if (!status) status.message = std::string(function) + ": " + status.message;
     return status;
@@ -68,21 +66,6 @@ wadi_result wadi_world_get_query(wadi_world_id id, uint64_t ticket, wadi_query_r
         if (step != nullptr) *step = answer->step;
         return report(ok_status());
     });
-}
-
-wadi_body wadi_default_body(void) {
-    const compute::DefaultFloats floats;
-    auto b = sized<wadi_body>();
-    const Body body;
-    b.orientation[3] = 1;
-    for (auto& h : b.half_size) h = static_cast<float>(body.half_size[0]);
-    b.radius = static_cast<float>(body.radius);
-    b.water_density = static_cast<float>(body.water_density);
-    b.gravity = static_cast<float>(body.gravity);
-    b.linear_drag = static_cast<float>(body.linear_drag);
-    b.quadratic_drag = static_cast<float>(body.quadratic_drag);
-    b.samples = body.samples;
-    return b;
 }
 
 wadi_result wadi_buoyancy_points(const wadi_body* from, float* xy, uint32_t* count) {

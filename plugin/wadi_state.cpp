@@ -12,8 +12,6 @@ const char* wadi::plugin::plan_name(wadi_field field) {
 
 extern "C" {
 
-wadi_world_stats wadi_default_world_stats(void) { return sized<wadi_world_stats>(); }
-
 wadi_result wadi_world_step(wadi_world_id id, uint32_t steps) {
     return with_world(__func__, id, [&](HostedWorld& hosted) { return report(hosted.world->step(steps)); });
 }
@@ -47,7 +45,7 @@ wadi_result wadi_world_read_field(wadi_world_id id, wadi_field field, float* val
 
 wadi_result wadi_world_get_stats(wadi_world_id id, wadi_world_stats* stats) {
     return with_world(__func__, id, [&](HostedWorld& hosted) {
-        if (!right_size(stats)) return wrong_struct<wadi_world_stats>("wadi_world_get_stats", "stats");
+        if (auto status = understood("wadi_world_get_stats: stats", stats); !status) return report(status);
         auto& world = *hosted.world;
         auto now = world.reader().stats();
         if (!now) return report(now.status());
@@ -57,33 +55,34 @@ wadi_result wadi_world_get_stats(wadi_world_id id, wadi_world_stats* stats) {
             return add_quanta(held, -add_quanta(add_quanta(initial, in), -out));
         };
         const auto& ledger = now->ledger;
-        *stats = sized<wadi_world_stats>();
-        stats->time = world.time();
-        stats->steps = world.steps();
-        stats->sand_volume = cubic_metres(now->sand_quanta);
-        stats->water_volume = cubic_metres(now->water_quanta);
-        stats->sand_initial = cubic_metres(now->sand_initial);
-        stats->water_initial = cubic_metres(now->water_initial);
-        stats->sand_in = cubic_metres(ledger.sand_in);
-        stats->sand_out = cubic_metres(ledger.sand_out);
-        stats->water_in = cubic_metres(ledger.water_in);
-        stats->water_out = cubic_metres(ledger.water_out);
-        stats->refused = cubic_metres(ledger.refused);
-        stats->sand_drift_quanta = drift(now->sand_quanta, now->sand_initial, ledger.sand_in, ledger.sand_out);
-        stats->water_drift_quanta = drift(now->water_quanta, now->water_initial, ledger.water_in, ledger.water_out);
-        stats->quantum = now->quantum;
-        stats->largest_sand = now->largest_sand;
-        stats->largest_water = now->largest_water;
-        stats->largest_water_speed = now->largest_water_speed;
-        stats->largest_sand_speed = now->largest_sand_speed;
-        stats->smallest_height = now->smallest_height;
-        stats->not_finite = now->not_finite;
-        stats->clamped_faces = now->clamped_faces;
-        stats->capped_faces = now->capped_faces;
-        stats->limited_cells = now->limited_cells;
-        stats->tiles = now->tiles;
-        stats->active_tiles = now->active_tiles;
-        stats->hash = now->hash;
+        wadi_world_stats own = wadi_default_world_stats();
+        own.time = world.time();
+        own.steps = world.steps();
+        own.sand_volume = cubic_metres(now->sand_quanta);
+        own.water_volume = cubic_metres(now->water_quanta);
+        own.sand_initial = cubic_metres(now->sand_initial);
+        own.water_initial = cubic_metres(now->water_initial);
+        own.sand_in = cubic_metres(ledger.sand_in);
+        own.sand_out = cubic_metres(ledger.sand_out);
+        own.water_in = cubic_metres(ledger.water_in);
+        own.water_out = cubic_metres(ledger.water_out);
+        own.refused = cubic_metres(ledger.refused);
+        own.sand_drift_quanta = drift(now->sand_quanta, now->sand_initial, ledger.sand_in, ledger.sand_out);
+        own.water_drift_quanta = drift(now->water_quanta, now->water_initial, ledger.water_in, ledger.water_out);
+        own.quantum = now->quantum;
+        own.largest_sand = now->largest_sand;
+        own.largest_water = now->largest_water;
+        own.largest_water_speed = now->largest_water_speed;
+        own.largest_sand_speed = now->largest_sand_speed;
+        own.smallest_height = now->smallest_height;
+        own.not_finite = now->not_finite;
+        own.clamped_faces = now->clamped_faces;
+        own.capped_faces = now->capped_faces;
+        own.limited_cells = now->limited_cells;
+        own.tiles = now->tiles;
+        own.active_tiles = now->active_tiles;
+        own.hash = now->hash;
+        give(stats, own);
         return report(ok_status());
     });
 }

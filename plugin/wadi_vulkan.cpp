@@ -3,26 +3,28 @@
 #include "plugin/abi.hpp"
 #include "plugin/vulkan_host.hpp"
 
+namespace wadi::plugin {
+WADI_FIRST_BYTES(wadi_vulkan_host, timeline_semaphore)
+}
+
 using namespace wadi;
 using namespace wadi::plugin;
 
-Result<compute::HostDevice> wadi::plugin::to_host_device(const wadi_vulkan_host* host) {
-    if (!right_size(host)) {
-        return error(Code::bad_argument, "vulkan_host: struct_size is not " + std::to_string(sizeof(wadi_vulkan_host)) +
-                                             "; use wadi_default_vulkan_host()");
-    }
-    if (host->sharing_family_count > 0 && host->sharing_families == nullptr)
+Result<compute::HostDevice> wadi::plugin::to_host_device(const wadi_vulkan_host* given) {
+    if (auto status = understood("vulkan_host", given); !status) return status;
+    const auto own = taken(given, wadi_default_vulkan_host());
+    if (own.sharing_family_count > 0 && own.sharing_families == nullptr)
         return error(Code::bad_argument, "vulkan_host: sharing_families is NULL, but sharing_family_count is " +
-                                             std::to_string(host->sharing_family_count));
+                                             std::to_string(own.sharing_family_count));
     compute::HostDevice device;
-    device.instance = host->instance;
-    device.physical_device = host->physical_device;
-    device.device = host->device;
-    device.queue = host->queue;
-    device.get_instance_proc_addr = reinterpret_cast<void*>(host->get_instance_proc_addr);
-    device.queue_family = host->queue_family;
-    device.sharing_families.assign(host->sharing_families, host->sharing_families + host->sharing_family_count);
-    device.timeline_semaphore = host->timeline_semaphore == VK_TRUE;
+    device.instance = own.instance;
+    device.physical_device = own.physical_device;
+    device.device = own.device;
+    device.queue = own.queue;
+    device.get_instance_proc_addr = reinterpret_cast<void*>(own.get_instance_proc_addr);
+    device.queue_family = own.queue_family;
+    device.sharing_families.assign(own.sharing_families, own.sharing_families + own.sharing_family_count);
+    device.timeline_semaphore = own.timeline_semaphore == VK_TRUE;
     return device;
 }
 
@@ -45,8 +47,6 @@ template <class Call> wadi_result on_host(const char* function, wadi_world_id id
 } // namespace
 
 extern "C" {
-
-wadi_vulkan_host wadi_default_vulkan_host(void) { return sized<wadi_vulkan_host>(); }
 
 wadi_result wadi_vulkan_wait(wadi_world_id id, const wadi_vulkan_sync* points, uint32_t count) {
     return on_host(__func__, id, points, [&](compute::HostSync& sync) {

@@ -2,7 +2,10 @@
  *
  * Units: metres, seconds, kilograms. Fields are row-major, nx * ny floats, x fastest; row 0 is the south side (y = 0),
  * column 0 the west side (x = 0); heights point up.
- * A struct that the caller fills begins with struct_size: call its wadi_default_*() function, then change what you need.
+ * A struct that begins with struct_size grows at its end in later versions: start from its wadi_default_*() function, then change what
+ * you need. A host and a library of different versions understand each other as long as WADI_ABI_VERSION is the same: what a host's
+ * struct lacks has its default; a field that a library does not know must be 0, or it refuses the call and says so. In arrays of such
+ * structs all have the size of the first. Structs without struct_size, and what enums mean, never change.
  * Every function that can fail returns a wadi_result; wadi_get_last_error() then has one line of text for this thread.
  * No function aborts, throws or prints. A world is used by one thread at a time: a call that meets another one inside the same
  * world does nothing and returns WADI_ERROR_BUSY. Different worlds are independent. A forked child cannot use its parent's worlds.
@@ -14,7 +17,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#if defined(_WIN32)
+#if defined(WADI_STATIC) /* the library is linked into the host */
+#define WADI_API
+#elif defined(_WIN32)
 #if defined(WADI_BUILD)
 #define WADI_API __declspec(dllexport)
 #else
@@ -28,10 +33,26 @@
 extern "C" {
 #endif
 
+/** Counts up when hosts must be compiled anew; everything else grows. */
 #define WADI_ABI_VERSION 1u
+#define WADI_VERSION_MAJOR 0u
+#define WADI_VERSION_MINOR 1u
+#define WADI_VERSION_PATCH 0u
+#define WADI_MAKE_VERSION(major, minor, patch) (((major) << 22) | ((minor) << 12) | (patch))
+/** The version of this header. */
+#define WADI_VERSION WADI_MAKE_VERSION(WADI_VERSION_MAJOR, WADI_VERSION_MINOR, WADI_VERSION_PATCH)
 
 /** The ABI version of the library that is loaded; compare it with WADI_ABI_VERSION. */
 WADI_API uint32_t wadi_get_abi_version(void);
+/** The version of the library that is loaded, as WADI_MAKE_VERSION writes it: at least WADI_VERSION has all that this header names. */
+WADI_API uint32_t wadi_get_version(void);
+
+/* A struct that is all zero but for its size. */
+#if defined(__cplusplus)
+#define WADI_ZERO_STRUCT(type) type value = {}; value.struct_size = sizeof(type)
+#else
+#define WADI_ZERO_STRUCT(type) type value = {0}; value.struct_size = sizeof(type)
+#endif
 
 typedef enum wadi_result {
     WADI_OK = 0,
@@ -46,7 +67,8 @@ typedef enum wadi_result {
     WADI_ERROR_BUSY = 9           /* another thread is inside a call on this world; nothing was done */
 } wadi_result;
 
-/** One line about the last error on this thread; never NULL, valid until the next call on this thread. */
+/** One line about the last error on this thread, "" before the first; never NULL. Calls that succeed leave it as it is; the pointer
+ *  stays good as long as the thread, with the text of the newest error. */
 WADI_API const char* wadi_get_last_error(void);
 
 /** A world by index and generation; all zero is null. Copy it freely; a destroyed one is recognised and refused. */
@@ -77,16 +99,25 @@ typedef struct wadi_device_options {
     void* log_user;
     const struct wadi_vulkan_host* vulkan_host; /* NULL, or the host's own Vulkan device (wadi_vulkan.h): "auto" and "vulkan" run on it, "cuda" beside it */
 } wadi_device_options;
-WADI_API wadi_device_options wadi_default_device_options(void);
+static inline wadi_device_options wadi_default_device_options(void) {
+    WADI_ZERO_STRUCT(wadi_device_options);
+    value.backend = "auto";
+    value.device = -1;
+    return value;
+}
 
 typedef struct wadi_device_info {
-    uint32_t struct_size;      /* sizeof(wadi_device_info), set by the caller */
+    uint32_t struct_size;
     char backend[16];
     int32_t index;             /* within its backend */
     char name[256];
     int32_t is_software;       /* 1 for the CPU and for software Vulkan devices */
     uint64_t memory_bytes;     /* 0 = unknown */
 } wadi_device_info;
+static inline wadi_device_info wadi_default_device_info(void) {
+    WADI_ZERO_STRUCT(wadi_device_info);
+    return value;
+}
 /** Lists the devices of all backends of this build. *count: capacity in, number of devices out; infos may be NULL to ask the
  *  number. `notes` (may be NULL) receives one line per backend without a device, saying why. Errors: BAD_ARGUMENT (count NULL, a
  *  struct_size among infos). */
@@ -109,7 +140,10 @@ typedef struct wadi_level_overrides {
     int32_t any_files;         /* 1 = maps and series may lie anywhere that the process can read; 0 = in the level's folder and below it
                                   alone, links followed: no "..", no path from the root on. For levels of one's own */
 } wadi_level_overrides;
-WADI_API wadi_level_overrides wadi_default_level_overrides(void);
+static inline wadi_level_overrides wadi_default_level_overrides(void) {
+    WADI_ZERO_STRUCT(wadi_level_overrides);
+    return value;
+}
 
 /** An accuracy preset, with what it was measured to err and to cost against "balanced" (samples/report). */
 typedef struct wadi_accuracy_preset {
@@ -141,7 +175,10 @@ typedef struct wadi_world_arrays {
     const float* velocity_y;
     const float* roughness;    /* what cells add to material.manning, 0 ... 1 [s/m^(1/3)] */
 } wadi_world_arrays;
-WADI_API wadi_world_arrays wadi_default_world_arrays(void);
+static inline wadi_world_arrays wadi_default_world_arrays(void) {
+    WADI_ZERO_STRUCT(wadi_world_arrays);
+    return value;
+}
 WADI_API wadi_result wadi_create_world_from_arrays(const wadi_world_arrays* arrays, const wadi_device_options* options,
                                                    wadi_world_id* world);
 
@@ -165,7 +202,10 @@ typedef struct wadi_world_info {
     int32_t exact_float;          /* 1 = the device passed the exact-float self-test */
     uint32_t warning_count;
 } wadi_world_info;
-WADI_API wadi_world_info wadi_default_world_info(void);
+static inline wadi_world_info wadi_default_world_info(void) {
+    WADI_ZERO_STRUCT(wadi_world_info);
+    return value;
+}
 WADI_API wadi_result wadi_world_get_info(wadi_world_id world, wadi_world_info* info);
 /** Text of warning n of the level, or NULL. */
 WADI_API const char* wadi_world_get_warning(wadi_world_id world, uint32_t n);
@@ -237,7 +277,10 @@ typedef struct wadi_world_stats {
                                      and sand have one each; 0 without active tiles */
     uint64_t hash;                /* 64-bit state hash, ghosts excluded */
 } wadi_world_stats;
-WADI_API wadi_world_stats wadi_default_world_stats(void);
+static inline wadi_world_stats wadi_default_world_stats(void) {
+    WADI_ZERO_STRUCT(wadi_world_stats);
+    return value;
+}
 WADI_API wadi_result wadi_world_get_stats(wadi_world_id world, wadi_world_stats* stats);
 
 /** 1 = every step records timestamps (a separately recorded program; off by default). */
@@ -262,7 +305,12 @@ typedef struct wadi_update_settings {
                                       the same, the load has no peak every dt; default 0 */
     int32_t interpolate_outputs;   /* 1 = every update also writes the interpolated set of the outputs; default 0 */
 } wadi_update_settings;
-WADI_API wadi_update_settings wadi_default_update_settings(void);
+static inline wadi_update_settings wadi_default_update_settings(void) {
+    WADI_ZERO_STRUCT(wadi_update_settings);
+    value.max_steps_per_update = 8;
+    value.max_steps_in_flight = 8;
+    return value;
+}
 /** Takes effect with the next update. Does not wait, unless interpolate_outputs changes: that allocates or frees as
  *  wadi_world_set_outputs does. Errors, the settings staying as they were: BAD_ARGUMENT (out of range), OUT_OF_MEMORY, DEVICE_LOST. */
 WADI_API wadi_result wadi_world_set_update_settings(wadi_world_id world, const wadi_update_settings* settings);
@@ -279,7 +327,10 @@ typedef struct wadi_frame {
     uint64_t dropped_nanoseconds;       /* host time that became no step in this update; steps is then less than it asks for */
     uint64_t dropped_nanoseconds_total; /* and since the world was created */
 } wadi_frame;
-WADI_API wadi_frame wadi_default_frame(void);
+static inline wadi_frame wadi_default_frame(void) {
+    WADI_ZERO_STRUCT(wadi_frame);
+    return value;
+}
 
 /** Advances by `host_nanoseconds` of host time since the last update (0 is allowed). Steps are fixed: after a total of t
  *  nanoseconds, less those dropped, floor(t / dt) water steps are done (dt as the double dt * 1e9, the quotient exact), so the same
@@ -351,7 +402,10 @@ typedef struct wadi_output_view {
     int32_t finished;              /* 1 = the device has written it. 0 = it will have, ahead of anything that is submitted behind it;
                                       a host that reads elsewhere (the CPU backend's address) must wait for 1 */
 } wadi_output_view;
-WADI_API wadi_output_view wadi_default_output_view(void);
+static inline wadi_output_view wadi_default_output_view(void) {
+    WADI_ZERO_STRUCT(wadi_output_view);
+    return value;
+}
 /** Views an output. Does not wait. PREVIOUS and CURRENT stay as they are during the next update at least: a publish writes the third
  *  set. Errors: BAD_ARGUMENT (no such output or set, not asked for), NOT_READY (not published yet; PREVIOUS: only once), DEVICE_LOST. */
 WADI_API wadi_result wadi_world_get_view(wadi_world_id world, wadi_output output, wadi_output_set set, wadi_output_view* view);
@@ -480,7 +534,17 @@ typedef struct wadi_body {
     float quadratic_drag;         /* drag coefficient, dimensionless, 0 or more; default 1 */
     int32_t samples;              /* columns per side, 1 ... 16; default 4 */
 } wadi_body;
-WADI_API wadi_body wadi_default_body(void);
+static inline wadi_body wadi_default_body(void) {
+    WADI_ZERO_STRUCT(wadi_body);
+    value.orientation[3] = 1;
+    value.half_size[0] = value.half_size[1] = value.half_size[2] = 0.5f;
+    value.radius = 0.5f;
+    value.water_density = 1000;
+    value.gravity = 9.81f;
+    value.quadratic_drag = 1;
+    value.samples = 4;
+    return value;
+}
 
 /** The points to pass to wadi_world_query for a body: samples * samples for a box, those within the circle for a sphere. *count:
  *  points that fit xy in, points out; xy may be NULL to ask the number. Needs no world. Errors: BAD_ARGUMENT. */
@@ -551,7 +615,14 @@ typedef struct wadi_edit {
     double velocity_y;
     uint32_t stamp;       /* stamp: its number, from wadi_world_create_stamp */
 } wadi_edit;
-WADI_API wadi_edit wadi_default_edit(void); /* a brush on terrain: radius 1, softness 0.5, strength 1, the rest 0 */
+/** A brush on terrain. */
+static inline wadi_edit wadi_default_edit(void) {
+    WADI_ZERO_STRUCT(wadi_edit);
+    value.radius = 1;
+    value.softness = 0.5;
+    value.strength = 1;
+    return value;
+}
 
 /** Queues `count` edits. Those of one step act in the order of the calls, ahead of that step; in the middle of a step that runs in
  *  parts "the next one" is the one after it. Depths change by whole quanta and every quantum is in the ledger; what finds no room

@@ -36,7 +36,10 @@ typedef struct wadi_vulkan_host {
     uint32_t sharing_family_count;
     VkBool32 timeline_semaphore;       /* the feature timelineSemaphore is enabled (Vulkan 1.2 or VK_KHR_timeline_semaphore) */
 } wadi_vulkan_host;
-WADI_API wadi_vulkan_host wadi_default_vulkan_host(void);
+static inline wadi_vulkan_host wadi_default_vulkan_host(void) {
+    WADI_ZERO_STRUCT(wadi_vulkan_host);
+    return value;
+}
 
 /** A point on a timeline semaphore of the host. */
 typedef struct wadi_vulkan_sync {
