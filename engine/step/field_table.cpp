@@ -72,7 +72,7 @@ constexpr FieldRow rows[] = {
      "what friction takes from a velocity in the substep at most"},
     {"friction_limit_y", scratch, south_face, no_hash, no_host, "", "m/s", EFFECT_SLOPE_NORMAL, ""},
     {"withheld_push_x", scratch, west_face, no_hash, no_host, "", "m/s", EFFECT_SLOPE_NORMAL,
-     "what slope and wedge take from the sand's push in the substep"},
+     "what sand bears uphill in the substep beyond its push"},
     {"withheld_push_y", scratch, south_face, no_hash, no_host, "", "m/s", EFFECT_SLOPE_NORMAL, ""},
     {"source_ledger", ledger, none, no_hash, no_host, "", "quanta", always,
      "what sources, rain and edits moved, 64 bits in two words"},

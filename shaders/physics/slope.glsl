@@ -56,6 +56,10 @@ FN float limited_fall(SlopeShares s, float rise, float pure_rise, float density_
     return s.weight * (s.push * (rise - density_ratio * borne) + density_ratio * (pure_rise + borne));
 }
 
+// Rankine's coefficient of passive earth pressure, tan^2(45 deg + phi/2): how many times its own push sand can bear before it is
+// pushed together.
+FN float passive_coefficient(float friction) { return square(friction + lean_root(1.0f + square(friction))); }
+
 // What is left of a velocity after the friction within a layer that thins while it slides: all for a block, at rest and where sand
 // piles up. speed2: square of the old velocity; friction: b times what friction takes from a velocity in the substep.
 FN float left_within(float growth, float least_height, float speed2, float wave_speed2, float friction) {

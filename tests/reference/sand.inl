@@ -75,7 +75,10 @@ template <class Real> void Solver<Real>::add_gravity(const Axis& ax, int a, int 
         const Real m = minmod(-D, slope.d); // where the water's surface is level the sand feels its buoyant weight
         u -= P.k_sand * g_f * slope.C * (slope.r * (slope.d - buoyancy * m) + buoyancy * (D + m));
         const bool pushed = sand[L] + sand[R] > Real(0);
-        withheld_push.along(ax)[f] = pushed ? P.k_sand * g_f * (Real(1) - slope.C * slope.r) * slope.d : Real(0);
+        // Rankine's passive pressure, (1 + sin phi)/(1 - sin phi) times the sand's own, where no stress bears it.
+        const Real sine = P.friction / std::sqrt(Real(1) + P.friction * P.friction);
+        const Real borne = has(EFFECT_ELASTOPLASTIC) ? Real(1) : (Real(1) + sine) / (Real(1) - sine);
+        withheld_push.along(ax)[f] = pushed ? P.k_sand * g_f * (borne - slope.C * slope.r) * slope.d : Real(0);
         friction_limit.along(ax)[f] = pushed ? slope.C * level_friction(L, R) : Real(0);
     } else {
         u -= P.k_sand * g_f * (S_R - S_L);

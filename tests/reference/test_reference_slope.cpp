@@ -144,15 +144,15 @@ TEST_CASE("reference: pores keep what they hold, and full ones hold nothing") {
     CHECK(kept(1, 0.4925) < 0.9);
 }
 
-TEST_CASE("reference: what water brings uphill meets the whole push") {
-    // A slope of sand above its wedge, at rest in its push; mixed water that is carried up it.
+TEST_CASE("reference: what water brings uphill meets the whole push, of friction alone the passive one") {
+    // A slope of sand at rest in its push; mixed water that is carried up it.
     Settings set = with_laws(make_settings(4, 1, 0.1, 0.006));
     set.material.friction = 0;
     set.material.exchange_rate = 1e12;
     set.material.retention = 0;
     set.method.sand_gravity_cap = 0;
-    const auto moved = [&](double um, bool law) {
-        Solver<double> s(set, WET_SAND | (law ? EFFECT_SLOPE_NORMAL : 0u));
+    const auto moved = [&](double um, bool law, unsigned more = 0) {
+        Solver<double> s(set, WET_SAND | (law ? EFFECT_SLOPE_NORMAL : 0u) | more);
         for (int i = 0; i < 4; ++i) {
             s.terrain[index(i)] = 0.3 * i;
             s.sand[index(i)] = s.water[index(i)] = 0.5;
@@ -171,4 +171,11 @@ TEST_CASE("reference: what water brings uphill meets the whole push") {
     CHECK(moved(0.8, true).first == doctest::Approx(0.4 - whole));
     CHECK(moved(whole, true).first == doctest::Approx(0)); // half of it arrives, and no more is taken than arrives
     CHECK(moved(-0.8, true).first == doctest::Approx(-0.4));
+
+    // tan^2(45 deg + phi/2) = 4 for tan phi = 3/4, from which what remains of the push on the wedge's slope, 1/(1 + 2^2), goes; a
+    // slope of 3 is steeper than the wedge, 2.
+    set.material.friction = 0.75;
+    const double level = set.dt / set.method.substeps / 0.1 * set.gravity * 0.3, left = (2 + 0.1) / 3 / 5;
+    CHECK(moved(0, true).second == doctest::Approx(level * (4 - left)));
+    CHECK(moved(0, true, EFFECT_ELASTOPLASTIC).second == doctest::Approx(level * (1 - left)));
 }
