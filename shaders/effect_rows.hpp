@@ -52,6 +52,17 @@ inline constexpr EffectRow choice_rows[] = {
      "heights and flux-form velocities of sand move by limited slopes"},
     {EFFECT_SHOCK_VISCOSITY, "shock_viscosity", EFFECT_WATER,
      "numerical viscosity of water where it is compressed: bores do not ring"},
+    {EFFECT_WHOLE_PRESSURE, "whole_pressure", EFFECT_MIXTURE, "the water's slope pushes mixed water once a water step"},
+    {EFFECT_EXPLICIT_EXCHANGE, "explicit_exchange", EFFECT_MIXTURE | EFFECT_SEMI_LAGRANGIAN | EFFECT_WHOLE_PRESSURE,
+     "water that changes layer gives its momentum as an acceleration of both"},
+    {EFFECT_DIFFUSION_AHEAD, "diffusion_ahead", EFFECT_LAPLACE_DIFFUSION | EFFECT_SEMI_LAGRANGIAN,
+     "mixed water spreads in a step of its own, ahead of transport"},
+    {EFFECT_ALGORITHM_1, "algorithm_1", EFFECT_SAND | EFFECT_SEMI_LAGRANGIAN,
+     "the sand substep in the order of the paper's Algorithm 1, its strain without guards"},
+    {EFFECT_CENTRAL_SHEAR, "central_shear", EFFECT_WHOLE_STRAIN | EFFECT_ALGORITHM_1,
+     "shear at corners is the mean of depth times stress"},
+    {EFFECT_STRAIN_BEYOND, "strain_beyond", EFFECT_WHOLE_STRAIN | EFFECT_ALGORITHM_1,
+     "velocity, angle and stretch go on beyond the rim of the sand"},
 };
 
 inline constexpr std::uint32_t all_effects = (1u << std::size(effect_rows)) - 1;
@@ -59,7 +70,12 @@ inline constexpr std::uint32_t all_effects = (1u << std::size(effect_rows)) - 1;
 /// Half storage is for worlds that trade accuracy for memory; a method that does the opposite, or the paper's own, has no kernels
 /// for it.
 inline constexpr std::uint32_t never_half = EFFECT_SEMI_LAGRANGIAN | EFFECT_WHOLE_STRAIN | EFFECT_EXPLICIT_DRAG |
-                                            EFFECT_LAPLACE_DIFFUSION | EFFECT_SECOND_ORDER_WATER | EFFECT_SECOND_ORDER_SAND;
+                                            EFFECT_LAPLACE_DIFFUSION | EFFECT_SECOND_ORDER_WATER | EFFECT_SECOND_ORDER_SAND |
+                                            EFFECT_WHOLE_PRESSURE;
+
+/// The stages of Algorithm 1 know nothing of these.
+inline constexpr std::uint32_t never_algorithm_1 =
+    EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION | EFFECT_RETENTION | EFFECT_DIRECT_STRAIN | EFFECT_SECOND_ORDER_SAND;
 
 /// The mask with all that its effects and choices need.
 constexpr std::uint32_t with_needs(std::uint32_t mask) {
@@ -71,9 +87,16 @@ constexpr std::uint32_t with_needs(std::uint32_t mask) {
     return mask;
 }
 
-/// True when every effect in the mask and choice in the mask has what it needs, and half storage no choice that is without it.
+/// True when every effect in the mask and choice in the mask has what it needs, half storage no choice that is without it, and
+/// Algorithm 1 strain and drag as the paper has them.
 constexpr bool is_legal(std::uint32_t mask) {
-    return with_needs(mask) == mask && ((mask & EFFECT_HALF_STORAGE) == 0 || (mask & never_half) == 0);
+    const auto both_or_neither = [mask](std::uint32_t one, std::uint32_t other) {
+        return ((mask & one) != 0) == ((mask & other) != 0);
+    };
+    const bool algorithm_1 = (mask & never_algorithm_1) == 0 && both_or_neither(EFFECT_ELASTOPLASTIC, EFFECT_WHOLE_STRAIN) &&
+                             both_or_neither(EFFECT_DRAG, EFFECT_EXPLICIT_DRAG);
+    return with_needs(mask) == mask && ((mask & EFFECT_HALF_STORAGE) == 0 || (mask & never_half) == 0) &&
+           ((mask & EFFECT_ALGORITHM_1) == 0 || algorithm_1);
 }
 
 constexpr bool rows_follow_bits() {

@@ -79,7 +79,7 @@ struct WorldParams {
     float inv_k2;               // 1/k^2 [m2/s2]
     float rest_surface;         // eta_rest [m]; negative = rule off
     float rest_velocity;        // v_rest [m/s]; negative = rule off
-    float diffusion_number;     // min(c_d, 0.2 dx^2/dt) dt/dx^2
+    float diffusion_number;     // min(c_d, 0.2 dx^2/dt) dt/dx^2; diffusion_ahead: c_d dt/dx^2
     float bed_friction_dt;      // dt c of Chezy's law, c dimensionless [s]
     float manning;              // n of Manning's law [s/m^(1/3)]
     float gravity_dt;           // dt g [m/s]
@@ -90,7 +90,7 @@ struct WorldParams {
     float bed_slope_number;     // 2/dx: how the bed's slope turns bed load downhill [1/m]
     float bed_slope_cap;        // keeps that stable: 0.2 dx/dt [m/s]
     float limiter;              // 1 = outflow limiter on, 0 = off
-    float inv_substeps;         // 1/T
+    float inv_substeps;         // 1/T; whole_pressure: 1
 
     // sand substep
     float ks;                   // dts/dx [s/m]
@@ -130,7 +130,7 @@ struct WorldParams {
     float gradient_clamp;       // largest |dts grad v| entry (0.4)
     float stress_taper;         // 1/h_el [1/m]; 1e30 = no taper
     float cohesion_cap;         // 1.8 c_f rho_s g [Pa/m]: largest cohesion per metre of sand
-    float cohesion0;            // of the yield surface, 4 c_f tan(45 + phi/2) times the material's [Pa]
+    float cohesion0;            // of the yield surface: 4 c_f tan(45 + phi/2) times the material's, algorithm_1: the material's [Pa]
     float cohesion1;
     float phi1;                 // saturations of the piecewise linear cohesion
     float phi2;

@@ -116,8 +116,8 @@ constexpr Choice choices[] = {
     {row(EFFECT_EXPLICIT_DRAG), "drag_friction sequence",
      [](const Method& m) { return m.drag_friction == DragFriction::sequence; },
      [](Method& m) { m.drag_friction = DragFriction::sequence; }},
-    {row(EFFECT_LAPLACE_DIFFUSION), "diffusion laplacian", [](const Method& m) { return m.diffusion == Diffusion::laplacian; },
-     [](Method& m) { m.diffusion = Diffusion::laplacian; }},
+    {row(EFFECT_LAPLACE_DIFFUSION), "diffusion laplacian, laplacian_ahead",
+     [](const Method& m) { return m.diffusion != Diffusion::limited; }, [](Method& m) { m.diffusion = Diffusion::laplacian; }},
     {row(EFFECT_SECOND_ORDER_WATER), "water_transport_order 2", [](const Method& m) { return m.water_transport_order == 2; },
      [](Method& m) { m.water_transport_order = 2; }},
     {row(EFFECT_HALF_STORAGE), "half_storage true", [](const Method& m) { return m.half_storage; },
@@ -126,6 +126,27 @@ constexpr Choice choices[] = {
      [](Method& m) { m.sand_transport_order = 2; }},
     {row(EFFECT_SHOCK_VISCOSITY), "shock_viscosity > 0", [](const Method& m) { return m.shock_viscosity > 0; },
      [](Method& m) { m.shock_viscosity = Method{}.shock_viscosity; }},
+    {row(EFFECT_WHOLE_PRESSURE), "mixed_pressure at_once",
+     [](const Method& m) { return m.mixed_pressure == MixedPressure::at_once; },
+     [](Method& m) { m.mixed_pressure = MixedPressure::at_once; }},
+    {row(EFFECT_EXPLICIT_EXCHANGE), "layer_exchange explicit",
+     [](const Method& m) { return m.layer_exchange == LayerExchange::accelerate; },
+     [](Method& m) { m.layer_exchange = LayerExchange::accelerate; }},
+    {row(EFFECT_DIFFUSION_AHEAD), "diffusion laplacian_ahead",
+     [](const Method& m) { return m.diffusion == Diffusion::laplacian_ahead; },
+     [](Method& m) { m.diffusion = Diffusion::laplacian_ahead; }},
+    {row(EFFECT_ALGORITHM_1), "sand_substep algorithm_1",
+     [](const Method& m) { return m.sand_substep == SandSubstep::algorithm_1; },
+     [](Method& m) {
+         m.sand_substep = SandSubstep::algorithm_1;
+         m.strain_transport = StrainTransport::polar; // no bits of their own without strain and drag, but it goes only with them
+         m.drag_friction = DragFriction::sequence;
+     }},
+    {row(EFFECT_CENTRAL_SHEAR), "corner_shear central", [](const Method& m) { return m.corner_shear == CornerShear::central; },
+     [](Method& m) { m.corner_shear = CornerShear::central; }},
+    {row(EFFECT_STRAIN_BEYOND), "strain_rim extrapolated",
+     [](const Method& m) { return m.strain_rim == StrainRim::extrapolated; },
+     [](Method& m) { m.strain_rim = StrainRim::extrapolated; }},
 };
 
 constexpr bool has_rule(const Effect& effect) { return effect.why != nullptr; }

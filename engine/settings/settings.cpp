@@ -79,11 +79,28 @@ Status check_method(const Method& method) {
     const bool other = method.velocity_transport != VelocityTransport::flux_form ||
                        method.strain_transport != StrainTransport::left_stretch || method.drag_friction != DragFriction::joint ||
                        method.diffusion != Diffusion::limited || method.water_transport_order != 1 ||
-                       method.sand_transport_order != 1;
+                       method.sand_transport_order != 1 || method.mixed_pressure != MixedPressure::in_substeps;
     if (method.half_storage && other)
         return refuse("method.half_storage: true goes only with velocity_transport \"flux_form\", strain_transport "
-                      "\"left_stretch\", drag_friction \"joint\", diffusion \"limited\", water_transport_order 1 and "
-                      "sand_transport_order 1");
+                      "\"left_stretch\", drag_friction \"joint\", diffusion \"limited\", water_transport_order 1, "
+                      "sand_transport_order 1 and mixed_pressure \"in_substeps\"");
+    const bool traced = method.velocity_transport == VelocityTransport::semi_lagrangian;
+    if (!traced && method.diffusion == Diffusion::laplacian_ahead)
+        return refuse("method.diffusion: \"laplacian_ahead\" goes only with velocity_transport \"semi_lagrangian\"");
+    if (method.layer_exchange == LayerExchange::accelerate && !(traced && method.mixed_pressure == MixedPressure::at_once))
+        return refuse("method.layer_exchange: \"explicit\" goes only with velocity_transport \"semi_lagrangian\" and "
+                      "mixed_pressure \"at_once\"");
+    const bool printed = method.sand_substep == SandSubstep::algorithm_1;
+    if (printed && !(traced && method.strain_transport == StrainTransport::polar &&
+                     method.drag_friction == DragFriction::sequence && method.sand_transport_order == 1))
+        return refuse(
+            "method.sand_substep: \"algorithm_1\" goes only with velocity_transport \"semi_lagrangian\", strain_transport "
+            "\"polar\", drag_friction \"sequence\" and sand_transport_order 1");
+    if (!printed && (method.corner_shear != CornerShear::least_depth || method.strain_rim != StrainRim::one_sided))
+        return refuse(
+            std::string("method.") +
+            (method.corner_shear != CornerShear::least_depth ? "corner_shear: \"central\"" : "strain_rim: \"extrapolated\"") +
+            " goes only with sand_substep \"algorithm_1\"");
     if (method.quantum < 0 && method.quantum > -1)
         return refuse("method.quantum: " + number_text(method.quantum) +
                       " is neither -1 (chosen), nor 0 (off), nor a positive height");

@@ -80,17 +80,27 @@ void account_water(Builder& b) {
     b.run("account_sides", {}, {{"flux_x", "mixed_flux_x"}, {"flux_y", "mixed_flux_y"}, {"side_ledger", "water_side_ledger"}});
 }
 
+// What has spread ahead of transport is moved as mixed water, whether the sand is that high or not.
+Names spread_heights(const Builder& b) {
+    return b.has(EFFECT_DIFFUSION_AHEAD) ? Names{{"sand_height", "mixed_diffused"}} : Names{};
+}
+
 void plan_water_fluxes(Builder& b) {
-    if (b.has(EFFECT_DIFFUSION)) b.run("diffuse_mixed_water");
-    b.run("limit_water_outflow");
-    b.run("compute_water_flux");
+    if (b.has(EFFECT_DIFFUSION) && !b.has(EFFECT_DIFFUSION_AHEAD)) b.run("diffuse_mixed_water");
+    b.run("limit_water_outflow", {}, spread_heights(b));
+    b.run("compute_water_flux", {}, spread_heights(b));
+}
+
+// The paper's explicit exchange between the layers, from velocities ahead of advection to those behind it (NUMERICS 2.21).
+Names exchange_over(const std::string& before, const std::string& after) {
+    return {{"sand_before", before}, {"sand_after", after}};
 }
 
 // Both layers' fluxes and the new height.
 void plan_water_transport(Builder& b) {
     plan_water_fluxes(b);
     if (b.has(EFFECT_OPEN_SIDES)) account_water(b);
-    b.run("integrate_water_height", {"water_height"});
+    b.run("integrate_water_height", {"water_height"}, spread_heights(b));
 }
 
 // Momentum advection of second order takes the pure water's velocities at the time of the heights, the mixed water's as they are.
@@ -112,9 +122,14 @@ void plan_water_motion(Builder& b) {
         return;
     }
     plan_water_transport(b);
+    if (b.has(EFFECT_EXPLICIT_EXCHANGE)) b.run("measure_layer_exchange", {}, exchange_over("mixed_predicted", "sand_height"));
     if (b.has(EFFECT_SEMI_LAGRANGIAN)) {
         plan_backtrace(b, "water", "backtrace_water_velocity");
         if (b.has(EFFECT_MIXTURE)) plan_backtrace(b, "mixed", "backtrace_water_velocity");
+    }
+    if (b.has(EFFECT_EXPLICIT_EXCHANGE)) {
+        b.run("give_layer_exchange", {}, exchange_over("mixed_predicted", "sand_height"));
+        b.run("renew_split");
     }
     plan_water_velocity(b, moved, {});
 }
@@ -123,6 +138,10 @@ void plan_water_motion(Builder& b) {
 void plan_inflow(Builder b) {
     if (b.has(EFFECT_SOURCES)) b.run("apply_sources");
     if (b.has(EFFECT_RAIN)) b.run("apply_rain");
+    if (b.has(EFFECT_DIFFUSION_AHEAD)) { // ahead of the sides, which fill the ghosts of the height that it makes current
+        b.run("diffuse_mixed_velocity", {"mixed_velocity_x", "mixed_velocity_y"});
+        b.run("diffuse_mixed_height", {"water_height"});
+    }
     if (b.has(EFFECT_WATER | EFFECT_OPEN_SIDES)) b.run("open_sides");
 }
 
@@ -143,47 +162,112 @@ void plan_start(Builder b) {
 void plan_water(Builder b) {
     if (!b.has(EFFECT_WATER)) return;
     const bool traced = b.has(EFFECT_SEMI_LAGRANGIAN);
-    if (traced) b.run("update_water_boundary_types");
+    if (traced) b.run("update_water_boundary_types", {}, spread_heights(b));
     // In flux form the diffusive flux carries its momentum; traced velocities need a pass for it.
-    if (traced && b.has(EFFECT_LAPLACE_DIFFUSION)) b.run("diffuse_mixed_velocity", {"mixed_velocity_x", "mixed_velocity_y"});
+    if (traced && b.has(EFFECT_LAPLACE_DIFFUSION) && !b.has(EFFECT_DIFFUSION_AHEAD))
+        b.run("diffuse_mixed_velocity", {"mixed_velocity_x", "mixed_velocity_y"});
     plan_water_motion(b);
+    if (b.has(EFFECT_WHOLE_PRESSURE)) b.run("push_mixed_water");
     if (b.has(EFFECT_BED_SHEAR)) b.run("compute_bed_load");
-    if (b.has(EFFECT_COHESION) && !b.fuse("smooth_saturation", {})) b.run("compute_saturation");
+    // Algorithm 1 takes each cell's own, of the moment.
+    if (b.has(EFFECT_COHESION) && !b.has(EFFECT_ALGORITHM_1) && !b.fuse("smooth_saturation", {})) b.run("compute_saturation");
+}
+
+void account_sand(Builder& b) {
+    if (!b.has(EFFECT_OPEN_SIDES)) return;
+    b.run("account_sides", {}, {{"flux_x", "sand_flux_x"}, {"flux_y", "sand_flux_y"}, {"side_ledger", "sand_side_ledger"}});
+}
+
+void plan_sand_height(Builder& b) {
+    b.run("limit_sand_outflow");
+    b.run("compute_sand_flux");
+    account_sand(b);
+    b.run("integrate_sand_height");
 }
 
 // Stretch and sand height move.
 void plan_sand_transport(Builder& b) {
     const std::vector<std::string> stretch = {"stretch_xx", "stretch_xy", "stretch_yy"};
-    const Names side = {{"flux_x", "sand_flux_x"}, {"flux_y", "sand_flux_y"}, {"side_ledger", "sand_side_ledger"}};
     if (b.fuse("transport_sand", stretch)) {
-        if (b.has(EFFECT_OPEN_SIDES)) b.run("account_sides", {}, side);
+        account_sand(b);
         return;
     }
-    b.run("limit_sand_outflow");
-    b.run("compute_sand_flux");
-    if (b.has(EFFECT_OPEN_SIDES)) b.run("account_sides", {}, side);
-    b.run("integrate_sand_height");
+    plan_sand_height(b);
     if (b.has(EFFECT_WHOLE_STRAIN))
         b.run("advect_deformation_gradient", {"stretch_xx", "stretch_xy", "stretch_yy", "rotation"});
     else if (b.has(EFFECT_ELASTOPLASTIC))
         b.run("evolve_deformation_gradient", stretch);
 }
 
+// The water's layers behind a change of the sand's height.
+void plan_layer_exchange(Builder& b) {
+    if (!b.has(EFFECT_EXPLICIT_EXCHANGE)) {
+        b.run("compute_momentum_exchange");
+        b.only_where_both_run();
+        return;
+    }
+    for (const char* stage : {"measure_layer_exchange", "give_layer_exchange"}) {
+        b.run(stage, {}, exchange_over("sand_height", next_name("sand_height")));
+        b.only_where_both_run();
+    }
+}
+
+// The water that drags the sand, by the names of the stages that do it.
+Names drag_names(const Builder& b) {
+    if (!b.has(EFFECT_DRAG)) return {};
+    const std::string layer = b.has(EFFECT_MIXTURE) ? "mixed_velocity_" : "water_velocity_";
+    return {{"drag_velocity_x", layer + "x"}, {"drag_velocity_y", layer + "y"}};
+}
+
+// Lines 5 to 9 of the paper's Algorithm 1 (NUMERICS 2.22).
+void plan_algorithm_1(Builder& b) {
+    const std::vector<std::string> strain = {"stretch_xx", "stretch_xy", "stretch_yy", "rotation"};
+    const Names moved = {{"sand_height", next_name("sand_height")}};
+    plan_sand_height(b);
+    plan_backtrace(b, "sand", "backtrace_sand_velocity");
+    Names push = drag_names(b);
+    push.merge(Names(moved));
+    b.run("push_sand", {}, push);
+    if (b.has(EFFECT_WHOLE_STRAIN)) {
+        b.run("yield_right_stretch", {}, moved);
+        b.run("advect_deformation_gradient", strain);
+        b.run("compute_sand_stress", {}, moved);
+        b.run("apply_sand_stress", {}, moved);
+        Names stretched = moved;
+        if (b.has(EFFECT_STRAIN_BEYOND)) {
+            b.run("update_sand_boundary_types", {}, moved);
+            b.run("extrapolate_velocity", {},
+                  {{"velocity_x", "sand_velocity_x"},
+                   {"velocity_y", "sand_velocity_y"},
+                   {"face_type_x", "sand_face_type_x"},
+                   {"face_type_y", "sand_face_type_y"}});
+            stretched.merge(
+                Names{{"sand_velocity_x", "extrapolated_velocity_x"}, {"sand_velocity_y", "extrapolated_velocity_y"}});
+        }
+        b.run("stretch_deformation_gradient", {}, stretched);
+        if (b.has(EFFECT_STRAIN_BEYOND)) b.run("extrapolate_strain", strain, moved);
+    }
+    if (b.has(EFFECT_MIXTURE)) plan_layer_exchange(b);
+}
+
 void plan_sand(Builder b) {
     if (!b.has(EFFECT_SAND)) return;
     if (b.has(EFFECT_OPEN_SIDES)) b.run("open_sand_sides");
     if (b.has(EFFECT_SEMI_LAGRANGIAN)) b.run("update_sand_boundary_types");
+    if (b.has(EFFECT_ALGORITHM_1)) {
+        plan_algorithm_1(b);
+        return;
+    }
     plan_sand_transport(b);
     // Touches only the water's velocities, which the sand's velocity stage does not read: here both sand heights are at hand.
-    if (!b.has(EFFECT_MIXTURE) || b.fuses_momentum_exchange()) return;
-    b.run("compute_momentum_exchange");
-    b.only_where_both_run();
+    if (b.has(EFFECT_MIXTURE) && !b.fuses_momentum_exchange()) plan_layer_exchange(b);
 }
 
 // After the sand height has become current.
 void plan_sand_forces(Builder b) {
     if (!b.has(EFFECT_SAND)) return;
-    if (b.has(EFFECT_ELASTOPLASTIC) && !b.can_fuse("transport_sand")) b.run("project_deformation_gradient");
+    const bool printed = b.has(EFFECT_ALGORITHM_1); // only friction is left
+    if (b.has(EFFECT_ELASTOPLASTIC) && !printed && !b.can_fuse("transport_sand")) b.run("project_deformation_gradient");
     const std::vector<std::string> sand = {"sand_velocity_x", "sand_velocity_y"};
     std::vector<std::string> moved = sand;
     if (b.fuses_momentum_exchange()) {
@@ -191,17 +275,15 @@ void plan_sand_forces(Builder b) {
         b.run("accelerate_mixture", moved);
         return;
     }
-    Names drag;
-    if (b.has(EFFECT_DRAG)) {
-        const std::string layer = b.has(EFFECT_MIXTURE) ? "mixed_velocity_" : "water_velocity_";
-        drag = {{"drag_velocity_x", layer + "x"}, {"drag_velocity_y", layer + "y"}};
-        moved.insert(moved.end(), {layer + "x", layer + "y"});
-    }
+    const Names drag = drag_names(b);
+    for (const auto& [binding, field] : drag) moved.push_back(field);
     if (b.fuse("accelerate_sand", moved, drag)) return;
-    if (b.has(EFFECT_SEMI_LAGRANGIAN)) plan_backtrace(b, "sand", "backtrace_sand_velocity");
-    b.run("integrate_sand_velocity", sand);
-    if (b.has(EFFECT_WHOLE_STRAIN)) b.run("stretch_deformation_gradient");
-    if (b.has(EFFECT_EXPLICIT_DRAG)) b.run("apply_drag", {}, drag);
+    if (!printed) {
+        if (b.has(EFFECT_SEMI_LAGRANGIAN)) plan_backtrace(b, "sand", "backtrace_sand_velocity");
+        b.run("integrate_sand_velocity", sand);
+        if (b.has(EFFECT_WHOLE_STRAIN)) b.run("stretch_deformation_gradient");
+        if (b.has(EFFECT_EXPLICIT_DRAG)) b.run("apply_drag", {}, drag);
+    }
     b.run("apply_friction", moved, drag);
 }
 
@@ -269,6 +351,8 @@ void share_scratch(StepPlan& plan) {
             life.last = std::max(life.last, n);
         }
         if (life.first < plan.water_passes.size() && life.last >= plan.water_passes.size()) life.last = order.size();
+        if (field.name == "mixed_diffused")
+            life = {&field, 0, order.size()}; // its ghosts are read: no face of another writes there
         lives.push_back(life);
     }
     std::sort(lives.begin(), lives.end(), [](const Life& a, const Life& b) { return a.first < b.first; });

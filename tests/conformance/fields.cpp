@@ -21,7 +21,7 @@ template <class Real> const Field<Real>* cell_field(const Solver<Real>& s, const
         {"saturation", &s.saturation},   {"mixed_predicted", &s.mixed_predicted},
         {"stress_xx", &s.sxx},           {"stress_xy", &s.sxy},
         {"stress_yy", &s.syy},           {"cohesive_share", &s.cohesive_share},
-        {"roughness", &s.roughness},
+        {"roughness", &s.roughness},     {"mixed_diffused", &s.mixed},
     };
     const auto found = fields.find(base);
     return found == fields.end() ? nullptr : found->second;
@@ -29,21 +29,14 @@ template <class Real> const Field<Real>* cell_field(const Solver<Real>& s, const
 
 template <class Real> const Faces<Real>* face_field(const Solver<Real>& s, const std::string& layer) {
     const std::map<std::string, const Faces<Real>*> fields = {
-        {"water_velocity", &s.pure_velocity},
-        {"mixed_velocity", &s.mixed_velocity},
-        {"sand_velocity", &s.sand_velocity},
-        {"water_flux", &s.pure_flux},
-        {"mixed_flux", &s.mixed_flux},
-        {"sand_flux", &s.sand_flux},
-        {"pressure", &s.mixed_push},
-        {"bed_load", &s.bed_load},
-        {"water_face_type", &s.pure_type},
-        {"mixed_face_type", &s.mixed_type},
-        {"sand_face_type", &s.sand_type},
-        {"extrapolated_velocity", &s.extrapolated},
-        {"friction_limit", &s.friction_limit},
-        {"withheld_push", &s.withheld_push},
-        {"centered_water_velocity", &s.centered_velocity},
+        {"water_velocity", &s.pure_velocity},  {"mixed_velocity", &s.mixed_velocity},
+        {"sand_velocity", &s.sand_velocity},   {"water_flux", &s.pure_flux},
+        {"mixed_flux", &s.mixed_flux},         {"sand_flux", &s.sand_flux},
+        {"pressure", &s.mixed_push},           {"bed_load", &s.bed_load},
+        {"water_face_type", &s.pure_type},     {"mixed_face_type", &s.mixed_type},
+        {"sand_face_type", &s.sand_type},      {"extrapolated_velocity", &s.extrapolated},
+        {"friction_limit", &s.friction_limit}, {"withheld_push", &s.withheld_push},
+        {"layer_exchange", &s.layer_exchange}, {"centered_water_velocity", &s.centered_velocity},
     };
     const auto found = fields.find(layer);
     return found == fields.end() ? nullptr : found->second;
@@ -76,6 +69,11 @@ FieldName field_of(const std::string& stage, const std::string& binding, std::ui
         const char* layer = stage == "backtrace_sand_velocity" ? "sand_" : "water_";
         if (name.base.starts_with("velocity") || name.base.starts_with("face_type")) name.base = layer + name.base;
     }
+    if (name.base == "sand_before") name.base = "mixed_predicted"; // as in the water step
+    if (name.base == "sand_after") name.base = "sand_height";
+    if (stage == "stretch_deformation_gradient" && (effects & EFFECT_STRAIN_BEYOND) != 0 &&
+        name.base.starts_with("sand_velocity"))
+        name.base = "extrapolated" + name.base.substr(4);
     if (stage == "account_sides" && name.base.starts_with("flux")) name.base = "water_" + name.base;
     // Stages that read published fields, or velocities that were tried: any fields do, equal in some places and not in others.
     const std::map<std::string, const char*> stand_ins = {{"previous_output", "sand_height"},

@@ -49,7 +49,7 @@ std::vector<CaseSpec> list() {
     add("bounds", "33x17", WET | ELASTIC | EFFECT_COHESION | SECOND, "cliff", "plain", 300);
     add("bounds", "33x17", ALL | TRACED | POLAR, "random", "default", 300);
     add("bounds", "33x17", ALL | DIRECT, "random", "default", 300);
-    add("bounds", "33x17", ALL | PUBLISHED, "random", "default", 300);
+    add("bounds", "33x17", ALL_PUBLISHED, "random", "default", 300);
     for (int seed = 1; seed <= 8; ++seed)
         add("bounds", "24x20", ALL & ~EFFECT_SOURCES, "random", ("fuzz" + std::to_string(seed)).c_str(), 80);
     add("lake_at_rest", "33x17", EFFECT_WATER, "lake_at_rest", "default", 200);
@@ -84,7 +84,7 @@ std::vector<CaseSpec> list() {
         add(symmetry, "33x17", ALL | SAND_SECOND, "random", "default", 40);
         add(symmetry, "33x17", ALL | POLAR, "random", "default", 40);
         add(symmetry, "33x17", ALL | DIRECT, "random", "default", 40);
-        add(symmetry, "33x17", ALL | PUBLISHED, "random", "default", 40);
+        add(symmetry, "33x17", ALL_PUBLISHED, "random", "default", 40);
         add(symmetry, "65x3", ALL, "random", "plain", 30);
     }
     for (const char* variant : {"same_again", "same_without_replay", "same_with_full_barriers", "same_interleaved"})

@@ -20,10 +20,19 @@ using compute::Access;
 const std::uint32_t nan_word = std::bit_cast<std::uint32_t>(std::numeric_limits<float>::quiet_NaN());
 
 // Behind the flip of the water height the cells outside open sides hold depths of an older step.
-constexpr std::array stages_with_stale_ghosts = {"center_water_velocity",   "integrate_water_velocity",
-                                                 "compute_saturation",      "compute_momentum_exchange",
-                                                 "integrate_sand_velocity", "apply_drag",
-                                                 "apply_friction"};
+constexpr std::array stages_with_stale_ghosts = {"center_water_velocity",
+                                                 "integrate_water_velocity",
+                                                 "compute_saturation",
+                                                 "compute_momentum_exchange",
+                                                 "integrate_sand_velocity",
+                                                 "apply_drag",
+                                                 "apply_friction",
+                                                 "measure_layer_exchange",
+                                                 "give_layer_exchange",
+                                                 "renew_split",
+                                                 "push_sand",
+                                                 "yield_right_stretch",
+                                                 "apply_sand_stress"};
 
 std::size_t components_of(compute::Scalar type) {
     return type == compute::Scalar::vec4 ? 4 : type == compute::Scalar::vec2 ? 2 : 1;

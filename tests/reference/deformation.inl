@@ -40,12 +40,14 @@ template <class Real> void Solver<Real>::advect_stretch() {
 /// Substep times the velocity gradient of a cell (xx, xy, yx, yy) by the rules of 2.6, wet cells being those of `depth`.
 template <class Real> std::array<Real, 4> Solver<Real>::velocity_gradient(const Field<Real>& depth, int i, int j) const {
     const Axis x = axis(false);
+    const bool beyond = has(EFFECT_STRAIN_BEYOND); // 2.22: velocities go on beyond the rim
+    const Faces<Real>& velocity = beyond ? extrapolated : sand_velocity;
     // d(velocity along ax)/d(across ax), times the substep; `known` is false where no neighbour across is wet.
     const auto shear_rate = [&](const Axis& ax, int a, int b, bool& known) {
-        const Field<Real>& u = sand_velocity.along(ax);
+        const Field<Real>& u = velocity.along(ax);
         const auto average = [&](int row) { return mean(u[ax.face(a, row)], u[ax.face(a + 1, row)]); };
-        const bool below = b > 0 && depth[ax.cell(a, b - 1)] > P.eps;
-        const bool above = b + 1 < ax.across() && depth[ax.cell(a, b + 1)] > P.eps;
+        const bool below = b > 0 && (beyond || depth[ax.cell(a, b - 1)] > P.eps);
+        const bool above = b + 1 < ax.across() && (beyond || depth[ax.cell(a, b + 1)] > P.eps);
         known = below || above;
         if (below && above) return (average(b + 1) - average(b - 1)) * P.k_sand / Real(2);
         if (above) return (average(b + 1) - average(b)) * P.k_sand;
@@ -53,7 +55,7 @@ template <class Real> std::array<Real, 4> Solver<Real>::velocity_gradient(const 
         return Real(0);
     };
     const auto stretch_rate = [&](const Axis& ax, int a, int b) {
-        const Field<Real>& u = sand_velocity.along(ax);
+        const Field<Real>& u = velocity.along(ax);
         return (u[ax.face(a + 1, b)] - u[ax.face(a, b)]) * P.k_sand;
     };
     bool xy_known = false;

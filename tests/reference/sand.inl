@@ -40,7 +40,7 @@ template <class Real> void Solver<Real>::add_stress(const Axis& ax, int a, int b
     const auto corner = [&](int row) {
         if (row == 0 || row == ax.across()) return Real(0);
         const std::array<std::size_t, 4> c = {ax.cell(a - 1, row - 1), ax.cell(a, row), ax.cell(a, row - 1), ax.cell(a - 1, row)};
-        if (mean_corner_shear) {
+        if (mean_corner_shear || has(EFFECT_CENTRAL_SHEAR)) {
             Real sum(0);
             for (const std::size_t n : c) sum += sand[n] * sxy[n];
             return sum / Real(4);

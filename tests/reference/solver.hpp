@@ -95,6 +95,18 @@ template <class Real> class Solver {
     void compute_momentum_exchange();            // 2.4a after the sand height, then mixed_push on mixed_velocity
     void apply_drag();                           // 2.14 -> sand_velocity, mixed_velocity (pure_velocity in the single-layer mask)
     void apply_friction();                       // 2.8 -> sand_velocity, mixed_velocity (pure_velocity in the single-layer mask)
+    // 2.21, water as the paper has it
+    void diffuse_mixed_height();   // -> water, mixed
+    void measure_layer_exchange(); // from mixed_predicted to mixed -> layer_exchange
+    void give_layer_exchange();    // -> pure_velocity, mixed_velocity
+    void renew_split();            // -> mixed_predicted
+    void push_mixed_water();       // -> mixed_velocity, mixed_push
+    // 2.22, sand by Algorithm 1
+    void push_sand();           // -> sand_velocity, mixed_velocity (pure_velocity in the single-layer mask)
+    void yield_right_stretch(); // -> Vxx, Vxy, Vyy
+    void compute_sand_stress(); // -> sxx, sxy, syy
+    void apply_sand_stress();   // -> sand_velocity
+    void extrapolate_strain();  // -> Vxx, Vxy, Vyy, rotation
 
     bool has(std::uint32_t effect) const { return (effects & effect) != 0; }
     Axis axis(bool is_y) const { return {is_y, settings.grid.nx, settings.grid.ny}; }
@@ -120,6 +132,7 @@ template <class Real> class Solver {
     Faces<Real> centered_velocity;                // uw at the time of the heights [m/s]
     Faces<Real> bed_load;                         // [m2/s]
     Faces<Real> mixed_push;                       // d_f, pressure's change of um per sand substep [m/s]
+    Faces<Real> layer_exchange;                   // 2.21: momentum that mixed water gains, per area and density [m2/s]
     Faces<Real> pure_type, mixed_type, sand_type; // boundary types: 0 untracked, 1 tracked, 2 fixed
     Faces<Real> extrapolated;                     // velocity of one layer
     Field<Real> saturation;                       // phibar
@@ -156,8 +169,8 @@ template <class Real> class Solver {
     Real gain(const Faces<Real>& flux, int i, int j) const;
     const Faces<Real>& velocity_of(Layer layer) const;
     Real face_depth(Layer layer, const Axis& axis, int a, int b, Real u) const;
-    void advect(std::uint32_t second_order, const Field<Real>& height, const Faces<Real>& flux, const Faces<Real>& carried, Real k,
-                Faces<Real>& velocity) const;
+    void advect(std::uint32_t second_order, const Field<Real>& height, const Faces<Real>& flux, const Faces<Real>& carried,
+                Real k, Faces<Real>& velocity) const;
     void advect_velocity_second_order(const Field<Real>& height, const Faces<Real>& flux, const Faces<Real>& carried, Real k,
                                       Faces<Real>& velocity) const;
     void advect_velocity(const Field<Real>& height, const Faces<Real>& flux, Faces<Real>& velocity) const;
@@ -187,6 +200,10 @@ template <class Real> class Solver {
     void shear_in_plane(const Faces<Real>& old, const Axis& axis, int a, int b);
     void add_stress(const Axis& axis, int a, int b);
     void add_gravity(const Axis& axis, int a, int b);
+    Real sand_load(std::size_t cell) const;
+    bool strain_of(std::size_t cell, Real& tr, Real& dd, Real& dxy) const;
+    void exchange_layers();
+    void step_sand_by_algorithm_1();
 
     double quanta(double& total, double amount) const;
     void add_depth(Field<Real>& field, std::size_t cell, Real amount, double& ledger);

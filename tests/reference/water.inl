@@ -46,6 +46,11 @@ template <class Real> void Solver<Real>::diffuse_mixed_velocity() {
         const Real spread = (part(a + 1, b) + part(a - 1, b)) + (part(a, b - 1) + part(a, b + 1));
         mixed_velocity.along(ax)[ax.face(a, b)] = clamped(own + number * spread / h, P.clamp);
     });
+    if (!has(EFFECT_DIFFUSION_AHEAD)) return; // 2.21: heights spread by themselves
+    for (Faces<Real>* flux : {&diffusion_flux, &mixed_flux}) {
+        std::fill(flux->x.begin(), flux->x.end(), Real(0));
+        std::fill(flux->y.begin(), flux->y.end(), Real(0));
+    }
 }
 
 template <class Real> void Solver<Real>::limit_water_outflow() {
@@ -125,7 +130,7 @@ void Solver<Real>::water_face(const Faces<Real>& pure_old, const Faces<Real>& mi
 
     if (!has(EFFECT_MIXTURE)) return;
     Real& share = mixed_push.along(ax)[f];
-    share = push / Real(P.substeps);
+    share = has(EFFECT_WHOLE_PRESSURE) ? push : push / Real(P.substeps);
     const bool rests = level && std::abs(um) <= P.rest_velocity;
     if (rests || blocked(mixed[L], mixed[R], eta_L, eta_R, P.eps)) {
         um = Real(0);
