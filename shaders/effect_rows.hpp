@@ -58,7 +58,7 @@ inline constexpr EffectRow choice_rows[] = {
     {EFFECT_DIFFUSION_AHEAD, "diffusion_ahead", EFFECT_LAPLACE_DIFFUSION | EFFECT_SEMI_LAGRANGIAN,
      "mixed water spreads in a step of its own, ahead of transport"},
     {EFFECT_ALGORITHM_1, "algorithm_1", EFFECT_SAND | EFFECT_SEMI_LAGRANGIAN,
-     "the sand substep in the order of the paper's Algorithm 1, its strain without guards"},
+     "the sand substep of the paper's Algorithm 1, unguarded"},
     {EFFECT_CENTRAL_SHEAR, "central_shear", EFFECT_WHOLE_STRAIN | EFFECT_ALGORITHM_1,
      "shear at corners is the mean of depth times stress"},
     {EFFECT_STRAIN_BEYOND, "strain_beyond", EFFECT_WHOLE_STRAIN | EFFECT_ALGORITHM_1,

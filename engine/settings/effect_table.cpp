@@ -25,6 +25,12 @@ consteval EffectRow row(std::uint32_t bit) {
     throw "no such row"; // is no constant: the build stops
 }
 
+// The paper's substep has stages of its own, without these laws.
+Why of_own_substep(const Settings& s, Why why) {
+    if (s.method.sand_substep == SandSubstep::algorithm_1) return {false, "sand_substep is algorithm_1"};
+    return why;
+}
+
 Why above_zero(const char* name, double value) { return {value > 0, name + std::string(value > 0 ? " is above 0" : " is 0")}; }
 
 // Without cohesion the yield surface leaves sand nothing that friction and Coulomb's wedge do not. Not by whether there is water
@@ -89,14 +95,15 @@ constexpr Effect effects[] = {
     {row(EFFECT_BED_SHEAR), "bed_shear > 0",
      [](const Settings& s, Content) { return above_zero("bed_shear", s.material.bed_shear); }},
     {row(EFFECT_SLOPE_NORMAL), "slope_normal > 0",
-     [](const Settings& s, Content) { return above_zero("slope_normal", s.material.slope_normal); }},
+     [](const Settings& s, Content) { return of_own_substep(s, above_zero("slope_normal", s.material.slope_normal)); }},
     {row(EFFECT_INTERNAL_FRICTION), "internal_friction or sand_viscosity > 0",
      [](const Settings& s, Content) {
-         return s.material.internal_friction > 0 ? above_zero("internal_friction", s.material.internal_friction)
-                                                 : above_zero("sand_viscosity", s.material.sand_viscosity);
+         const auto& m = s.material;
+         return of_own_substep(s, m.internal_friction > 0 ? above_zero("internal_friction", m.internal_friction)
+                                                          : above_zero("sand_viscosity", m.sand_viscosity));
      }},
     {row(EFFECT_RETENTION), "retention > 0",
-     [](const Settings& s, Content) { return above_zero("retention", s.material.retention); }},
+     [](const Settings& s, Content) { return of_own_substep(s, above_zero("retention", s.material.retention)); }},
     {row(EFFECT_ROUGHNESS), "the level has roughness",
      [](const Settings& s, Content) -> Why {
          return {!s.roughness.empty(), s.roughness.empty() ? "the level has none" : "the level has roughness"};

@@ -6,7 +6,7 @@
 
 namespace wadi {
 
-/// "robust", "published": as level files, --method and the plugin's override write them.
+/// "robust", "paper_like", "published": as level files, --method and the plugin's override write them.
 const std::vector<std::string>& method_names();
 
 /// Sets method.name and everything that tells the presets apart, of the material the laws that the paper has not: its slopes,

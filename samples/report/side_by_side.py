@@ -24,7 +24,7 @@ from recordings import LEVELS
 import check_claims  # beside measures: recordings put it on the path
 
 METHODS = ("robust", "published")
-CHOICES = {  # one choice of the paper's each, on top of robust; and published without its limiter
+CHOICES = {  # one choice of the paper's each, on top of robust; and what published leaves out
     "robust": {},
     "semi-Lagrangian velocities": {"velocity_transport": "semi_lagrangian"},
     "angle and stretch apart": {"strain_transport": "polar"},
@@ -32,7 +32,7 @@ CHOICES = {  # one choice of the paper's each, on top of robust; and published w
     "drag, then friction": {"drag_friction": "sequence"},
     "Laplacian diffusion": {"diffusion": "laplacian"},
     "published": {"name": "published"},
-    "published, no limiter": {"name": "published", "outflow_limiter": False},
+    "paper_like": {"name": "paper_like"},
 }
 LEVELS_WITH_PICTURES = ("castle", "letters", "piles", "spring", "seepage", "canyon", "dam_break")
 SHOWN_LEVELS = (*LEVELS_WITH_PICTURES, "flush", "beach", "wadi")

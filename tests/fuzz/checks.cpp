@@ -247,7 +247,7 @@ Outcome run_case(const Case& c, Devices& devices, Weaken weaken, const std::stri
     };
     made("books", 1, [&] { return base.run.failure; });
     if (!base.run.good()) return outcome;
-    if (!base.finite) { // of method published; NaN need not have equal bits
+    if (!base.finite) { // of the paper's methods; NaN need not have equal bits
         ++outcome.count["blown up"];
         return outcome;
     }

@@ -105,7 +105,7 @@ void make_method(Random& random, Settings& s) {
     Method& m = s.method;
     m.substeps = random.whole(1, 6);
     if (random.chance(0.08)) {
-        choose_method(s, "published");
+        choose_method(s, "paper_like");
         return;
     }
     if (random.chance(0.15)) m.quantum = 0;
@@ -247,8 +247,9 @@ Case make_case(std::uint64_t seed) {
         source.discharge = {{{0, source.rate.samples[0].second * s.grid.dx * s.grid.dx * random.real(0.5, 20)}}};
         source.rate = {};
     }
-    if (s.method.name == "published" && random.chance(0.2)) s.method.outflow_limiter = false;
+    if (s.method.name == "paper_like" && random.chance(0.2)) s.method.outflow_limiter = false;
     if (random.chance(0.2)) c.at_ends = draw_ends(random, c);
+    if (s.method.name == "paper_like" && random.chance(0.5)) choose_method(s, "published");
     return c;
 }
 

@@ -322,18 +322,22 @@ TEST_CASE("level: a method preset is a set of choices; keys beside it and an ove
     CHECK(published.velocity_transport == VelocityTransport::semi_lagrangian);
     CHECK(published.strain_transport == StrainTransport::polar);
     CHECK(published.drag_friction == DragFriction::sequence);
-    CHECK(published.diffusion == Diffusion::laplacian);
-    CHECK(published.outflow_limiter);
+    CHECK(published.diffusion == Diffusion::laplacian_ahead);
+    CHECK(published.sand_substep == SandSubstep::algorithm_1);
+    CHECK(!published.outflow_limiter);
     CHECK(published.gravity_cap == 0);
     CHECK(published.velocity_clamp == 0.5); // in any order of the keys
     CHECK(published.substeps == 2);
     LevelOverrides overrides;
-    overrides.method = "published";
+    overrides.method = "paper_like";
     const Method other = must(parse(R"("method": {"substeps": 2, "largest_height": 32})", "", overrides)).settings.method;
     CHECK(other.strain_transport == StrainTransport::polar);
     CHECK(other.velocity_clamp == Method{}.velocity_clamp);
+    CHECK(other.sand_substep == SandSubstep::own);
+    CHECK(other.outflow_limiter);
     CHECK(other.substeps == 2);
     CHECK(other.largest_height == 32);
+    overrides.method = "published";
     const std::string tuned = R"("method": {"name": "published", "velocity_clamp": 0.5})";
     CHECK(must(parse(tuned, "", overrides)).settings.method.velocity_clamp == 0.5); // the level's own method stays as it is
     overrides.method = "robust";
@@ -359,7 +363,7 @@ TEST_CASE("level: an accuracy preset scales cells and time step and sets the sub
     CHECK(draft.settings.method.water_transport_order == 1);
     for (const auto* preset : {"draft", "balanced", "accurate"}) {
         overrides.accuracy = preset;
-        for (const auto* method : {"robust", "published"}) {
+        for (const auto* method : {"robust", "paper_like", "published"}) {
             overrides.method = method;
             CHECK(!must(parse("", "", overrides)).settings.method.half_storage); // only a level asks for it
         }

@@ -35,7 +35,9 @@ TEST_CASE("level digest: of a level that sets everything") {
             "sand_gravity_cap": 0.26, "elastic_cap": 0.21, "shock_viscosity": 0.01, "bulk_viscosity": 0.02, "rest_rule": false,
             "passive_pressure": 2, "gradient_clamp": 0.41, "cohesion_cap": 0.91, "stress_taper": 0.03,
             "saturation_smoothing": 1, "velocity_transport": "semi_lagrangian", "strain_transport": "direct",
-            "drag_friction": "sequence", "diffusion": "laplacian", "water_transport_order": 2})");
+            "drag_friction": "sequence", "diffusion": "laplacian", "water_transport_order": 2,
+            "mixed_pressure": "in_substeps", "layer_exchange": "convex", "sand_substep": "own", "corner_shear": "least_depth",
+            "strain_rim": "one_sided"})");
     REQUIRE_MESSAGE(level, message(level));
     CHECK_MESSAGE(level_digest(level->settings) == 4087223593442456772u, level_digest(level->settings));
     const auto half = parse(R"("method": {"half_storage": true})");

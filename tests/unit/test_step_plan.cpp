@@ -14,11 +14,16 @@ namespace {
 // Laws of sand that are branches of stages that run anyway.
 constexpr std::uint32_t sand_laws = EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION | EFFECT_RETENTION;
 
-// With none of the sand's laws and with all that are legal, a few with some of them or with the water's viscosity, also a branch.
+// The paper's choices that come last.
+constexpr std::uint32_t printed = EFFECT_WHOLE_PRESSURE | EFFECT_EXPLICIT_EXCHANGE | EFFECT_DIFFUSION_AHEAD | EFFECT_ALGORITHM_1 |
+                                  EFFECT_CENTRAL_SHEAR | EFFECT_STRAIN_BEYOND;
+
+// With none of the sand's laws and with all that are legal, a few with some of them or with the water's viscosity, also a branch;
+// a fifth once more with some of the paper's last choices.
 // Under sanitizers a few of all.
 std::vector<std::uint32_t> legal_masks() {
     std::uint32_t all = all_effects;
-    for (const auto& choice : choice_table()) all |= choice.bit & ~EFFECT_SHOCK_VISCOSITY;
+    for (const auto& choice : choice_table()) all |= choice.bit & ~(EFFECT_SHOCK_VISCOSITY | printed);
     std::vector<std::uint32_t> masks;
     int between = 0;
     for (std::uint32_t mask = 1; mask <= all; ++mask) {
@@ -28,6 +33,11 @@ std::vector<std::uint32_t> legal_masks() {
             most = most && ((mask & law) != 0 || !is_legal(mask | law));
         if (most || (mask & sand_laws) == 0 || ++between % 17 == 0) masks.push_back(mask);
         if (is_legal(mask | EFFECT_SHOCK_VISCOSITY) && ++between % 17 == 0) masks.push_back(mask | EFFECT_SHOCK_VISCOSITY);
+    }
+    const std::size_t without = masks.size();
+    for (std::size_t n = 0; n < without; n += 5) {
+        const std::uint32_t mask = with_needs(masks[n] | (static_cast<std::uint32_t>(n) * EFFECT_WHOLE_PRESSURE & printed));
+        if (is_legal(mask) && (mask & printed) != 0) masks.push_back(mask);
     }
     if (!test::few_steps) return masks;
     std::vector<std::uint32_t> few = {masks.back()};
