@@ -16,6 +16,7 @@ namespace wadi::cpu {
 namespace {
 
 constexpr std::size_t most_in_flight = 64;
+constexpr std::uint64_t most_in_small_pages = 65536;
 constexpr std::size_t kept_timings = 64;
 constexpr std::int64_t small_pass = 8192; // cells below which a second thread costs more than it gives
 
@@ -58,9 +59,9 @@ CpuDevice::~CpuDevice() {
 Result<compute::Buffer> CpuDevice::create_buffer(const compute::BufferDesc& desc) {
     auto& budget = MemoryBudget::of_process();
     bool fits = budget.take(desc.bytes);
-    if (!fits && !retired_buffers_.empty()) {
-        drain();
-        free_buffers(submitted_, SIZE_MAX);
+    if (!fits) {
+        drain(); // what submissions have with them is free then
+        free(retired_buffers_, retired_programs_);
         fits = budget.take(desc.bytes);
     }
     if (!fits) {
@@ -74,7 +75,9 @@ Result<compute::Buffer> CpuDevice::create_buffer(const compute::BufferDesc& desc
     buffers_.reserve();
     auto owner = std::make_unique<Memory>();
     auto& memory = *owner;
-    memory.block = pages_.take(desc.bytes, stagger);
+    // The host's first touch of a large page would clear all of it, in a call of a frame.
+    const bool small = desc.host != compute::HostAccess::none && desc.bytes <= most_in_small_pages;
+    memory.block = (small ? small_pages_ : pages_).take(desc.bytes, stagger);
     if (!memory.block)
         return error(Code::out_of_memory, "buffer '" + desc.label + "': no memory for " + std::to_string(desc.bytes) + " bytes");
     memory.data = memory.block.get();
@@ -104,8 +107,9 @@ Result<compute::NativeBuffer> CpuDevice::native(compute::Buffer buffer) {
 
 void CpuDevice::destroy_buffer(compute::Buffer buffer) { retired_buffers_.put(buffers_.take(buffer.id), submitted_); }
 
-void CpuDevice::free_buffers(std::uint64_t finished, std::size_t most) {
-    retired_buffers_.release(finished, most, [](Memory& memory) { Pages::forget(memory.data, memory.bytes); });
+void CpuDevice::free(backends::Retired<Memory>& buffers, backends::Retired<Recorded>& programs) {
+    programs.release(UINT64_MAX, SIZE_MAX, [](Recorded&) {});
+    buffers.release(UINT64_MAX, SIZE_MAX, [](Memory& memory) { Pages::forget(memory.data, memory.bytes); });
 }
 
 void CpuDevice::drain() {
@@ -253,10 +257,10 @@ void CpuDevice::prepare(Recorded& program) {
     program.prepared = true;
 }
 
-// Those that went before are freed here and not in submissions, which a host waits for in every frame.
+// A device at rest gets no submission that would free them.
 void CpuDevice::destroy_program(compute::Program program) {
-    if (!retired_programs_.empty()) retired_programs_.release(finished_so_far(), SIZE_MAX, [](Recorded&) {});
     retired_programs_.put(programs_.take(program.id), submitted_);
+    if (finished_so_far() == submitted_) free(retired_buffers_, retired_programs_);
 }
 
 std::uint64_t CpuDevice::finished_so_far() {
@@ -265,11 +269,12 @@ std::uint64_t CpuDevice::finished_so_far() {
 }
 
 Result<compute::Ticket> CpuDevice::submit_inputs(compute::Program program, std::span<const StepInput> inputs) {
-    if (!retired_buffers_.empty()) free_buffers(finished_so_far(), 1); // a promotion leaves many
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return queue_.size() < most_in_flight; });
     queue_.push_back(
         {submitted_ + 1, programs_.find(program.id), {inputs.begin(), inputs.end()}}); // may throw: nothing is counted then
+    queue_.back().buffers = std::move(retired_buffers_);
+    queue_.back().programs = std::move(retired_programs_);
     ++submitted_;
     ++counters_.submits;
     lock.unlock();
@@ -297,10 +302,11 @@ void CpuDevice::device_thread() {
     for (;;) {
         changed_.wait(lock, [this] { return stop_ || !queue_.empty(); });
         if (queue_.empty()) return;
-        const Submission& next = queue_.front(); // stays where it is while others are put behind it
+        Submission& next = queue_.front(); // stays where it is while others are put behind it
         lock.unlock();
         std::vector<compute::Timing> times;
         execute(*next.program, next.inputs, times);
+        free(next.buffers, next.programs);
         lock.lock();
         done_ = next.ticket;
         queue_.pop_front();

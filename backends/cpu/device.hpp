@@ -95,14 +95,17 @@ class CpuDevice final : public compute::Device {
         std::uint64_t ticket;
         Recorded* program;
         std::vector<StepInput> inputs;
+        // Destroyed ahead of it: the device thread frees them behind it, since a host waits for its own.
+        backends::Retired<Memory> buffers = {};
+        backends::Retired<Recorded> programs = {};
     };
 
     Memory& at(compute::Buffer buffer) const { return *buffers_.find(buffer.id); }
     void drain();
     /// The newest submission that has.
     std::uint64_t finished_so_far();
-    /// Frees buffers that were destroyed and are not in use any more, at most so many.
-    void free_buffers(std::uint64_t finished, std::size_t most);
+    /// Frees what was destroyed; nothing may use it any more.
+    static void free(backends::Retired<Memory>& buffers, backends::Retired<Recorded>& programs);
     void device_thread();
     void execute(Recorded& program, std::span<const StepInput> inputs, std::vector<compute::Timing>& timings);
     /// Errors: internal (more outputs than any stage has).
@@ -124,7 +127,7 @@ class CpuDevice final : public compute::Device {
     const bool full_barriers_;
     compute::Capabilities capabilities_;
     compute::DeviceCounters counters_;
-    PageArena pages_;
+    PageArena pages_{true}, small_pages_{false};
     backends::HandleTable<Memory> buffers_;
     std::vector<StageBlock> pipelines_; // by id - 1
     backends::HandleTable<Recorded> programs_;

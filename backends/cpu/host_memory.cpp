@@ -21,9 +21,9 @@ Mapped& mapped() {
 }
 } // namespace
 
-std::shared_ptr<Pages> Pages::map(std::size_t bytes) {
+std::shared_ptr<Pages> Pages::map(std::size_t bytes, bool large) {
     const std::size_t whole = rounded_up(bytes, large_page);
-    std::byte* const data = map_pages(whole, large_page);
+    std::byte* const data = map_pages(whole, large_page, large);
     if (data == nullptr) return nullptr;
     try {
         return std::make_shared<Pages>(data, whole);
@@ -63,7 +63,7 @@ std::shared_ptr<std::byte> PageArena::take(std::size_t bytes, std::size_t offset
     const auto place = [&](std::size_t used) { return rounded_up(used, small_page) + offset; };
     auto pages = pages_.lock();
     if (!pages || place(used_) + bytes > pages->bytes()) {
-        pages = Pages::map(std::max(least, offset + bytes));
+        pages = Pages::map(std::max(least, offset + bytes), large_);
         if (!pages) return nullptr;
         pages_ = pages;
         used_ = 0;

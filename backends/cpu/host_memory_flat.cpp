@@ -9,7 +9,7 @@ std::uint64_t physical_memory() { return 0; }
 
 std::string processor_name() { return "WebAssembly"; }
 
-std::byte* map_pages(std::size_t bytes, std::size_t) {
+std::byte* map_pages(std::size_t bytes, std::size_t, bool) {
     auto* const data = static_cast<std::byte*>(std::aligned_alloc(4096, bytes));
     if (data != nullptr) std::memset(data, 0, bytes);
     return data;

@@ -22,7 +22,7 @@ std::string processor_name() {
     return "CPU";
 }
 
-std::byte* map_pages(std::size_t bytes, std::size_t alignment) {
+std::byte* map_pages(std::size_t bytes, std::size_t alignment, [[maybe_unused]] bool large) {
     // Large pages begin at multiples of their size: what lies around is unmapped.
     void* const block =
         mmap(nullptr, bytes + alignment, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
@@ -32,7 +32,7 @@ std::byte* map_pages(std::size_t bytes, std::size_t alignment) {
     if (ahead > 0) munmap(begin, ahead);
     munmap(begin + ahead + bytes, alignment - ahead);
 #if defined(MADV_HUGEPAGE)
-    madvise(begin + ahead, bytes, MADV_HUGEPAGE); // a system without them says no
+    madvise(begin + ahead, bytes, large ? MADV_HUGEPAGE : MADV_NOHUGEPAGE); // a system without them says no
 #endif
     return begin + ahead;
 }

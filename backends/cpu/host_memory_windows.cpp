@@ -22,7 +22,7 @@ std::string processor_name() {
 
 // Large pages want a privilege that games do not have. Pages that nobody has touched count against the system's commit limit all
 // the same, but take no memory.
-std::byte* map_pages(std::size_t bytes, std::size_t) {
+std::byte* map_pages(std::size_t bytes, std::size_t, bool) {
     return static_cast<std::byte*>(VirtualAlloc(nullptr, bytes, MEM_RESERVE | MEM_COMMIT, PAGE_READWRITE));
 }
 

@@ -91,17 +91,20 @@ Status Queries::submit(Batch& batch) {
     return ok_status();
 }
 
-// Where that fails the batch's own submission says so.
+// For the host's next ones, as they come: all at once would make a promotion's step as much longer. Where that fails the batch's
+// own submission says so.
 void Queries::record() {
     try {
-        for (auto& batch : batches_)
+        for (const std::uint64_t next : {last_ticket_ + 1, last_ticket_ + 2}) {
+            auto& batch = batches_[next % most_batches];
             if (batch.program) static_cast<void>(batch.program->record());
+        }
     } catch (const std::bad_alloc&) { // as above
     }
 }
 
 Status Queries::at_boundary() {
-    record(); // after a promotion: in the step that takes long anyway, not in the host's next eight queries
+    record();
     for (auto& batch : batches_) {
         if (batch.ticket == 0 || batch.submitted) continue;
         if (auto status = submit(batch); !status) return status;

@@ -21,6 +21,10 @@ class Stepper::Change {
     Change(const Change&) = delete;
     Change& operator=(const Change&) = delete;
 
+    /// Whether steps ran in parts: as they will go on to, their programs are recorded with the others.
+    bool had_parts() const {
+        return std::ranges::any_of(programs_, [](const Programs& way) { return !way.parts[0].empty() || !way.parts[1].empty(); });
+    }
     void settle() noexcept {
         std::swap(stepper_.programs_, programs_);
         stepper_.drop_programs();
@@ -90,24 +94,26 @@ Result<compute::Program> Stepper::record_run(int turn) {
 }
 
 // A step flips each ping-pong field a fixed number of times, so two steps bring every field back: two programs suffice.
-Status Stepper::record_way() {
+Status Stepper::record_way(bool with_parts) {
     Parity parity;
     for (int turn = 0; turn < 2; ++turn) {
         state_.fields().set_parity(turn, parity);
         auto program = record_step(turn, parity, false);
         if (!program) return program.status();
         programs().steps[static_cast<std::size_t>(turn)] = *program;
+        if (!with_parts) continue;
+        if (auto status = record_parts(static_cast<std::size_t>(turn)); !status) return status;
     }
     return ok_status();
 }
 
-Status Stepper::record_ways() {
-    auto status = record_way();
+Status Stepper::record_ways(bool with_parts) {
+    auto status = record_way(with_parts);
     if (status && profiling_) status = record_timed();
     if (status && state_.chooses_tiles()) {
         const bool tiles = state_.plan().active_tiles;
         state_.use_tiles(!tiles);
-        status = record_way();
+        status = record_way(with_parts);
         state_.use_tiles(tiles);
     }
     if (status) choice_.restart();
@@ -116,7 +122,7 @@ Status Stepper::record_ways() {
 
 Status Stepper::record() {
     Change changing(*this);
-    auto status = record_ways();
+    auto status = record_ways(changing.had_parts());
     if (status) changing.settle();
     return status;
 }
@@ -140,7 +146,7 @@ Status Stepper::change(const Material& material, Content content, const std::fun
         Change changing(*this);
         state_.set_material(material);
         auto status = same_mask ? ok_status() : state_.set_effects(*choice);
-        if (status) status = record_ways();
+        if (status) status = record_ways(changing.had_parts());
         if (status && then) status = then();
         if (!status) return status;
         changing.settle();
@@ -169,7 +175,7 @@ Status Stepper::prepare() {
 }
 
 // The water's part, with the start passes or without, or a sand substep.
-Result<compute::Program> Stepper::record_part(int part, bool start, Parity& parity) {
+Result<compute::Program> Stepper::record_part(int part, bool start, int turn, Parity& parity) {
     compute::ProgramBuilder builder(start ? "start part" : part == 0 ? "water part" : "sand part");
     const auto& plan = state_.plan();
     std::vector<PlanPass> passes = part == 0 ? plan.water_passes : plan.substep_passes;
@@ -181,7 +187,7 @@ Result<compute::Program> Stepper::record_part(int part, bool start, Parity& pari
         if (auto status = state_.append(builder, pass, parity); !status) return status;
     }
     if (part == 0 && plan.active_tiles) {
-        if (auto status = active_.append(builder, state_.fields().turn()); !status) return status;
+        if (auto status = active_.append(builder, turn); !status) return status;
     }
     return state_.device().compile(builder, state_.params());
 }
@@ -190,7 +196,7 @@ Status Stepper::record_parts(std::size_t turn) {
     Parity parity = state_.fields().parity(static_cast<int>(turn));
     std::vector<compute::Program> recorded(static_cast<std::size_t>(parts()));
     for (std::size_t part = 0; part < recorded.size(); ++part) {
-        auto program = record_part(static_cast<int>(part), false, parity);
+        auto program = record_part(static_cast<int>(part), false, static_cast<int>(turn), parity);
         if (!program) {
             for (auto& earlier : recorded) state_.device().destroy_program(earlier);
             return program.status();
@@ -203,7 +209,7 @@ Status Stepper::record_parts(std::size_t turn) {
 
 Status Stepper::record_start(std::size_t turn) {
     Parity parity = state_.fields().parity(static_cast<int>(turn));
-    auto program = record_part(0, true, parity);
+    auto program = record_part(0, true, static_cast<int>(turn), parity);
     if (!program) return program.status();
     programs().starts[turn] = *program;
     return ok_status();

@@ -103,7 +103,7 @@ class Stepper {
     Result<compute::Program> record_run(int turn);
     /// The timed programs of the plan in force.
     Status record_timed();
-    Result<compute::Program> record_part(int part, bool start, Parity& parity);
+    Result<compute::Program> record_part(int part, bool start, int turn, Parity& parity);
     Status record_parts(std::size_t turn);
     Status record_start(std::size_t turn);
     /// Makes the step that comes the present one.
@@ -121,8 +121,8 @@ class Stepper {
     void drop_programs() noexcept;
     /// Of the plan in force.
     Programs& programs() { return programs_[state_.plan().active_tiles ? 1 : 0]; }
-    Status record_way();
-    Status record_ways();
+    Status record_way(bool with_parts);
+    Status record_ways(bool with_parts);
     /// In a world that chooses whether steps run over active tiles: goes to the better way where that is possible.
     void choose_tiles();
     /// The input of the step that comes, with the tiles that it wakes.
