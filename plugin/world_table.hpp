@@ -45,8 +45,8 @@ class WorldTable {
     Slot* find(wadi_world_id id);
 
     const long process_;
-    WorldTable* const inherited_; // kept for tools that look for lost memory
-    std::mutex mutex_;            // held to look worlds up, not while one is used
+    [[maybe_unused]] WorldTable* const inherited_; // kept for tools that look for lost memory
+    std::mutex mutex_;                             // held to look worlds up, not while one is used
     std::vector<Slot> slots_;
 };
 

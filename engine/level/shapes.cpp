@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <ranges>
 
 namespace wadi {
 namespace {
@@ -30,7 +29,19 @@ template <class Segments> Point offset_from_middle(const Shape& shape, double x,
     return nearest;
 }
 
-auto all_segments(const Shape& shape) { return std::views::iota(std::size_t{1}, std::max<std::size_t>(shape.points.size(), 1)); }
+/// Of a ridge; not std::views::iota, which clang 14 does not compile with g++ 12's library.
+struct AllSegments {
+    struct Number {
+        std::size_t n;
+        std::size_t operator*() const { return n; }
+        void operator++() { ++n; }
+        bool operator!=(const Number& other) const { return n != other.n; }
+    };
+    std::size_t points;
+    Number begin() const { return {1}; }
+    Number end() const { return {std::max<std::size_t>(points, 1)}; }
+};
+AllSegments all_segments(const Shape& shape) { return {shape.points.size()}; }
 
 template <class Segments> double distance_from_rim(const Shape& shape, double x, double y, const Segments& segments) {
     if (shape.kind == ShapeKind::box) {

@@ -44,8 +44,9 @@ void ActiveTiles::wake_edits(const StepInput& input) {
         const vec4& line = input.edit[EDIT_VECTORS * n];
         const vec4& shape = input.edit[EDIT_VECTORS * n + 1];
         const bool stamp = static_cast<int>(shape.w) == EDIT_STAMP;
-        const double x = line.x, y = line.y, r = stamp ? 0.0 : static_cast<double>(shape.x);
-        const double dx = line.z, dy = line.w;
+        const auto wide = [](float value) { return static_cast<double>(value); };
+        const double x = wide(line.x), y = wide(line.y), r = stamp ? 0.0 : wide(shape.x);
+        const double dx = wide(line.z), dy = wide(line.w);
         wake_around(std::min(x, x + dx) - r, std::min(y, y + dy) - r, std::max(x, x + dx) + r, std::max(y, y + dy) + r);
     }
 }

@@ -74,7 +74,7 @@ void StepInputs::set_sides(StepInput& input, double time) {
         if (side.kind == SideKind::discharge) {
             value = last >= first ? std::max(0.0, value) / ((last - first + 1) * dx) : 0.0;
             const double critical = std::cbrt(value * value / std::max(1e-9, settings_.gravity));
-            const double moved = advance(totals_[settings_.sources.size() + 2 + n], value / dx);
+            const auto moved = static_cast<double>(advance(totals_[settings_.sources.size() + 2 + n], value / dx));
             // Half a quantum more than is meant: the flux is cut to whole quanta after rounding.
             value = moved > 0 ? (moved + quantum_ / 2) / k : 0;
             const double fastest = settings_.method.half_storage
