@@ -69,12 +69,46 @@ std::vector<std::byte> resealed(const Bytes& bytes) {
     seal(copy);
     return copy;
 }
+/// A whole file, changed as the bytes say: by sixes, where (2 bytes) and to what (4).
+Bytes changed(std::span<const std::byte> whole, const Bytes& bytes) {
+    Bytes file(whole.size());
+    std::memcpy(file.data(), whole.data(), whole.size());
+    for (std::size_t n = 0; n + 6 <= bytes.size(); n += 6) {
+        const std::size_t at = (bytes[n] + 256U * bytes[n + 1]) % file.size();
+        std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(n + 2), std::min<std::size_t>(4, file.size() - at),
+                    file.begin() + static_cast<std::ptrdiff_t>(at));
+    }
+    return file;
+}
+bool begins_with(const Bytes& bytes, const char (&name)[9]) {
+    return bytes.size() >= 8 && std::memcmp(bytes.data(), name, 8) == 0;
+}
+
 [[maybe_unused]] void snapshot(const Bytes& bytes) {
     World& world = small_world();
-    if (world.snapshots().load(resealed(bytes)) && !world.step(1)) std::abort();
+    static const auto whole = [&] {
+        std::vector<std::byte> saved(world.snapshots().bytes());
+        if (!world.snapshots().save(saved)) std::abort();
+        return saved;
+    }();
+    const auto sealed = resealed(begins_with(bytes, "WADISNAP") ? bytes : changed(whole, bytes));
+    if (world.snapshots().load(sealed) && !world.step(1)) std::abort();
 }
 [[maybe_unused]] void commands(const Bytes& bytes) {
-    const auto sealed = resealed(bytes);
+    static const auto whole = [] {
+        auto& log = small_world().commands();
+        log.remember(true);
+        Edit edit;
+        edit.x0 = edit.y0 = edit.radius = edit.amount = 0.5;
+        const bool noted = log.edit({&edit, 1}) &&
+                           log.write_region(EditLayer::sand, {0, 0, 2, 1}, std::vector<float>(2, 0.25F)) &&
+                           log.set_material(0, 999) && log.trim();
+        if (!noted) std::abort();
+        auto written = log.bytes();
+        log.remember(false);
+        return written;
+    }();
+    const auto sealed = resealed(begins_with(bytes, "WADICMDS") ? bytes : changed(whole, bytes));
     const auto list = read_commands(sealed);
     if (list) { // what is read is written again as it was
         const auto written = write_commands(list->level, list->stamps, list->commands);
