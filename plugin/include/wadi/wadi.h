@@ -537,7 +537,9 @@ typedef struct wadi_body {
 static inline wadi_body wadi_default_body(void) {
     WADI_ZERO_STRUCT(wadi_body);
     value.orientation[3] = 1;
-    value.half_size[0] = value.half_size[1] = value.half_size[2] = 0.5f;
+    value.half_size[0] = 0.5f;
+    value.half_size[1] = 0.5f;
+    value.half_size[2] = 0.5f;
     value.radius = 0.5f;
     value.water_density = 1000;
     value.gravity = 9.81f;
