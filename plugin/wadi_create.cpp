@@ -25,12 +25,26 @@ compute::Log to_log(const wadi_device_options& options) {
     };
 }
 
+// A host's threads have a floating-point environment of their own, and so has what runs on them.
+compute::RunJobs to_run_jobs(const wadi_device_options& options) {
+    if (options.run_jobs == nullptr) return {};
+    return [run = options.run_jobs, user = options.jobs_user](int count, const std::function<void()>& job) {
+        const compute::DefaultFloats kept; // whatever the host's code sets
+        const auto part = [](void* data, uint32_t) {
+            const compute::DefaultFloats floats;
+            (*static_cast<const std::function<void()>*>(data))();
+        };
+        run(user, static_cast<uint32_t>(count), part, const_cast<std::function<void()>*>(&job));
+    };
+}
+
 Result<std::unique_ptr<compute::Device>> open(const wadi_device_options& options, const compute::Log& log) {
     if (options.device < -1)
         return error(Code::bad_argument, "wadi_device_options.device: " + std::to_string(options.device) + " is below -1");
     compute::DeviceOptions o;
     o.log = log;
     o.threads = options.threads;
+    o.run_jobs = to_run_jobs(options);
     o.validate = options.validate != 0;
     if (options.vulkan_host != nullptr) {
 #ifdef WADI_HAS_VULKAN

@@ -40,9 +40,9 @@ CpuDevice::CpuDevice(const InstructionSet& set, const compute::DeviceOptions& op
 }
 
 // The device thread comes first: without it nothing runs, without others all does.
-void CpuDevice::start(int threads) {
+void CpuDevice::start(int threads, const compute::RunJobs& jobs) {
     runner_ = std::thread([this] { device_thread(); });
-    pool_.emplace(threads);
+    pool_.emplace(threads, jobs);
     const int got = pool_->size();
     capabilities_.driver = std::string(set_.name) + ", " + std::to_string(got) + (got == 1 ? " thread" : " threads");
 }
@@ -423,7 +423,7 @@ const backends::Backend& cpu_backend() {
             const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
             try {
                 auto device = std::make_unique<CpuDevice>(*set, options);
-                device->start(options.threads == 0 ? std::min(cores, most_threads) : options.threads);
+                device->start(options.threads == 0 ? std::min(cores, most_threads) : options.threads, options.run_jobs);
                 return std::unique_ptr<compute::Device>(std::move(device));
             } catch (const std::exception& e) { // the system refuses threads or memory
                 return error(Code::out_of_memory, std::string("the CPU device cannot start: ") + e.what());

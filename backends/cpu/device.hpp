@@ -25,7 +25,7 @@ class CpuDevice final : public compute::Device {
     ~CpuDevice() override;
     /// Before anything else: starts the device thread and `threads` - 1 others, or as many as the system gives. Throws
     /// std::system_error where it gives none.
-    void start(int threads);
+    void start(int threads, const compute::RunJobs& jobs);
 
     const compute::Capabilities& capabilities() const override { return capabilities_; }
     compute::DeviceCounters counters() const override { return counters_; }

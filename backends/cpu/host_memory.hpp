@@ -10,7 +10,8 @@ std::uint64_t physical_memory(); // bytes; 0 = unknown
 std::string processor_name();
 
 // By the system's own calls; a page has 4 KiB, addresses and sizes are multiples of it.
-/// Zeros at a multiple of `alignment` where the system has pages that gain by it; null where there is no memory. `large`: in large pages.
+/// Zeros at a multiple of `alignment` where the system has pages that gain by it; null where there is no memory. `large`: in
+/// large pages.
 std::byte* map_pages(std::size_t bytes, std::size_t alignment, bool large);
 /// The whole of what map_pages gave.
 void unmap_pages(std::byte* data, std::size_t bytes);

@@ -28,7 +28,8 @@ void Remaining::wait() {
     wait_until(count_, done_, [](int left) { return left == 0; });
 }
 
-ThreadPool::ThreadPool(int threads) {
+ThreadPool::ThreadPool(int threads, compute::RunJobs jobs) : jobs_(std::move(jobs)), most_jobs_(threads) {
+    if (jobs_) return;
     try {
         while (size() < threads) workers_.emplace_back([this] { worker(); });
     } catch (const std::exception&) { // no more threads, or no memory for them: those that there are do the work
@@ -43,6 +44,7 @@ ThreadPool::~ThreadPool() {
 }
 
 void ThreadPool::run(const std::function<void()>& work) {
+    if (jobs_) return jobs_(most_jobs_, work);
     work_ = &work;
     job_.fetch_add(one_generation + open_bit, std::memory_order_acq_rel);
     changed_.wake();

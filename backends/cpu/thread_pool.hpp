@@ -1,6 +1,7 @@
 // Threads that run one function together and sleep in between. Nothing ever waits for a thread that has not begun: on busy cores
 // the others do its share.
 #pragma once
+#include "engine/compute/device.hpp"
 #include "engine/compute/waiter.hpp"
 #include <atomic>
 #include <cstdint>
@@ -26,13 +27,14 @@ class Remaining {
 
 class ThreadPool {
   public:
-    /// `threads` in all, the caller of run() being one of them; fewer where the system refuses some.
-    explicit ThreadPool(int threads);
+    /// `threads` in all, the caller of run() being one of them; fewer where the system refuses some. With `jobs` none is made:
+    /// that calls the work so many times.
+    explicit ThreadPool(int threads, compute::RunJobs jobs = {});
     ~ThreadPool();
     ThreadPool(const ThreadPool&) = delete;
     ThreadPool& operator=(const ThreadPool&) = delete;
 
-    int size() const { return static_cast<int>(workers_.size()) + 1; }
+    int size() const { return jobs_ ? most_jobs_ : static_cast<int>(workers_.size()) + 1; }
     /// Calls work() on the caller and on every other thread that wakes before the caller's own call has returned; returns when
     /// all of these calls have.
     void run(const std::function<void()>& work);
@@ -46,6 +48,8 @@ class ThreadPool {
     void worker();
     bool enter(std::uint64_t& seen);
 
+    const compute::RunJobs jobs_;
+    const int most_jobs_;
     const std::function<void()>* work_ = nullptr;
     std::atomic<std::uint64_t> job_{0};
     compute::Waiter changed_; // job_

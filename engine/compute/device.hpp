@@ -68,8 +68,12 @@ struct NativeBuffer {
 /// Severity: 0 = error, 1 = warning, 2 = information. Drivers call it from any thread.
 using Log = std::function<void(int severity, const std::string& message)>;
 
+/// Calls `job` `count` times, on any threads, at once or one after the other, and returns when all calls have. Must not throw.
+using RunJobs = std::function<void(int count, const std::function<void()>& job)>;
+
 struct DeviceOptions {
     int threads = 0;                // CPU backend: worker threads, 0 = all cores
+    RunJobs run_jobs;               // CPU backend: a host's threads in place of all but the device thread; `threads` calls a pass
     std::string instruction_set;    // CPU backend: "" = best, "base", "avx2", "avx512"
     bool validate = false;          // Vulkan: validation and synchronization validation layers
     bool full_barriers = false;     // a barrier before every operation

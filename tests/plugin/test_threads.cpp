@@ -71,3 +71,59 @@ TEST_CASE("four threads with a world each: the same bits as alone") {
     for (auto& thread : threads) thread.join();
     CHECK(right == 4);
 }
+
+namespace {
+
+// A host's job system: on one thread in turn, or on a thread for each part.
+struct Jobs {
+    bool threaded = false;
+    std::atomic<unsigned> passes{0}, parts{0};
+};
+
+void run_jobs(void* user, uint32_t count, wadi_job job, void* data) {
+    auto& jobs = *static_cast<Jobs*>(user);
+    ++jobs.passes;
+    jobs.parts += count;
+    std::vector<std::thread> threads;
+    for (uint32_t n = 0; n < count; ++n) {
+        if (jobs.threaded)
+            threads.emplace_back(job, data, n);
+        else
+            job(data, n);
+    }
+    for (auto& thread : threads) thread.join();
+}
+
+uint64_t hash_with(const wadi_device_options& options) {
+    const char* settings = R"({ "format_version": 1, "name": "jobs", "grid": { "nx": 160, "ny": 120, "dx": 0.25 }, "dt": 0.01,
+        "sand": [ { "shape": "cylinder", "center": [20, 15], "radius": 6, "height": 2 } ],
+        "water": [ { "shape": "box", "from": [0, 0], "to": [10, 30], "height": 3 } ] })";
+    wadi_world_id id{};
+    REQUIRE_MESSAGE(wadi_create_world_from_level_text(settings, nullptr, nullptr, nullptr, &options, &id) == WADI_OK,
+                    std::string(wadi_get_last_error()));
+    const AbiWorld world(id);
+    step(world, 20);
+    return hash_of(world);
+}
+
+} // namespace
+
+TEST_CASE("the CPU backend on a host's job system, one thread or several, gives the bits of its own threads") {
+    auto options = cpu_device();
+    options.threads = 2;
+    const uint64_t expected = hash_with(options);
+    for (const bool threaded : {false, true}) {
+        for (const int parts : {1, 3}) {
+            CAPTURE(threaded);
+            CAPTURE(parts);
+            Jobs jobs;
+            jobs.threaded = threaded;
+            options.threads = parts;
+            options.run_jobs = run_jobs;
+            options.jobs_user = &jobs;
+            CHECK(hash_with(options) == expected);
+            CHECK((jobs.passes > 0) == (parts > 1)); // a single part needs nobody else
+            CHECK(jobs.parts == jobs.passes * static_cast<unsigned>(parts));
+        }
+    }
+}

@@ -65,7 +65,7 @@ ContentRun run_trial(const ContentTrial& trial, int stage, const InstructionSet&
                      const std::vector<compute::StageLack>* lacks) {
     ContentRun run{trial.fields};
     std::vector<void*> buffers;
-    std::vector<unsigned long> sizes;
+    std::vector<unsigned long long> sizes;
     for (std::size_t n = 0; n < run.fields.size(); ++n) {
         buffers.push_back(trial.exists(n) ? run.fields[n].data() : nullptr);
         sizes.push_back(trial.exists(n) ? run.fields[n].size() * 4 : 0);

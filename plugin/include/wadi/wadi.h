@@ -88,6 +88,13 @@ typedef struct wadi_region {
     int32_t nx, ny;
 } wadi_region;
 
+/** Part `n` of a pass of the CPU backend: any thread may run it, parts in any order and at once. */
+typedef void (*wadi_job)(void* data, uint32_t n);
+/** The host's job system: runs job(data, n) for each n below count, on any of its threads or one after the other on one, and returns
+ *  when all have returned. A part that has begun may wait for others that have begun: they must be threads, not fibres of one. Called from
+ *  a thread of the library, several times a step; must not throw and must not call the library. */
+typedef void (*wadi_run_jobs_callback)(void* user, uint32_t count, wadi_job job, void* data);
+
 /** Where and how a world runs. */
 typedef struct wadi_device_options {
     uint32_t struct_size;
@@ -98,6 +105,9 @@ typedef struct wadi_device_options {
     wadi_log_callback log;     /* may be NULL */
     void* log_user;
     const struct wadi_vulkan_host* vulkan_host; /* NULL, or the host's own Vulkan device (wadi_vulkan.h): "auto" and "vulkan" run on it, "cuda" beside it */
+    wadi_run_jobs_callback run_jobs; /* NULL, or: the CPU backend has no threads of its own but the one that takes steps in order; a pass has
+                                        `threads` parts. Every bit stays, whatever the number */
+    void* jobs_user;
 } wadi_device_options;
 static inline wadi_device_options wadi_default_device_options(void) {
     WADI_ZERO_STRUCT(wadi_device_options);
