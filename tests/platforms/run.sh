@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # Builds Wadi's CPU backend for other platforms and runs the golden hashes and the smallest host there. Usage: run.sh [TARGET ...]
 # TARGET: windows (MinGW-w64, Wine), aarch64 (cross compiler, QEMU), wasm (Emscripten, Node.js), swiftshader (a second Vulkan driver,
-# tests of conformance). Default: all. Installs what is missing (as root) and builds below build/platforms; a line per target at the end.
+# tests of conformance), static (this machine, one archive, installed and linked by a host in C). Default: all. Installs what is missing (as root) and builds below build/platforms; a line per target at the end.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
-all=(windows aarch64 wasm swiftshader)
+all=(windows aarch64 wasm swiftshader static)
 targets=("$@")
 [ ${#targets[@]} -gt 0 ] || targets=("${all[@]}")
 for target in "${targets[@]}"; do
@@ -42,7 +42,7 @@ build() { # TARGET CMAKE_OPTION ...
     cmake -S . -B "$work/$target" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$headers" -DCMAKE_FIND_ROOT_PATH="$headers" -DWADI_BACKENDS=OFF \
         -DWADI_NARROW_MASKS=largest -DWADI_AVX512=OFF -DWADI_OPTIMISE_BASE=-O1 -DWADI_OPTIMISE_VECTOR=-O1 \
         -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON "$@" >"$work/$target.log" 2>&1 &&
-        ninja -C "$work/$target" wadi-minimal-host wadi-test-golden >>"$work/$target.log" 2>&1 ||
+        ninja -C "$work/$target" wadi wadi-minimal-host $([[ $target == static ]] || echo wadi-test-golden) >>"$work/$target.log" 2>&1 ||
         { tail -n 20 "$work/$target.log"; echo "$target: cannot be built, see $work/$target.log"; return 1; }
 }
 
@@ -77,8 +77,10 @@ lane_aarch64() {
 lane_wasm() {
     install emscripten nodejs || return 1
     export EM_CACHE=$work/emscripten
-    build wasm -DCMAKE_TOOLCHAIN_FILE=/usr/share/emscripten/cmake/Modules/Platform/Emscripten.cmake &&
-        run wasm .js node --experimental-wasm-threads --experimental-wasm-bulk-memory
+    build wasm -DCMAKE_TOOLCHAIN_FILE=/usr/share/emscripten/cmake/Modules/Platform/Emscripten.cmake -DCMAKE_CROSSCOMPILING_EMULATOR= \
+        -DCMAKE_CXX_FLAGS="-pthread -fexceptions -msimd128" -DCMAKE_C_FLAGS=-pthread \
+        -DCMAKE_EXE_LINKER_FLAGS="-sPROXY_TO_PTHREAD -sPTHREAD_POOL_SIZE=8 -sINITIAL_MEMORY=1GB -sEXIT_RUNTIME -sNODERAWFS" &&
+        run wasm .js node
 }
 
 lane_swiftshader() {
@@ -94,6 +96,21 @@ lane_swiftshader() {
         echo "swiftshader: $suite: $(tail -n 1 "$work/swiftshader.$suite.log")"
     done
     return $failed
+}
+
+lane_static() {
+    build static -DWADI_STATIC=ON -DWADI_TESTS=OFF || return 1
+    local prefix=$work/static/installed
+    cmake --install "$work/static" --component plugin --prefix "$prefix" >>"$work/static.log" 2>&1 &&
+        cmake -S "$prefix/share/wadi/examples" -B "$work/static/example" -G Ninja -DCMAKE_PREFIX_PATH="$prefix" >>"$work/static.log" 2>&1 &&
+        ninja -C "$work/static/example" >>"$work/static.log" 2>&1 || { echo "static: see $work/static.log"; return 1; }
+    local by_cmake by_pkg
+    by_cmake=$("$work/static/example/minimal_host" | sed -n 's/.*hash //p')
+    export PKG_CONFIG_PATH=$prefix/lib/pkgconfig
+    # shellcheck disable=SC2046
+    cc -std=c99 samples/minimal_host/main.c -o "$work/static/host" $(pkg-config --cflags --libs wadi) && by_pkg=$("$work/static/host" | sed -n 's/.*hash //p')
+    echo "static: smallest host by CMake $by_cmake, by pkg-config ${by_pkg:-MISSING}"
+    [[ $by_cmake == "$(cat $here/minimal_host_hash.txt)" && $by_pkg == "$by_cmake" ]]
 }
 
 copy_headers
