@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """The paper's own method beside ours: cases with known answers, the supplement's half turn, and the claims of the shipped levels, by
-`robust` and by `published`. Writes tables and pictures into samples/report/methods (README.md there: between its two marks).
+`robust`, `paper_like` and `published`. Writes tables and pictures into samples/report/methods (README.md there: between its two marks).
 
 usage: samples/report/side_by_side.py BIN_FOLDER [--backend cpu] [--small] [--only NAME ...] [--out DIR | --check]
 BIN_FOLDER holds wadi-recorder and conformance. --small: the levels' test sizes. --check: small cases, no files, fails where the
@@ -23,7 +23,7 @@ from recordings import LEVELS
 
 import check_claims  # beside measures: recordings put it on the path
 
-METHODS = ("robust", "published")
+METHODS = ("robust", "paper_like", "published")
 CHOICES = {  # one choice of the paper's each, on top of robust; and what published leaves out
     "robust": {},
     "semi-Lagrangian velocities": {"velocity_transport": "semi_lagrangian"},
@@ -139,7 +139,7 @@ def write_page(recorder, conformance, options):
                         for title, strain in (("angle and stretch apart (`polar`, the paper's)", "polar"), ("F as it is (`direct`)", "direct"),
                                               ("left stretch (`left_stretch`, robust)", "left_stretch"))])
         lines += [""]
-    lines += ["## Levels", "", "What `expected.json` beside each level claims, by both methods; bold where it does not hold.", ""]
+    lines += ["## Levels", "", "What `expected.json` beside each level claims, by each method; bold where it does not hold.", ""]
     for name in SHOWN_LEVELS:
         if options.only and name not in options.only:
             continue
@@ -151,15 +151,16 @@ def write_page(recorder, conformance, options):
             print(f"{name}: {method}, {sum(holds for *_, holds in sides[method][0])} of {len(sides[method][0])} claims", flush=True)
         lines += [f"### {name}", ""]
         rows = []
-        for a, b in zip(*(sides[method][0] for method in METHODS)):
-            cells = [number(value) if holds else f"**{number(value)}**" for _, value, _, _, holds in (a, b)]
-            rows.append([a[0], f"{a[3]} {a[2]}".strip(), *cells])
+        for claim in zip(*(sides[method][0] for method in METHODS)):
+            cells = [number(value) if holds else f"**{number(value)}**" for _, value, _, _, holds in claim]
+            says, _, unit, wanted, _ = claim[0]
+            rows.append([says, f"{wanted} {unit}".strip(), *cells])
         lines += table(["claim", "wanted", *METHODS], rows)
         lines += ["", "; ".join(f"{method}: water up to {number(w['water'])} m/s, sand up to {number(w['sand'])} m/s, mass drifts by {number(w['drift'])}"
                                 + (f", {w['not finite']} values not finite" if w["not finite"] else "")
                                 for method, (_, w) in sides.items()) + ".", ""]
         if name in LEVELS_WITH_PICTURES:
-            lines += ["| robust | published |", "| --- | --- |", f"| ![{name}, robust]({name}_robust.png) | ![{name}, published]({name}_published.png) |", ""]
+            lines += table(METHODS, [[f"![{name}, {method}]({name}_{method}.png)" for method in METHODS]]) + [""]
     page = out / "README.md"
     text = page.read_text() if page.exists() else f"# Methods\n\n{BEGIN}{END}"
     start, end = text.index(BEGIN) + len(BEGIN), text.index(END)
