@@ -39,7 +39,7 @@ template <class Struct> Status understood(const std::string& what, const Struct*
     std::uint32_t bytes = 0;
     std::memcpy(&bytes, host, sizeof bytes);
     if (bytes < first_bytes<Struct> || bytes > most_struct_bytes)
-        return error(Code::bad_argument, what + ": struct_size is " + std::to_string(bytes) +
+        return error(Code::bad_argument, what + ".struct_size is " + std::to_string(bytes) +
                                              ", not the struct's (this library's has " + std::to_string(sizeof(Struct)) +
                                              " bytes); start from wadi_default_...()");
     const auto* const from = reinterpret_cast<const std::byte*>(host);

@@ -94,7 +94,7 @@ def convergence(page, all_scenes, rows):
     for scene in all_scenes:
         if scene.sweep:
             continue
-        for choice in ("robust", "second_order", "published"):
+        for choice in ("robust", "second_order", "paper_like"):
             mine = by_size(rows, scene, choice)
             if not mine:
                 continue
