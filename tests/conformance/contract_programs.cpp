@@ -174,8 +174,11 @@ void pipelines(Session&, Device& device, Expect& expect) {
     expect.that(a && b && a->id == b->id, "equal requests do not share a pipeline");
     expect.that(a && untested && a->id == untested->id, "an effect that the stage does not test makes another pipeline");
     expect.that(a && other && a->id != other->id, "a tested effect makes no other pipeline");
+    // All that a world can have at once: Algorithm 1 with its own choices, or what it knows nothing of.
+    constexpr std::uint32_t printed = EFFECT_ALGORITHM_1 | EFFECT_CENTRAL_SHEAR | EFFECT_STRAIN_BEYOND;
     for (int stage = 0; stage < stages; ++stage)
-        for (const std::uint32_t mask : {~EFFECT_HALF_STORAGE, EFFECT_HALF_STORAGE | all_effects})
+        for (const std::uint32_t mask :
+             {~(EFFECT_HALF_STORAGE | printed), ~(EFFECT_HALF_STORAGE | never_algorithm_1), EFFECT_HALF_STORAGE | all_effects})
             expect.ok(device.create_pipeline(stage, mask, {}).status(),
                       "all effects of " + std::string(compute::stage_table()[static_cast<std::size_t>(stage)].name));
 }
