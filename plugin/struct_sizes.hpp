@@ -6,6 +6,7 @@
 #include "plugin/include/wadi/wadi.h"
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
 #include <string>
 #include <type_traits>

@@ -8,7 +8,7 @@ if [ -n "$full" ] && [ "$full" != --full ]; then
     echo "usage: tests/faults/attack.sh BIN [--full]" >&2
     exit 2
 fi
-steps=8000 count=120 seconds=5 gpu_steps=600 gpu_count=8
+steps=16000 count=120 seconds=5 gpu_steps=2048 gpu_count=8
 if [ "$full" = --full ]; then steps=200000 count=1000 seconds=120 gpu_steps=10000 gpu_count=1000; fi
 failed=0
 run() {
@@ -23,13 +23,15 @@ run "$attack" files
 run "$attack" hosts "$seconds"
 run "$attack" soak cpu "$steps"
 run "$attack" cycles cpu "$count"
-if "$attack" has vulkan; then
-    run "$attack" environment vulkan
-    run "$attack" soak vulkan "$gpu_steps"
-    run "$attack" cycles vulkan "$gpu_count"
-else
-    echo "vulkan: no device"
-fi
+for backend in vulkan cuda; do
+    if ! "$attack" has "$backend"; then
+        echo "$backend: no device"
+        continue
+    fi
+    run "$attack" environment "$backend"
+    run "$attack" soak "$backend" "$gpu_steps"
+    run "$attack" cycles "$backend" "$gpu_count"
+done
 if [ "$full" = --full ]; then # ctest runs each of these by itself
     run "$bin/wadi-test-faults" memory
     run "$bin/wadi-test-faults" load 1
