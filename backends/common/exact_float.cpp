@@ -22,6 +22,13 @@ Operands hard_quotient(std::uint64_t random) {
     }
 }
 
+// One of them of the size of 2^exponent, up to the ends of what stages divide and root, and the other so that neither product nor
+// quotient leaves the range of the functions.
+Operands far_out(float a, float b, int exponent, bool root) {
+    if (root) return {std::ldexp(a, exponent / 5), std::ldexp(std::fabs(b), exponent)};
+    return {std::ldexp(a, exponent), std::ldexp(std::fabs(b), exponent / 5)};
+}
+
 } // namespace
 
 // Random mantissas with exponents that no result of the test takes out of the normal range, since devices may flush
@@ -46,6 +53,7 @@ std::vector<Operands> exact_float_operands() {
         const int exponents = n % 4 == 0 ? 40 : 6;
         operands[n].a = n % 64 == 0 ? 0.0f : n % 64 == 2 ? -0.0f : draw(exponents);
         operands[n].b = std::fabs(draw(exponents));
+        if (n % 16 == 8) operands[n] = far_out(draw(6), draw(6), static_cast<int>(random() % 173) - 74, (random() & 1u) != 0);
         if (n % 2 == 1) operands[n] = hard_quotient(random());
     }
     return operands;

@@ -355,6 +355,7 @@ Status Stepper::run(bool& taken) {
     taken = false;
     choose_tiles();
     if (auto status = hooks_.before_step(); !status) return status;
+    if (!can_run()) return ok_status(); // an edit brought a layer, whose first step starts otherwise
     const auto turn = static_cast<std::size_t>(state_.fields().turn());
     auto& program = programs().runs[turn];
     if (program.id == 0) {

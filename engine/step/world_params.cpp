@@ -19,7 +19,10 @@ constexpr double least_gravity = 1e-15;   // [m/s2]
 constexpr double least_stiffness = 1e-15; // [Pa]
 
 // As a float, within what stages can multiply: neutral values of guards included.
-float as_float(double x) { return static_cast<float>(std::clamp(x, -static_cast<double>(off), static_cast<double>(off))); }
+// What is next to nothing is nothing, as in stages (flush): quotients of denormals are the processor's own.
+float as_float(double x) {
+    return std::abs(x) < 1e-20 ? 0.0F : static_cast<float>(std::clamp(x, -static_cast<double>(off), static_cast<double>(off)));
+}
 
 void set_sources(const Settings& s, WorldParams& p) {
     const SourcePieces pieces = source_pieces(s);

@@ -24,17 +24,17 @@ PAPER = {  # Table 2: percent per row, then ms per step on the authors' GPU
     "dam_break": (1.4, 2.0, 3.0, 6.7, 44.1, 8.9, 6.7, 2.8, 24.6, 0.46), "seepage": (0.9, 1.0, 2.8, 6.2, 40.5, 6.0, 7.4, 2.1, 33.1, 3.54),
     "flush": (1.3, 0.9, 4.0, 5.2, 45.5, 5.7, 6.7, 1.9, 28.6, 2.04), "canyon": (0.8, 0.9, 3.0, 4.8, 38.4, 5.2, 6.2, 1.8, 38.9, 0.61)}
 ROWS = {  # the paper's rows and the stages that do their work
-    "diffuse and integrate water": ("diffuse_mixed_water", "diffuse_mixed_velocity", "limit_water_outflow", "compute_water_flux",
-                                    "integrate_water_height"),
-    "integrate water velocity": ("integrate_water_velocity", "backtrace_water_velocity"),
+    "diffuse and integrate water": ("diffuse_mixed_water", "diffuse_mixed_velocity", "diffuse_mixed_height", "limit_water_outflow",
+                                    "compute_water_flux", "integrate_water_height"),
+    "integrate water velocity": ("integrate_water_velocity", "backtrace_water_velocity", "push_mixed_water"),
     "integrate sand height": ("limit_sand_outflow", "compute_sand_flux", "integrate_sand_height", "compute_bed_load"),
-    "integrate sand velocity": ("integrate_sand_velocity", "backtrace_sand_velocity"),
-    "project deformation gradient": ("project_deformation_gradient",),
+    "integrate sand velocity": ("integrate_sand_velocity", "backtrace_sand_velocity", "push_sand", "compute_sand_stress", "apply_sand_stress"),
+    "project deformation gradient": ("project_deformation_gradient", "yield_right_stretch"),
     "evolve deformation gradient": ("evolve_deformation_gradient", "advect_deformation_gradient", "stretch_deformation_gradient"),
-    "compute momentum exchange": ("compute_momentum_exchange", "apply_drag"),
+    "compute momentum exchange": ("compute_momentum_exchange", "measure_layer_exchange", "give_layer_exchange", "renew_split", "apply_drag"),
     "apply frictional force": ("apply_friction",),
-    "update boundary conditions": ("update_water_boundary_types", "update_sand_boundary_types", "extrapolate_velocity", "open_sides",
-                                   "open_sand_sides")}
+    "update boundary conditions": ("update_water_boundary_types", "update_sand_boundary_types", "extrapolate_velocity",
+                                   "extrapolate_strain", "open_sides", "open_sand_sides")}
 REST = "saturation, sources, ledger"  # no row of the paper's
 ASYNC = {"level": "spring", "size": (128, 128), "seconds": 4, "sand_substep": 0.004, "ratios": (1, 2, 3, 4, 6), "baseline": 5e-4}
 ORDER_SIZES = {"cpu": (512, 1024), "": (512, 1024, 4096)}  # by backend, "": any other

@@ -51,10 +51,47 @@ template <class T> struct StageBuffer {
 #define HAS(BITS) ((EFFECTS & (BITS)) == (BITS))
 #define IDX(I, J) (((J) + GHOST) * P.pitch + (I) + LEAD)
 #define UNIFORM(C) true // a branch would keep the loop over i from vectorising
+#ifdef WADI_GPU_DIVISION // for tests: beyond the ranges of the functions what stage_cuda.h computes there, so that no GPU is needed to find such operands
+FN float fused(float a, float b, float c) { return __builtin_fmaf(a, b, c); }
+FN float no_denormal(float x) { return __builtin_fabsf(x) < 1.17549435e-38f ? __builtin_copysignf(0.0f, x) : x; }
+FN float reciprocal_of(float b) {
+    float r = no_denormal(1.0f / no_denormal(b));
+    return fused(fused(-b, r, 1.0f), r, r);
+}
+FN float root_of(float x) {
+    float inverse = 1.0f / __builtin_sqrtf(no_denormal(x));
+    float s = x * inverse;
+    s = fused(fused(-s, s, x), 0.5f * inverse, s);
+    return fused(fused(-s, s, x), 0.5f * inverse, s);
+}
+FN bool in_range(float x) { return x == 0.0f || (__builtin_fabsf(x) > 1.0e-30f && __builtin_fabsf(x) < 1.0e30f); }
+FN float lean_quotient(float a, float b) {
+    float reciprocal = reciprocal_of(b);
+    float q = a * reciprocal;
+    q = fused(fused(-b, q, a), reciprocal, q);
+    q = fused(fused(-b, q, a), reciprocal, q);
+    return in_range(a) && in_range(b) && in_range(a / b) ? a / b : q;
+}
+FN float lean_root(float x) { return in_range(x) && x != 0.0f ? __builtin_sqrtf(x) : root_of(x); }
+FN float wdiv(float a, float b) {
+    float reciprocal = reciprocal_of(b);
+    float scaled = a * 1048576.0f;
+    float near = scaled * reciprocal;
+    float q = fused(fused(-b, near, scaled), reciprocal, near);
+    q = fused(fused(-b, q, scaled), reciprocal, q);
+    q = (__builtin_fabsf(q) < 3.0e38f && q != 0.0f ? q : near) * 9.53674316e-7f;
+    return in_range(a) && in_range(b) && in_range(a / b) ? a / b : q;
+}
+FN float wsqrt(float x) {
+    float s = in_range(x) ? __builtin_sqrtf(x) : root_of(x * 1048576.0f) * 9.765625e-4f;
+    return x > 0.0f ? s : x;
+}
+#else
 FN float wdiv(float a, float b) { return a / b; }
 FN float wsqrt(float x) { return __builtin_sqrtf(x); }
 FN float lean_quotient(float a, float b) { return a / b; }
 FN float lean_root(float x) { return __builtin_sqrtf(x); }
+#endif
 FN float wabs(float x) { return __builtin_fabsf(x); }
 FN float wtrunc(float x) { return __builtin_truncf(x); }
 FN float wfloor(float x) { return __builtin_floorf(x); }

@@ -42,26 +42,26 @@ FN float lean_root(float x) { return sqrtf(x); }
 #else
 // As __fdiv_rn and __fsqrt_rn round, without their branches: a sixth of a fused stage's code. A reciprocal and a quotient, each
 // corrected by residuals from fused multiply-adds (P. Markstein 1990). The powers of two keep residuals of small operands normal; what
-// they leave out is dividends beyond 4e28, radicands beyond it and divisors beyond 8e37.
+// they leave out is dividends, quotients and radicands beyond 3e32 and divisors beyond 8e37: stages bound what they divide and root by 1e30.
 FN float wdiv(float a, float b) {
     float reciprocal;
     asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(reciprocal) : "f"(b));
     reciprocal = fmaf(fmaf(-b, reciprocal, 1.0f), reciprocal, reciprocal);
-    const float scaled = a * 4294967296.0f; // 2^32
+    const float scaled = a * 1048576.0f; // 2^20
     const float near = scaled * reciprocal;
     float q = fmaf(fmaf(-b, near, scaled), reciprocal, near);
     q = fmaf(fmaf(-b, q, scaled), reciprocal, q);
     q = fabsf(q) < 3.0e38f && q != 0.0f ? q : near; // infinities, and zeros with their sign
-    return q * 2.32830644e-10f;                     // 2^-32
+    return q * 9.53674316e-7f;                      // 2^-20
 }
 FN float wsqrt(float x) {
-    const float scaled = x * 4294967296.0f;
+    const float scaled = x * 1048576.0f;
     float inverse;
     asm("rsqrt.approx.ftz.f32 %0, %1;" : "=f"(inverse) : "f"(scaled));
     float s = scaled * inverse;
     s = fmaf(fmaf(-s, s, scaled), 0.5f * inverse, s);
     s = fmaf(fmaf(-s, s, scaled), 0.5f * inverse, s); // once leaves about one root in five million wrong
-    return x > 0.0f ? s * 1.52587891e-5f : x; // 2^-16
+    return x > 0.0f ? s * 9.765625e-4f : x; // 2^-10
 }
 // The same bits in half of the instructions where no residual can underflow (shaders/README: ranges).
 FN float lean_quotient(float a, float b) {

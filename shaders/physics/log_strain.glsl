@@ -35,7 +35,7 @@ FN LogStrain log_strain(Stretch p) {
     float r = wsqrt(square(d) + square(bxy));
     float det = (1.0f + p.xx) * (1.0f + p.yy) - p.xy * p.xy;
     float large = 1.0f + (m + r);
-    bool sound = both(both(det > 1.0e-15f, large < 1.0e30f), 2.0f + (p.xx + p.yy) > 0.0f);
+    bool sound = both(both(det > 1.0e-15f, large < 1.0e15f), 2.0f + (p.xx + p.yy) > 0.0f);
     // Where P P is nearly singular its smaller eigenvalue comes from the determinant.
     float far = divide_or_zero(det * det, large) - 1.0f;
     float least = m - r < -0.5f ? far : m - r;
@@ -56,7 +56,7 @@ FN Stretch yielded(Stretch p, float c, float yield_slope, float inv_yield_slope,
     LogStrain e = log_strain(p);
     float y = yield_slope * e.tr - c;
     bool tip = y >= 0.0f;
-    float limit = -y * inv_two_shear;
+    float limit = wmin(-y * inv_two_shear, 1.0e30f);
     float size = 1.41421356f * wsqrt(square(e.dd) + square(e.dxy));
     bool beyond = size > limit;
     float cone = divide_or_zero(limit, size);

@@ -75,6 +75,17 @@ TEST_CASE("runs of steps: the bits of single steps, with edits, roll-back and ac
     }
 }
 
+TEST_CASE("runs of steps: an edit ahead of the first step brings water of second order, whose first step starts otherwise") {
+    auto scene = mixed_scene(12, 10);
+    scene.fields.water.clear();
+    scene.settings.method.water_transport_order = 2;
+    const auto runs = make_world(scene), single = make_world(scene);
+    for (World* world : {runs.get(), single.get()}) edit_world(*world, {poured_at(0)});
+    test::step(*runs, 8);
+    step_singly(*single, 8);
+    CHECK(same_state(*runs, *single));
+}
+
 TEST_CASE("runs of steps: one submission each, and an edit a step later gives other bits") {
     const auto runs = make_world(poured_on(0)), late = make_world(poured_on(0));
     const auto submits = [&] { return runs->device().counters().submits; };
