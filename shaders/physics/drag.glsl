@@ -18,8 +18,8 @@ FN void explicit_drag(REF(float) sand, REF(float) water, float impulse, float sa
     float difference = sand - water;
     float lost = divide_or_zero(impulse * difference, sand_inertia);
     float gained = divide_or_zero(impulse * difference, water_inertia);
-    sand = sand - lost;
-    water = water + gained;
+    sand = wclamp(sand - lost, -1.0e15f, 1.0e15f); // whose square is finite
+    water = wclamp(water + gained, -1.0e15f, 1.0e15f);
 }
 
 // Sand's velocity after drag and stick or slip. along, across: sand momentum per mass with the water's share, us + kappa um;

@@ -26,7 +26,12 @@ struct LogStrain {
     float tr, dd, dxy, sound;
 };
 
-FN LogStrain log_strain(Stretch p) {
+FN LogStrain log_strain(Stretch stretch) {
+    Stretch p; // whose squares' roots stages can take
+    p.xx = wclamp(stretch.xx, -1.0e7f, 1.0e7f);
+    p.yy = wclamp(stretch.yy, -1.0e7f, 1.0e7f);
+    p.xy = wclamp(stretch.xy, -1.0e7f, 1.0e7f);
+    bool within = both(both(p.xx == stretch.xx, p.yy == stretch.yy), p.xy == stretch.xy);
     float bxx = 2.0f * p.xx + (square(p.xx) + square(p.xy)); // P P - I
     float byy = 2.0f * p.yy + (square(p.yy) + square(p.xy));
     float bxy = 2.0f * p.xy + p.xy * (p.xx + p.yy);
@@ -35,7 +40,7 @@ FN LogStrain log_strain(Stretch p) {
     float r = wsqrt(square(d) + square(bxy));
     float det = (1.0f + p.xx) * (1.0f + p.yy) - p.xy * p.xy;
     float large = 1.0f + (m + r);
-    bool sound = both(both(det > 1.0e-15f, large < 1.0e15f), 2.0f + (p.xx + p.yy) > 0.0f);
+    bool sound = both(both(det > 1.0e-15f, within), 2.0f + (p.xx + p.yy) > 0.0f);
     // Where P P is nearly singular its smaller eigenvalue comes from the determinant.
     float far = divide_or_zero(det * det, large) - 1.0f;
     float least = m - r < -0.5f ? far : m - r;
@@ -44,8 +49,8 @@ FN LogStrain log_strain(Stretch p) {
     float along = divide_or_zero(0.5f * (e1 - e2), r); // per unit of (d, bxy): no angle needed
     LogStrain e;
     e.tr = e1 + e2;
-    e.dd = along * d;
-    e.dxy = along * bxy;
+    e.dd = sound ? along * d : 0.0f;
+    e.dxy = sound ? along * bxy : 0.0f;
     e.sound = sound ? 1.0f : 0.0f;
     return e;
 }

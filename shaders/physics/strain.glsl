@@ -109,7 +109,11 @@ struct Turn {
 };
 
 // Right stretch less the identity, and rotation, of F = I + e = R P.
-FN Stretch right_stretch(float exx, float exy, float eyx, float eyy, REF(Turn) by) {
+FN Stretch right_stretch(float e_xx, float e_xy, float e_yx, float e_yy, REF(Turn) by) {
+    float exx = wclamp(e_xx, -1.0e14f, 1.0e14f); // what is squared below stays finite
+    float exy = wclamp(e_xy, -1.0e14f, 1.0e14f);
+    float eyx = wclamp(e_yx, -1.0e14f, 1.0e14f);
+    float eyy = wclamp(e_yy, -1.0e14f, 1.0e14f);
     float x = 2.0f + (exx + eyy);
     float y = eyx - exy;
     float n = wsqrt(x * x + y * y);
