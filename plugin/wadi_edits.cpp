@@ -91,15 +91,15 @@ wadi_result wadi_world_write_region(wadi_world_id id, wadi_field field, const wa
         switch (field) {
         case WADI_FIELD_TERRAIN:
             break;
-        case WADI_FIELD_SAND_HEIGHT:
+        case WADI_FIELD_SAND_DEPTH:
             layer = EditLayer::sand;
             break;
-        case WADI_FIELD_WATER_HEIGHT:
+        case WADI_FIELD_TOTAL_WATER_DEPTH:
             layer = EditLayer::water;
             break;
         default:
             return bad_argument("wadi_world_write_region: field " + std::to_string(static_cast<int>(field)) +
-                                " is not terrain, sand height or water height");
+                                " is not TERRAIN, SAND_DEPTH or TOTAL_WATER_DEPTH");
         }
         return report(hosted.world->commands().write_region(layer, to_region(*region), {values, count}));
     });

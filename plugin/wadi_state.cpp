@@ -70,11 +70,11 @@ wadi_result wadi_world_get_stats(wadi_world_id id, wadi_world_stats* stats) {
         own.sand_drift_quanta = drift(now->sand_quanta, now->sand_initial, ledger.sand_in, ledger.sand_out);
         own.water_drift_quanta = drift(now->water_quanta, now->water_initial, ledger.water_in, ledger.water_out);
         own.quantum = now->quantum;
-        own.largest_sand = now->largest_sand;
-        own.largest_water = now->largest_water;
+        own.largest_sand_depth = now->largest_sand;
+        own.largest_total_water_depth = now->largest_water;
         own.largest_water_speed = now->largest_water_speed;
         own.largest_sand_speed = now->largest_sand_speed;
-        own.smallest_height = now->smallest_height;
+        own.smallest_depth = now->smallest_height;
         own.not_finite = now->not_finite;
         own.clamped_faces = now->clamped_faces;
         own.capped_faces = now->capped_faces;

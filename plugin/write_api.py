@@ -7,7 +7,6 @@ import re
 import sys
 
 folder = pathlib.Path(__file__).resolve().parent
-header = (folder / "include/wadi/wadi.h").read_text(encoding="utf-8")
 
 
 def plain(comment):
@@ -37,7 +36,8 @@ def fields(body):
     return found
 
 
-def read():
+def read(header):
+    """What a header declares."""
     api = {"abi_version": int(re.search(r"#define WADI_ABI_VERSION (\d+)u", header)[1])}
     api["version"] = [int(re.search(rf"#define WADI_VERSION_{part} (\d+)u", header)[1]) for part in ("MAJOR", "MINOR", "PATCH")]
     api["constants"] = {name: int(value, 0) for name, value in re.findall(r"^#define (WADI_(?!VERSION|ABI)\w+) (0x[0-9A-Fa-f]+|\d+)u?$", header, re.MULTILINE)}
@@ -47,7 +47,7 @@ def read():
         for text, body, name in re.findall(comment + r"typedef enum \w+ \{(.*?)\} (\w+);", header, re.DOTALL)
     ]
     defaults = {
-        name: {field: value.strip('"') if value.startswith('"') else float(value.rstrip("f")) for field, value in re.findall(r"value\.([\w\[\]]+) = ([^;]+);", body)}
+        name: {field: value.strip('"') if value.startswith('"') else float(value.split()[-1].rstrip("f")) for field, value in re.findall(r"value\.([\w\[\]]+) = ([^;]+);", body)}
         for name, body in re.findall(r"^static inline (\w+) wadi_default_\w+\(void\) \{(.*?)^\}", header, re.MULTILINE | re.DOTALL)
     }
     api["structs"] = [
@@ -121,7 +121,8 @@ const char* wadi_load_functions(wadi_functions* functions, wadi_find_function fi
 
 
 def main():
-    api = read()
+    header = (folder / "include/wadi/wadi.h").read_text(encoding="utf-8")
+    api = read(header)
     declared = set(re.findall(r"^WADI_API[^;(]*?(wadi_\w+)\(", header, re.MULTILINE))
     if declared != {f["name"] for f in api["functions"]}:
         sys.exit(f"functions that were not read: {declared ^ {f['name'] for f in api['functions']}}")

@@ -1,4 +1,4 @@
-/* The smallest host: a dam break from arrays, 60 steps, water heights and the state's hash. Only wadi.h and the C library. */
+/* The smallest host: a dam break from arrays, 60 steps, depths of water and the state's hash. Only wadi.h and the C library. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <wadi/wadi.h>
@@ -40,7 +40,7 @@ int main(void) {
 
     for (int frame = 0; frame < 60; ++frame) check(wadi_world_step(world, 1), "stepping");
 
-    check(wadi_world_read_field(world, WADI_FIELD_WATER_HEIGHT, water, NX * NY), "reading the water");
+    check(wadi_world_read_field(world, WADI_FIELD_TOTAL_WATER_DEPTH, water, NX * NY), "reading the water");
     float least = water[0], most = water[0];
     for (int k = 1; k < NX * NY; ++k) {
         least = water[k] < least ? water[k] : least;

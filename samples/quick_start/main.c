@@ -27,12 +27,12 @@ int main(int argc, char** argv) {
         wadi_frame frame = wadi_default_frame();
         check(wadi_world_edit(world, &spring, 1));
         check(wadi_world_update(world, 16666667, &frame)); /* 1/60 s; then a host draws */
-        const float* heights;
+        const float* surface;
         uint64_t row_pitch, step;
-        if (wadi_world_get_host_output(world, WADI_OUTPUT_FREE_SURFACE, &heights, &row_pitch, &step) == WADI_OK &&
+        if (wadi_world_get_host_output(world, WADI_OUTPUT_FREE_SURFACE, &surface, &row_pitch, &step) == WADI_OK &&
             image % 30 == 29)
             printf("t = %.2f s, step %llu: the surface at the south-west corner is %.3f m high\n", frame.time,
-                   (unsigned long long)step, (double)heights[0]);
+                   (unsigned long long)step, (double)surface[0]);
     }
     check(wadi_destroy_world(world));
     return 0;

@@ -56,11 +56,11 @@ std::string hash_text(std::uint64_t hash) {
 void Report::sample(const wadi_world_stats& now) {
     const bool first = stats.struct_size == 0;
     stats = now;
-    largest_sand = std::max(largest_sand, now.largest_sand);
-    largest_water = std::max(largest_water, now.largest_water);
+    largest_sand = std::max(largest_sand, now.largest_sand_depth);
+    largest_water = std::max(largest_water, now.largest_total_water_depth);
     largest_water_speed = std::max(largest_water_speed, now.largest_water_speed);
     largest_sand_speed = std::max(largest_sand_speed, now.largest_sand_speed);
-    smallest_height = first ? now.smallest_height : std::min(smallest_height, now.smallest_height);
+    smallest_depth = first ? now.smallest_depth : std::min(smallest_depth, now.smallest_depth);
     clamped_faces.sample(now.clamped_faces);
     capped_faces.sample(now.capped_faces);
     limited_cells.sample(now.limited_cells);
@@ -107,15 +107,15 @@ std::string format_table(const Report& report) {
     if (stats.refused > 0) append(text, "  sources could not place %.6g m3 below the declared largest height\n", stats.refused);
 
     append(text, "\n  %-36s %12s %12s\n", "extreme", "last", "largest");
-    append(text, "  %-36s %12.5g %12.5g\n", "depth of water [m]", stats.largest_water, report.largest_water);
-    append(text, "  %-36s %12.5g %12.5g\n", "depth of sand [m]", stats.largest_sand, report.largest_sand);
+    append(text, "  %-36s %12.5g %12.5g\n", "depth of water [m]", stats.largest_total_water_depth, report.largest_water);
+    append(text, "  %-36s %12.5g %12.5g\n", "depth of sand [m]", stats.largest_sand_depth, report.largest_sand);
     append(text, "  %-36s %12.5g %12.5g\n", "speed of water [m/s]", stats.largest_water_speed, report.largest_water_speed);
     append(text, "  %-36s %12.5g %12.5g\n", "speed of sand [m/s]", stats.largest_sand_speed, report.largest_sand_speed);
     append_count(text, "faces at the velocity clamp", report.clamped_faces);
     append_count(text, "faces with capped gravity", report.capped_faces);
     append_count(text, "cells with limited outflow", report.limited_cells);
     append_count(text, "values that are not finite", report.not_finite);
-    append(text, "  %-36s %12.5g (least of all frames)\n", "smallest depth [m]", report.smallest_height);
+    append(text, "  %-36s %12.5g (least of all frames)\n", "smallest depth [m]", report.smallest_depth);
     if (stats.tiles > 0)
         append(text, "  %-36s %12llu of %llu (last step)\n", "active tiles", static_cast<unsigned long long>(stats.active_tiles),
                static_cast<unsigned long long>(stats.tiles));
@@ -156,7 +156,7 @@ std::string format_summary(const Report& report) {
                         {"largest_sand_m", report.largest_sand},
                         {"largest_water_speed_m_per_s", report.largest_water_speed},
                         {"largest_sand_speed_m_per_s", report.largest_sand_speed},
-                        {"smallest_height_m", report.smallest_height}};
+                        {"smallest_depth_m", report.smallest_depth}};
     json["counts"] = {{"clamped_faces", count_json(report.clamped_faces)},
                       {"capped_faces", count_json(report.capped_faces)},
                       {"limited_cells", count_json(report.limited_cells)},

@@ -32,7 +32,7 @@ struct Report {
 
     wadi_world_stats stats = {};                                                                 // of the last successful reading
     double largest_sand = 0, largest_water = 0, largest_water_speed = 0, largest_sand_speed = 0; // over all frames
-    double smallest_height = 0;
+    double smallest_depth = 0;
     Count clamped_faces, capped_faces, limited_cells, not_finite;
     std::vector<wadi_stage_timing> stages; // empty without profiling
 

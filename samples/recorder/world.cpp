@@ -78,7 +78,7 @@ Failure World::read_map(int factor, MapFields& fields) {
     full.ny = info_.ny;
     full.dx = info_.dx;
     if (Failure failure = read_field(WADI_FIELD_TERRAIN, full.terrain)) return failure;
-    if (Failure failure = read_field(WADI_FIELD_SAND_HEIGHT, full.sand)) return failure;
+    if (Failure failure = read_field(WADI_FIELD_SAND_DEPTH, full.sand)) return failure;
     if (Failure failure = read_field(WADI_FIELD_WATER_DEPTH, full.water)) return failure;
     if (Failure failure = read_field(WADI_FIELD_SATURATION, full.saturation)) return failure;
     fields = factor == 1 ? std::move(full) : reduced(full, factor);

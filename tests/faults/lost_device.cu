@@ -71,7 +71,7 @@ void expect_lost(wadi_world_id world, std::uint64_t save_ticket, std::uint64_t q
     lost(wadi_world_set_rollback(world, 1, 1), "set_rollback");
     lost(wadi_world_get_hash(world, &number), "get_hash");
     lost(wadi_world_get_stats(world, &stats), "get_stats");
-    lost(wadi_world_read_field(world, WADI_FIELD_WATER_HEIGHT, cells, 40 * 36), "read_field");
+    lost(wadi_world_read_field(world, WADI_FIELD_TOTAL_WATER_DEPTH, cells, 40 * 36), "read_field");
 }
 
 } // namespace

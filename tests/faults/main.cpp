@@ -117,7 +117,7 @@ bool session(long fail = 0) {
     uint64_t ticket = 0;
     note(wadi_world_query(world, xy, 2, &ticket), "query");
     static float cells[30];
-    note(wadi_world_read_field(world, WADI_FIELD_WATER_HEIGHT, cells, 30), "read_field");
+    note(wadi_world_read_field(world, WADI_FIELD_TOTAL_WATER_DEPTH, cells, 30), "read_field");
     auto stats = wadi_default_world_stats();
     const auto known = wadi_world_get_stats(world, &stats);
     note(known, "get_stats");

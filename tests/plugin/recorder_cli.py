@@ -269,7 +269,7 @@ def test_summary(recorder):
         assert first["ledger"][layer].keys() >= {"initial_m3", "in_m3", "out_m3", "now_m3", "relative_drift", "drift_quanta"}
         assert abs(first["ledger"][layer]["relative_drift"]) < 1e-6, first["ledger"]
     assert first["counts"]["not_finite"]["largest"] == 0
-    assert first["extremes"]["smallest_height_m"] >= 0
+    assert first["extremes"]["smallest_depth_m"] >= 0
     assert first["stages"] == []
     assert not (recorder.folder / "out").exists(), "--no-frames without dumps creates no folder"
     recorder.record("--seconds", "0", "--no-frames", "--summary", "made/for/it.json")

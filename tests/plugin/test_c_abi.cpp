@@ -100,7 +100,7 @@ TEST_CASE("a world from arrays steps, reads back and keeps its ledger") {
     CHECK(steps == 100);
     CHECK(seconds == doctest::Approx(1.0));
     std::vector<float> w(16 * 12);
-    REQUIRE(wadi_world_read_field(world.id, WADI_FIELD_WATER_HEIGHT, w.data(), w.size()) == WADI_OK);
+    REQUIRE(wadi_world_read_field(world.id, WADI_FIELD_TOTAL_WATER_DEPTH, w.data(), w.size()) == WADI_OK);
     CHECK(w[15] > 0.0F);
     auto stats = wadi_default_world_stats();
     REQUIRE(wadi_world_get_stats(world.id, &stats) == WADI_OK);
@@ -120,7 +120,7 @@ TEST_CASE("a world from arrays steps, reads back and keeps its ledger") {
         CHECK(wadi_field_name(static_cast<wadi_field>(field)) != nullptr);
         CHECK(wadi_world_read_field(world.id, static_cast<wadi_field>(field), w.data(), w.size()) == WADI_OK);
     }
-    CHECK(std::string(wadi_field_name(WADI_FIELD_SAND_HEIGHT)) == "hs"); // the engine counts them by hand
+    CHECK(std::string(wadi_field_name(WADI_FIELD_SAND_DEPTH)) == "hs"); // the engine counts them by hand
     CHECK(std::string(wadi_field_name(WADI_FIELD_SATURATION)) == "phi");
     CHECK(std::string(wadi_field_name(WADI_FIELD_MIXED_VELOCITY_Y)) == "vm");
     CHECK(std::string(wadi_field_name(WADI_FIELD_STRETCH_YY)) == "Vyy");

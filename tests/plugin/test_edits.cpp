@@ -96,7 +96,7 @@ void session(const Site& world) {
         }
         if (n % 3 == 0) e.step = static_cast<uint64_t>(n) + 4;
         world.edit(e);
-        if (n == 12) REQUIRE(wadi_world_write_region(world.id, WADI_FIELD_WATER_HEIGHT, &r, values.data(), 30) == WADI_OK);
+        if (n == 12) REQUIRE(wadi_world_write_region(world.id, WADI_FIELD_TOTAL_WATER_DEPTH, &r, values.data(), 30) == WADI_OK);
         if (n == 20) {
             auto dry = brush(WADI_LAYER_SAND, 6, 5, -10);
             dry.radius = 50;
@@ -191,7 +191,7 @@ TEST_CASE("a log with any byte changed, cut off, of a newer version or of anothe
     first.edit(brush(WADI_LAYER_WATER, 5, 5, 0.4));
     const auto r = region(1, 1, 2, 1);
     const float values[2] = {0.5F, 0.25F};
-    REQUIRE(wadi_world_write_region(first.id, WADI_FIELD_SAND_HEIGHT, &r, values, 2) == WADI_OK);
+    REQUIRE(wadi_world_write_region(first.id, WADI_FIELD_SAND_DEPTH, &r, values, 2) == WADI_OK);
     REQUIRE(wadi_world_trim(first.id) == WADI_OK);
     const auto log = first.commands();
     const Site world;
@@ -263,7 +263,7 @@ TEST_CASE("bad edits and regions get a code and a text and change nothing") {
     CHECK(last_error().find("ny") != std::string::npos);
     std::vector<float> values(6, 0.5F);
     const auto r = region(1, 2, 3, 2);
-    CHECK(wadi_world_write_region(world.id, WADI_FIELD_SAND_HEIGHT, &r, values.data(), 6) == WADI_ERROR_BAD_ARGUMENT);
+    CHECK(wadi_world_write_region(world.id, WADI_FIELD_SAND_DEPTH, &r, values.data(), 6) == WADI_ERROR_BAD_ARGUMENT);
     CHECK(last_error().find("effects.sand") != std::string::npos);
     CHECK(wadi_world_write_region(world.id, WADI_FIELD_SATURATION, &r, values.data(), 6) == WADI_ERROR_BAD_ARGUMENT);
     CHECK(wadi_world_write_region(world.id, WADI_FIELD_TERRAIN, nullptr, values.data(), 6) == WADI_ERROR_BAD_ARGUMENT);

@@ -67,7 +67,7 @@ float at(const World& world, const std::vector<float>& field, int i, int j) {
 TEST_CASE("published fields are those that reading gives, on every backend") {
     const std::map<wadi_output, wadi_field> same = {{WADI_OUTPUT_TERRAIN, WADI_FIELD_TERRAIN},
                                                     {WADI_OUTPUT_FREE_SURFACE, WADI_FIELD_FREE_SURFACE},
-                                                    {WADI_OUTPUT_SAND_DEPTH, WADI_FIELD_SAND_HEIGHT},
+                                                    {WADI_OUTPUT_SAND_DEPTH, WADI_FIELD_SAND_DEPTH},
                                                     {WADI_OUTPUT_WATER_DEPTH, WADI_FIELD_WATER_DEPTH},
                                                     {WADI_OUTPUT_SATURATION, WADI_FIELD_SATURATION},
                                                     {WADI_OUTPUT_FLOW, WADI_FIELD_WATER_VELOCITY_X},
@@ -99,7 +99,7 @@ TEST_CASE("published fields are those that reading gives, on every backend") {
         CHECK(view(world, WADI_OUTPUT_NORMAL, WADI_OUTPUT_CURRENT).handle != 0);
         CHECK(view(world, WADI_OUTPUT_NORMAL, WADI_OUTPUT_CURRENT).handle !=
               view(world, WADI_OUTPUT_NORMAL, WADI_OUTPUT_PREVIOUS).handle);
-        const auto terrain = world.read(WADI_FIELD_TERRAIN), sand = world.read(WADI_FIELD_SAND_HEIGHT);
+        const auto terrain = world.read(WADI_FIELD_TERRAIN), sand = world.read(WADI_FIELD_SAND_DEPTH);
         const auto surface = world.read(WADI_FIELD_FREE_SURFACE), solid = host(world, WADI_OUTPUT_SAND_SURFACE);
         const auto up = host(world, WADI_OUTPUT_NORMAL, 2), east = host(world, WADI_OUTPUT_NORMAL, 0);
         const auto north = host(world, WADI_OUTPUT_NORMAL, 1);

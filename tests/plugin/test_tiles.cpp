@@ -47,12 +47,12 @@ TEST_CASE("tiles hold the least and largest surfaces, and the step at which a ce
             std::vector<int64_t> changed;
             for (const auto& tile : tiles_of(world)) changed.push_back(tile.changed_step);
             CHECK(std::all_of(changed.begin(), changed.end(), [](int64_t step) { return step == 0; }));
-            auto solid_before = world.read(WADI_FIELD_SAND_HEIGHT), free_before = world.read(WADI_FIELD_FREE_SURFACE);
+            auto solid_before = world.read(WADI_FIELD_SAND_DEPTH), free_before = world.read(WADI_FIELD_FREE_SURFACE);
             const auto terrain = world.read(WADI_FIELD_TERRAIN);
             for (std::size_t n = 0; n < terrain.size(); ++n) solid_before[n] += terrain[n];
             for (int round = 1; round <= 3; ++round) {
                 update_and_arrive(world, 2 * step_time);
-                auto solid = world.read(WADI_FIELD_SAND_HEIGHT);
+                auto solid = world.read(WADI_FIELD_SAND_DEPTH);
                 for (std::size_t n = 0; n < terrain.size(); ++n) solid[n] += terrain[n];
                 const auto free = world.read(WADI_FIELD_FREE_SURFACE);
                 uint64_t step = 0;

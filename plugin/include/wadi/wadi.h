@@ -1,7 +1,7 @@
 /* Wadi: sand, water and wet sand on a height field. The plugin's whole interface, C99.
  *
  * Units: metres, seconds, kilograms. Fields are row-major, nx * ny floats, x fastest; row 0 is the south side (y = 0),
- * column 0 the west side (x = 0); heights point up.
+ * column 0 the west side (x = 0); up is z. "Elevation" and "surface" are heights above the level's zero, "depth" is how thick a layer is.
  * A struct that begins with struct_size grows at its end in later versions: start from its wadi_default_*() function, then change what
  * you need. A host and a library of different versions understand each other as long as WADI_ABI_VERSION is the same: what a host's
  * struct lacks has its default; a field that a library does not know must be 0, or it refuses the call and says so. In arrays of such
@@ -178,9 +178,9 @@ typedef struct wadi_world_arrays {
     uint32_t struct_size;
     const char* settings_json; /* must not be NULL */
     int32_t nx, ny;            /* of the arrays; must equal the settings' grid */
-    const float* terrain;      /* [m] */
-    const float* sand;         /* depth [m] */
-    const float* water;        /* depth [m] */
+    const float* terrain;      /* elevation of the ground [m] */
+    const float* sand;         /* depth hs [m] */
+    const float* water;        /* depth of all water, W [m] */
     const float* velocity_x;   /* water, at cell centres [m/s] */
     const float* velocity_y;
     const float* roughness;    /* what cells add to material.manning, 0 ... 1 [s/m^(1/3)] */
@@ -236,11 +236,11 @@ WADI_API wadi_result wadi_world_step(wadi_world_id world, uint32_t steps);
 WADI_API wadi_result wadi_world_get_time(wadi_world_id world, double* seconds, uint64_t* steps);
 
 typedef enum wadi_field {
-    WADI_FIELD_TERRAIN = 0,          /* H, ground height [m] */
-    WADI_FIELD_SAND_HEIGHT = 1,      /* hs, depth of sand [m] */
-    WADI_FIELD_WATER_HEIGHT = 2,     /* W, depth of all water, pure and mixed [m] */
+    WADI_FIELD_TERRAIN = 0,          /* H, elevation of the ground [m] */
+    WADI_FIELD_SAND_DEPTH = 1,       /* hs [m] */
+    WADI_FIELD_TOTAL_WATER_DEPTH = 2, /* W, depth of all water, above the sand and inside it [m] */
     WADI_FIELD_WATER_DEPTH = 3,      /* pure water above the sand, W - min(W, hs) [m] */
-    WADI_FIELD_FREE_SURFACE = 4,     /* H + max(W, hs): what a viewer sees [m] */
+    WADI_FIELD_FREE_SURFACE = 4,     /* H + max(W, hs), elevation of what a viewer sees [m] */
     WADI_FIELD_SATURATION = 5,       /* W/(W + hs) where there is sand, else 0 */
     WADI_FIELD_WATER_VELOCITY_X = 6, /* pure water, cell centre [m/s] */
     WADI_FIELD_WATER_VELOCITY_Y = 7,
@@ -270,15 +270,15 @@ typedef struct wadi_world_stats {
     double water_initial;
     double sand_in, sand_out;     /* [m3] by sources, sinks, rain, evaporation and sides since creation */
     double water_in, water_out;
-    double refused;               /* [m3] of sources and rain that found no room below the declared largest height */
-    int64_t sand_drift_quanta;    /* now - (initial + in - out) in quanta of height x cell area; 0 = exact; sums stop at 2^60 */
+    double refused;               /* [m3] of sources and rain that found no room below method.largest_height, the highest elevation */
+    int64_t sand_drift_quanta;    /* now - (initial + in - out) in quanta of depth x cell area; 0 = exact; sums stop at 2^60 */
     int64_t water_drift_quanta;
     double quantum;               /* [m] */
-    double largest_sand;          /* [m] */
-    double largest_water;         /* [m] */
+    double largest_sand_depth;    /* hs [m] */
+    double largest_total_water_depth; /* W [m] */
     double largest_water_speed;   /* largest face velocity of pure and mixed water [m/s] */
     double largest_sand_speed;    /* [m/s] */
-    double smallest_height;       /* least hs or W: never negative */
+    double smallest_depth;        /* least hs or W [m]: never negative */
     uint64_t not_finite;          /* values that are NaN or infinite: never any */
     uint64_t clamped_faces;       /* faces at the velocity clamp */
     uint64_t capped_faces;        /* faces whose gravity the next step caps */
@@ -354,9 +354,9 @@ WADI_API wadi_result wadi_world_update(wadi_world_id world, uint64_t host_nanose
 
 /** Fields for drawing and collision, one value per cell (its centre), published on the device after the steps of an update. */
 typedef enum wadi_output {
-    WADI_OUTPUT_TERRAIN = 0,        /* H [m], 1 float */
-    WADI_OUTPUT_SAND_SURFACE = 1,   /* solid surface H + hs [m], 1 float */
-    WADI_OUTPUT_FREE_SURFACE = 2,   /* visible surface H + max(W, hs) [m], 1 float */
+    WADI_OUTPUT_TERRAIN = 0,        /* elevation of the ground H [m], 1 float */
+    WADI_OUTPUT_SAND_SURFACE = 1,   /* elevation of the solid surface H + hs [m], 1 float */
+    WADI_OUTPUT_FREE_SURFACE = 2,   /* elevation of the visible surface H + max(W, hs) [m], 1 float */
     WADI_OUTPUT_SAND_DEPTH = 3,     /* hs [m], 1 float */
     WADI_OUTPUT_WATER_DEPTH = 4,    /* pure water above the sand, W - min(W, hs) [m], 1 float */
     WADI_OUTPUT_SATURATION = 5,     /* W/(W + hs) where there is sand, else 0; 1 float */
@@ -366,12 +366,12 @@ typedef enum wadi_output {
                                        max(clamp((Fr^2 - 1)/3), clamp((R - 0.15)/0.5)) * clamp(10 h/dx), clamps to 0 ... 1;
                                        Fr = |u|/sqrt(g h) (fast water), R = -h div(u)/sqrt(g h) (rising, breaking fronts) */
     WADI_OUTPUT_NORMAL = 9,         /* unit normal of the visible surface: east, north, up, 0; 4 floats */
-    WADI_OUTPUT_SMOOTH_SURFACE = 10, /* visible surface after a 3 x 3 Gaussian [m], 1 float */
+    WADI_OUTPUT_SMOOTH_SURFACE = 10, /* elevation of the visible surface after a 3 x 3 Gaussian [m], 1 float */
     WADI_OUTPUT_COUNT = 11
 } wadi_output;
 /** Bit of an output in a mask. */
 #define WADI_OUTPUT_BIT(output) (1u << (output))
-/** One more bit for wadi_world_set_outputs: heights and changes of tiles, wadi_world_get_tiles. */
+/** One more bit for wadi_world_set_outputs: lowest and highest elevation of tiles and their changes, wadi_world_get_tiles. */
 #define WADI_OUTPUT_TILES_BIT 0x80000000u
 
 /** Chooses what every update publishes; 0 = nothing, which costs nothing. Each output takes three buffers (previous, current, being
@@ -433,8 +433,8 @@ WADI_API wadi_result wadi_world_get_host_output(wadi_world_id world, wadi_output
 /** A tile of 32 x 32 cells (less at the east and north rim): cells i ... i + nx - 1, j ... j + ny - 1. */
 typedef struct wadi_tile {
     int32_t i, j, nx, ny;
-    float solid_min, solid_max;    /* of H + hs [m] */
-    float free_min, free_max;      /* of H + max(W, hs) [m] */
+    float solid_min, solid_max;    /* elevation of the solid surface H + hs [m] */
+    float free_min, free_max;      /* elevation of the visible surface H + max(W, hs) [m] */
     int64_t changed_step;          /* step of the newest publish in which a cell's surface, solid or visible, was another than in the
                                       publish before; at first that of the first publish */
 } wadi_tile;
@@ -502,10 +502,10 @@ WADI_API wadi_result wadi_world_get_hash(wadi_world_id world, uint64_t* hash);
 
 /** The state at one point. */
 typedef struct wadi_query_result {
-    float terrain;                /* ground height [m]; heights and depths are bilinear between cell centres */
+    float terrain;                /* elevation of the ground [m]; elevations and depths are bilinear between cell centres */
     float sand_depth;             /* [m] */
     float water_depth;            /* pure water above the sand [m]; 0 where all four cells around are dry */
-    float surface;                /* visible surface, ground + max(sand, water) [m]. At the water's edge it leads from the water's level
+    float surface;                /* elevation of the visible surface, H + max(W, hs) [m]. At the water's edge it leads from the water's surface
                                      in the last wet cell to the ground of the dry one, as a mesh through the cell centres does */
     float velocity[2];            /* of the pure water, between faces [m/s]; 0 on dry faces */
     float normal[3];              /* of the visible surface, unit length, up; slopes bilinear between cell centres */
@@ -603,7 +603,7 @@ typedef enum wadi_layer {
 } wadi_layer;
 
 typedef enum wadi_edit_kind {
-    WADI_EDIT_BRUSH = 0, /* raises (amount > 0) or lowers a layer within a disc or capsule */
+    WADI_EDIT_BRUSH = 0, /* adds to (amount > 0) or takes from a layer within a disc or capsule */
     WADI_EDIT_STAMP = 1, /* the same by an image over a rectangle */
     WADI_EDIT_PUSH = 2   /* a body that drags sand and water along and feels nothing itself; moves no mass */
 } wadi_edit_kind;
@@ -620,8 +620,8 @@ typedef struct wadi_edit {
     double x1, y1;        /* [m], capsule and stamp only; of a stamp the high corner, greater than the low one */
     double radius;        /* [m], 1e-9 ... 1e9, brush and push */
     double softness;      /* 0 ... 1, brush and push: share of the radius over which the effect falls to 0 (3 s^2 - 2 s^3) */
-    double amount;        /* brush: change at the centre [m]; stamp: metres per unit of the image. At most twice
-                           * method.largest_height up or down */
+    double amount;        /* brush: change at the centre [m], of the terrain's elevation or of a layer's depth, water's being W; stamp: the same per
+                           * unit of the image. At most twice method.largest_height up or down */
     double strength;      /* 0 ... 1, push: how far velocities are drawn to the body's at the centre */
     double velocity_x;    /* [m/s], -1e4 ... 1e4, push: the body's velocity */
     double velocity_y;
@@ -655,7 +655,7 @@ WADI_API wadi_result wadi_world_create_stamp(wadi_world_id world, int32_t nx, in
  *  (GPU drivers: up to seconds) and next to no memory; call it while loading. Does not wait for steps. */
 WADI_API wadi_result wadi_world_prepare_effects(wadi_world_id world);
 /** Frees the passes and buffers of materials that the world no longer holds; what it gave and took stays in the ledger. Waits for
- *  the steps asked for and reads the heights. */
+ *  the steps asked for and reads the depths. */
 WADI_API wadi_result wadi_world_trim(wadi_world_id world);
 
 /** One number of the material. */
@@ -680,7 +680,7 @@ WADI_API wadi_result wadi_world_set_material(wadi_world_id world, const char* na
 
 /** Reads a field in a region within the grid, count = nx * ny floats; waits for the steps asked for. Errors: BAD_ARGUMENT. */
 WADI_API wadi_result wadi_world_read_region(wadi_world_id world, wadi_field field, const wadi_region* region, float* values, size_t count);
-/** Overwrites terrain, sand height or water height [m] in a region at once, after the steps asked for, which it waits for. Values
+/** Overwrites TERRAIN, SAND_DEPTH or TOTAL_WATER_DEPTH [m] in a region at once, after the steps asked for, which it waits for. Values
  *  are rounded to quanta; what that adds or takes is in the ledger; velocities stay. Promotes like an edit.
  *  Errors, nothing changed: BAD_ARGUMENT (another field, a region outside, NaN, a negative depth, a column above
  *  method.largest_height: the message names the cell; `effects` forced off). */
