@@ -17,7 +17,7 @@ compute::Log to_log(const wadi_device_options& options) {
     return [log = options.log, user = options.log_user](int severity, const std::string& message) {
         const compute::DefaultFloats kept; // whatever the host's code sets
         try {
-            log(user, severity, message.c_str());
+            log(user, static_cast<wadi_log_level>(severity), message.c_str());
         } catch (const ThreadCancelled&) {
             throw;
         } catch (...) {

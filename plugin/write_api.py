@@ -42,9 +42,10 @@ def read(header):
     api["version"] = [int(re.search(rf"#define WADI_VERSION_{part} (\d+)u", header)[1]) for part in ("MAJOR", "MINOR", "PATCH")]
     api["constants"] = {name: int(value, 0) for name, value in re.findall(r"^#define (WADI_(?!VERSION|ABI)\w+) (0x[0-9A-Fa-f]+|\d+)u?$", header, re.MULTILINE)}
     comment = r"(/\*\*(?:(?!\*/).)*\*/\n)?"
+    api["typedefs"] = {name: kind for kind, name in re.findall(r"^typedef (u?int32_t) (wadi_\w+);", header, re.MULTILINE)}
     api["enums"] = [
-        {"name": name, "text": plain(text), "values": {key: int(value) for key, value in re.findall(r"(WADI_\w+) = (\d+)", body)}}
-        for text, body, name in re.findall(comment + r"typedef enum \w+ \{(.*?)\} (\w+);", header, re.DOTALL)
+        {"name": name, "text": plain(text), "values": {key: int(value) for key, value in re.findall(r"(WADI_\w+) = (-?\d+)", body)}}
+        for text, body, name in re.findall(comment + r"typedef enum \w+(?: WADI_ENUM)? \{(.*?)\} (\w+);", header, re.DOTALL)
     ]
     defaults = {
         name: {field: value.strip('"') if value.startswith('"') else float(value.split()[-1].rstrip("f")) for field, value in re.findall(r"value\.([\w\[\]]+) = ([^;]+);", body)}
@@ -128,6 +129,10 @@ def main():
         sys.exit(f"functions that were not read: {declared ^ {f['name'] for f in api['functions']}}")
     if header.count("typedef struct") != len(api["structs"]) or header.count("typedef enum") != len(api["enums"]):
         sys.exit("a struct or an enum was not read")
+    flags = [f"{s['name']}.{f['name']}" for s in api["structs"] for f in s["fields"] if f["type"] in ("int32_t", "uint32_t") and re.search(r"(?<![-\d])1 = ", f["text"])]
+    flags += [f"{c['name']}({a['name']})" for c in api["functions"] + api["callbacks"] for a in c["arguments"] if a["type"] == "int" or ["on", "int32_t"] == [a["name"], a["type"]]]
+    if flags:
+        sys.exit(f"numbers that stand for a choice, without its type: {flags}")
     old = []
     for path, text in ((folder / "wadi_api.json", json.dumps(api, indent=1) + "\n"), (folder / "include/wadi/wadi_loader.h", loader(api))):
         if path.exists() and path.read_text(encoding="utf-8") == text:

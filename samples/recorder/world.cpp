@@ -5,7 +5,7 @@
 namespace recorder {
 namespace {
 
-void print_log(void*, int severity, const char* message) {
+void print_log(void*, wadi_log_level severity, const char* message) {
     static constexpr const char* names[] = {"error", "warning", "note"};
     std::fprintf(stderr, "%s: %s\n", names[severity < 0 || severity > 2 ? 2 : severity], message);
 }
@@ -34,8 +34,8 @@ Failure World::create(const Options& options) {
     overrides.nx = options.nx;
     overrides.ny = options.ny;
     overrides.dt = options.dt;
-    overrides.active_tiles = options.active_tiles;
-    overrides.fused_stages = options.fused_stages;
+    overrides.active_tiles = static_cast<wadi_active_tiles>(options.active_tiles);
+    overrides.fused_stages = static_cast<wadi_choice>(options.fused_stages);
     overrides.any_files = options.any_files ? 1 : 0;
     overrides.method = options.method.empty() ? nullptr : options.method.c_str();
     overrides.variant = options.variant.empty() ? nullptr : options.variant.c_str();

@@ -20,7 +20,7 @@ constexpr std::array<int, 7> floats = {1, 1, 1, 1, 1, 2, 2};
 std::mutex log_mutex;
 std::vector<std::string> log_lines;
 
-void on_log(void*, int severity, const char* message) {
+void on_log(void*, wadi_log_level severity, const char* message) {
     if (severity > 1) return;
     const std::lock_guard lock(log_mutex);
     log_lines.emplace_back(message);

@@ -57,7 +57,7 @@ wadi_result make(int n, wadi_world_id& world) {
     return wadi_create_world_from_level_text(level_text(n).c_str(), nullptr, nullptr, nullptr, &options, &world);
 }
 
-wadi_edit brush(int layer) {
+wadi_edit brush(wadi_layer layer) {
     auto edit = wadi_default_edit();
     edit.layer = layer;
     edit.x0 = edit.y0 = 5.5;

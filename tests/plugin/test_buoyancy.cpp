@@ -150,7 +150,7 @@ TEST_CASE("bad bodies are refused by name") {
         CHECK_MESSAGE(error_mentions(text), std::string(wadi_get_last_error()));
     };
     refused([](wadi_body& b) { b.struct_size = 3; }, "struct_size");
-    refused([](wadi_body& b) { b.shape = 2; }, "shape");
+    refused([](wadi_body& b) { b.shape = static_cast<wadi_body_shape>(2); }, "shape");
     refused([](wadi_body& b) { b.position[1] = std::nanf(""); }, "position");
     refused([](wadi_body& b) { b.half_size[2] = 0; }, "half_size");
     refused([](wadi_body& b) { b.shape = WADI_BODY_SPHERE, b.radius = -1; }, "radius");

@@ -242,9 +242,9 @@ TEST_CASE("bad edits and regions get a code and a text and change nothing") {
         CHECK_MESSAGE(last_error().find(std::string("edits[1].") + text) != std::string::npos, last_error());
     };
     refused([](wadi_edit& e) { e.struct_size = 8; }, "struct_size");
-    refused([](wadi_edit& e) { e.kind = 3; }, "kind: 3");
-    refused([](wadi_edit& e) { e.kind = -1; }, "kind: -1");
-    refused([](wadi_edit& e) { e.layer = 77; }, "layer: 77");
+    refused([](wadi_edit& e) { e.kind = static_cast<wadi_edit_kind>(3); }, "kind: 3");
+    refused([](wadi_edit& e) { e.kind = static_cast<wadi_edit_kind>(-1); }, "kind: -1");
+    refused([](wadi_edit& e) { e.layer = static_cast<wadi_layer>(77); }, "layer: 77");
     refused([](wadi_edit& e) { e.layer = WADI_LAYER_SAND; }, "layer: effects.sand");
     refused([](wadi_edit& e) { e.x0 = std::nan(""); }, "x0");
     refused([](wadi_edit& e) { e.radius = -2; }, "radius");

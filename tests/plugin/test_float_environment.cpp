@@ -95,7 +95,7 @@ namespace {
 std::uint32_t rude_calls = 0;
 bool denormals_kept = true;
 
-void rude_log(void*, int, const char*) {
+void rude_log(void*, wadi_log_level, const char*) {
     ++rude_calls;
 #if defined(__SSE__)
     denormals_kept = denormals_kept && (_mm_getcsr() & 0x8040) == 0;

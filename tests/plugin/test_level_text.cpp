@@ -29,7 +29,7 @@ struct Host {
     std::size_t claims = 0;
 };
 
-int32_t read_file(void* user, const char* name, void* data, size_t* size) {
+wadi_bool read_file(void* user, const char* name, void* data, size_t* size) {
     auto& host = *static_cast<Host*>(user);
     ++host.calls;
     const auto found = host.files.find(name);
@@ -137,7 +137,7 @@ TEST_CASE("level overrides: fused_stages is 1, -1 or 0") {
     overrides.nx = overrides.ny = 40;
     const std::string path = WADI_SOURCE_DIR "/samples/levels/dam_break/level.json";
     for (const int asked : {-2, 2, 1, -1}) {
-        overrides.fused_stages = asked;
+        overrides.fused_stages = static_cast<wadi_choice>(asked);
         wadi_world_id world{};
         const bool known = asked == 1 || asked == -1;
         CHECK((wadi_create_world_from_level(path.c_str(), &overrides, nullptr, &world) == WADI_OK) == known);

@@ -19,7 +19,7 @@ struct Heard {
     }
 };
 
-void hear(void* user, int severity, const char* message) {
+void hear(void* user, wadi_log_level severity, const char* message) {
     auto& heard = *static_cast<Heard*>(user);
     heard.messages.emplace_back(severity, message);
     if (heard.throws) throw std::runtime_error("from the host's callback");

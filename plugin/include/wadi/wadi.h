@@ -54,7 +54,16 @@ WADI_API uint32_t wadi_get_version(void);
 #define WADI_ZERO_STRUCT(type) type value = {0}; value.struct_size = sizeof(type)
 #endif
 
-typedef enum wadi_result {
+/* Enums have 32 bits, in structs too. */
+#if defined(__cplusplus)
+#define WADI_ENUM : int32_t
+#else
+#define WADI_ENUM
+#endif
+/** 0 = no, 1 = yes. */
+typedef int32_t wadi_bool;
+
+typedef enum wadi_result WADI_ENUM {
     WADI_OK = 0,
     WADI_ERROR_BAD_ARGUMENT = 1,  /* a value is wrong; the message names it and its range */
     WADI_ERROR_NOT_FOUND = 2,     /* no such file, level, backend, device or effect */
@@ -66,6 +75,7 @@ typedef enum wadi_result {
     WADI_NOT_READY = 8,           /* not an error: ask again later */
     WADI_ERROR_BUSY = 9           /* another thread is inside a call on this world; nothing was done */
 } wadi_result;
+typedef char wadi_enum_has_32_bits[sizeof(wadi_result) == 4 ? 1 : -1];
 
 /** One line about the last error on this thread, "" before the first; never NULL. Calls that succeed leave it as it is; the pointer
  *  stays good as long as the thread, with the text of the newest error. */
@@ -77,10 +87,15 @@ typedef struct wadi_world_id {
     uint32_t generation;
 } wadi_world_id;
 
+typedef enum wadi_log_level WADI_ENUM {
+    WADI_LOG_ERROR = 0,
+    WADI_LOG_WARNING = 1,
+    WADI_LOG_INFORMATION = 2
+} wadi_log_level;
 /** Gets what the library has to tell: advice on a level (warning), each world made and each change of its effects (information), a
- *  lost device (error), messages of drivers and validation layers. level: 0 error, 1 warning, 2 information. Called during a call of
- *  the library, or from a driver's thread; it must not call the library; what it throws is lost. */
-typedef void (*wadi_log_callback)(void* user, int level, const char* message);
+ *  lost device (error), messages of drivers and validation layers. Called during a call of the library, or from a driver's thread;
+ *  it must not call the library; what it throws is lost. */
+typedef void (*wadi_log_callback)(void* user, wadi_log_level level, const char* message);
 
 /** The cells (i, j) with i0 <= i < i0 + nx and j0 <= j < j0 + ny. */
 typedef struct wadi_region {
@@ -101,7 +116,7 @@ typedef struct wadi_device_options {
     const char* backend;       /* "auto" (a real GPU first, else the CPU), or one that wadi_list_devices names: "cpu", "vulkan" ... */
     int32_t device;            /* index from wadi_list_devices, -1 = the backend's best */
     int32_t threads;           /* of the CPU backend, and for any to load levels and to count and hash states; 0 = all cores */
-    int32_t validate;          /* 1 = Vulkan validation layers; messages go to the log callback */
+    wadi_bool validate;        /* 1 = Vulkan validation layers; messages go to the log callback */
     wadi_log_callback log;     /* may be NULL */
     void* log_user;
     const struct wadi_vulkan_host* vulkan_host; /* NULL, or the host's own Vulkan device (wadi_vulkan.h): "auto" and "vulkan" run on it, "cuda" beside it */
@@ -121,7 +136,7 @@ typedef struct wadi_device_info {
     char backend[16];
     int32_t index;             /* within its backend */
     char name[256];
-    int32_t is_software;       /* 1 for the CPU and for software Vulkan devices */
+    wadi_bool is_software;     /* 1 for the CPU and for software Vulkan devices */
     uint64_t memory_bytes;     /* 0 = unknown */
 } wadi_device_info;
 static inline wadi_device_info wadi_default_device_info(void) {
@@ -133,6 +148,23 @@ static inline wadi_device_info wadi_default_device_info(void) {
  *  struct_size among infos). */
 WADI_API wadi_result wadi_list_devices(wadi_device_info* infos, uint32_t* count, char* notes, size_t notes_size);
 
+/** A choice that a level makes, too. */
+typedef enum wadi_choice WADI_ENUM {
+    WADI_CHOICE_OFF = -1,
+    WADI_CHOICE_LEVEL = 0, /* as the level says */
+    WADI_CHOICE_ON = 1
+} wadi_choice;
+/** Tiles in which nothing changes any more are left out of a step; every bit stays, also in snapshots. */
+typedef enum wadi_active_tiles WADI_ENUM {
+    WADI_ACTIVE_TILES_OFF = -1,
+    WADI_ACTIVE_TILES_LEVEL = 0, /* as the level says, which by default is AUTO in large grids on GPUs, else OFF */
+    WADI_ACTIVE_TILES_AUTO = 1,  /* on while little of the world is awake */
+    WADI_ACTIVE_TILES_8 = 8,     /* on, of 8 x 8 cells */
+    WADI_ACTIVE_TILES_16 = 16,
+    WADI_ACTIVE_TILES_32 = 32,
+    WADI_ACTIVE_TILES_64 = 64
+} wadi_active_tiles;
+
 /** Overrides for a level file; a value of 0 or NULL keeps the file's. */
 typedef struct wadi_level_overrides {
     uint32_t struct_size;
@@ -143,11 +175,9 @@ typedef struct wadi_level_overrides {
     const char* accuracy;      /* "draft", "balanced" or "accurate": half, all or twice the level's cells along x and y (nx, ny win) and
                                   two sand steps per water step, "accurate" also second order for water; NULL = what the level says.
                                   samples/report has errors and costs */
-    int32_t active_tiles;      /* side of the active tiles in cells: 8, 16, 32 or 64; -1 = off, 1 = on while little of the world is
-                                  awake, 0 = as the level says, which by default is 1 in large grids on GPUs. Tiles in which
-                                  nothing changes any more are left out of a step; every bit stays, also in snapshots */
-    int32_t fused_stages;      /* 1 = several stages in one pass wherever the effects allow, -1 = one by one. Every bit stays */
-    int32_t any_files;         /* 1 = maps and series may lie anywhere that the process can read; 0 = in the level's folder and below it
+    wadi_active_tiles active_tiles;
+    wadi_choice fused_stages;  /* ON = several stages in one pass wherever the effects allow, OFF = one by one. Every bit stays */
+    wadi_bool any_files;       /* 1 = maps and series may lie anywhere that the process can read; 0 = in the level's folder and below it
                                   alone, links followed: no "..", no path from the root on. For levels of one's own */
 } wadi_level_overrides;
 static inline wadi_level_overrides wadi_default_level_overrides(void) {
@@ -209,7 +239,7 @@ typedef struct wadi_world_info {
     uint64_t device_bytes;        /* everything the world holds on the device */
     char backend[16];
     char device_name[256];
-    int32_t exact_float;          /* 1 = the device passed the exact-float self-test */
+    wadi_bool exact_float;        /* 1 = the device passed the exact-float self-test */
     uint32_t warning_count;
 } wadi_world_info;
 static inline wadi_world_info wadi_default_world_info(void) {
@@ -235,7 +265,7 @@ WADI_API wadi_result wadi_world_step(wadi_world_id world, uint32_t steps);
 /** Simulated time [s] and water steps so far. Either pointer may be NULL. */
 WADI_API wadi_result wadi_world_get_time(wadi_world_id world, double* seconds, uint64_t* steps);
 
-typedef enum wadi_field {
+typedef enum wadi_field WADI_ENUM {
     WADI_FIELD_TERRAIN = 0,          /* H, elevation of the ground [m] */
     WADI_FIELD_SAND_DEPTH = 1,       /* hs [m] */
     WADI_FIELD_TOTAL_WATER_DEPTH = 2, /* W, depth of all water, above the sand and inside it [m] */
@@ -294,7 +324,7 @@ static inline wadi_world_stats wadi_default_world_stats(void) {
 WADI_API wadi_result wadi_world_get_stats(wadi_world_id world, wadi_world_stats* stats);
 
 /** 1 = every step records timestamps (a separately recorded program; off by default). */
-WADI_API wadi_result wadi_world_set_profiling(wadi_world_id world, int32_t on);
+WADI_API wadi_result wadi_world_set_profiling(wadi_world_id world, wadi_bool on);
 typedef struct wadi_stage_timing {
     char name[64];
     double milliseconds;          /* mean per water step, all its sand substeps together */
@@ -311,9 +341,9 @@ typedef struct wadi_update_settings {
     uint32_t max_steps_per_update; /* 1 ... 1024, default 8: time beyond it is dropped */
     uint32_t max_steps_in_flight;  /* 0 ... 64, default 8: once the device has this many unfinished water steps (or its queue of
                                       submissions is full), time is dropped; 0 = drop nothing for that reason, the call may wait */
-    int32_t spread;                /* 1 = a water step is submitted as 1 water part and T sand parts, evenly over its dt; the bits are
+    wadi_bool spread;              /* 1 = a water step is submitted as 1 water part and T sand parts, evenly over its dt; the bits are
                                       the same, the load has no peak every dt; default 0 */
-    int32_t interpolate_outputs;   /* 1 = every update also writes the interpolated set of the outputs; default 0 */
+    wadi_bool interpolate_outputs; /* 1 = every update also writes the interpolated set of the outputs; default 0 */
 } wadi_update_settings;
 static inline wadi_update_settings wadi_default_update_settings(void) {
     WADI_ZERO_STRUCT(wadi_update_settings);
@@ -353,7 +383,7 @@ WADI_API wadi_result wadi_world_update(wadi_world_id world, uint64_t host_nanose
 /* ---- Outputs ---- */
 
 /** Fields for drawing and collision, one value per cell (its centre), published on the device after the steps of an update. */
-typedef enum wadi_output {
+typedef enum wadi_output WADI_ENUM {
     WADI_OUTPUT_TERRAIN = 0,        /* elevation of the ground H [m], 1 float */
     WADI_OUTPUT_SAND_SURFACE = 1,   /* elevation of the solid surface H + hs [m], 1 float */
     WADI_OUTPUT_FREE_SURFACE = 2,   /* elevation of the visible surface H + max(W, hs) [m], 1 float */
@@ -369,6 +399,8 @@ typedef enum wadi_output {
     WADI_OUTPUT_SMOOTH_SURFACE = 10, /* elevation of the visible surface after a 3 x 3 Gaussian [m], 1 float */
     WADI_OUTPUT_COUNT = 11
 } wadi_output;
+/** Outputs, each by WADI_OUTPUT_BIT. */
+typedef uint32_t wadi_output_mask;
 /** Bit of an output in a mask. */
 #define WADI_OUTPUT_BIT(output) (1u << (output))
 /** One more bit for wadi_world_set_outputs: lowest and highest elevation of tiles and their changes, wadi_world_get_tiles. */
@@ -378,21 +410,21 @@ typedef enum wadi_output {
  *  written), the tiles in addition those of SAND_SURFACE and FREE_SURFACE. Allocates and frees, and waits for the device where the
  *  mask changes; views taken before are then void, and there is nothing to view until the next update.
  *  Errors, nothing being changed: BAD_ARGUMENT (an unknown bit), OUT_OF_MEMORY, DEVICE_LOST. */
-WADI_API wadi_result wadi_world_set_outputs(wadi_world_id world, uint32_t mask);
+WADI_API wadi_result wadi_world_set_outputs(wadi_world_id world, wadi_output_mask mask);
 
-typedef enum wadi_output_set {
+typedef enum wadi_output_set WADI_ENUM {
     WADI_OUTPUT_PREVIOUS = 0,     /* the publish before the current one */
     WADI_OUTPUT_CURRENT = 1,      /* the newest publish; wadi_frame.published_step */
     WADI_OUTPUT_INTERPOLATED = 2  /* between the two at the host's time, one dt late; outputs of 1 float, and only with
                                      wadi_update_settings.interpolate_outputs. Written anew by each update; an update leaves it
                                      as it is while the device is two updates behind */
 } wadi_output_set;
-typedef enum wadi_handle_kind {
+typedef enum wadi_handle_kind WADI_ENUM {
     WADI_HANDLE_HOST_POINTER = 0,  /* CPU backend: an address */
     WADI_HANDLE_VULKAN_BUFFER = 1, /* VkBuffer */
     WADI_HANDLE_CUDA_POINTER = 2   /* CUdeviceptr */
 } wadi_handle_kind;
-typedef enum wadi_format {
+typedef enum wadi_format WADI_ENUM {
     WADI_FORMAT_R32_FLOAT = 1,
     WADI_FORMAT_R32G32_FLOAT = 2,
     WADI_FORMAT_R32G32B32A32_FLOAT = 4
@@ -409,7 +441,7 @@ typedef struct wadi_output_view {
     int32_t nx, ny;
     wadi_format format;
     uint64_t step;                 /* water steps done in the state it shows; INTERPOLATED: in the current set */
-    int32_t finished;              /* 1 = the device has written it. 0 = it will have, ahead of anything that is submitted behind it;
+    wadi_bool finished;            /* 1 = the device has written it. 0 = it will have, ahead of anything that is submitted behind it;
                                       a host that reads elsewhere (the CPU backend's address) must wait for 1 */
 } wadi_output_view;
 static inline wadi_output_view wadi_default_output_view(void) {
@@ -422,7 +454,7 @@ WADI_API wadi_result wadi_world_get_view(wadi_world_id world, wadi_output output
 
 /** For hosts that share no API with the device: outputs whose publishes are also copied to host memory. They need not be in the mask
  *  of wadi_world_set_outputs. 0 = none, which costs nothing. Allocates, waits and fails as wadi_world_set_outputs does. */
-WADI_API wadi_result wadi_world_set_host_outputs(wadi_world_id world, uint32_t mask);
+WADI_API wadi_result wadi_world_set_host_outputs(wadi_world_id world, wadi_output_mask mask);
 /** The newest copy that has arrived, usually of the update before: cell (i, j) begins at byte j * row_pitch + i * 4 * floats per
  *  cell. The same for all calls between two updates; valid until the second next update or until a mask changes. Does not wait.
  *  row_pitch [bytes] and step may be NULL.
@@ -510,7 +542,7 @@ typedef struct wadi_query_result {
     float velocity[2];            /* of the pure water, between faces [m/s]; 0 on dry faces */
     float normal[3];              /* of the visible surface, unit length, up; slopes bilinear between cell centres */
     float saturation;             /* W/(W + hs) of the sand, 0 without sand */
-    int32_t inside;               /* 0: the point is outside the grid, all else is 0 */
+    wadi_bool inside;             /* 0: the point is outside the grid, all else is 0 */
 } wadi_query_result;
 
 /** Asks for the state at `count` (1 ... 65536) points of the world: x, y of each in metres from the south-west corner of the grid.
@@ -525,13 +557,15 @@ WADI_API wadi_result wadi_world_query(wadi_world_id world, const float* xy, uint
 WADI_API wadi_result wadi_world_get_query(wadi_world_id world, uint64_t ticket, wadi_query_result* results, uint32_t capacity,
                                           uint32_t* count, uint64_t* step);
 
-#define WADI_BODY_BOX 0
-#define WADI_BODY_SPHERE 1
+typedef enum wadi_body_shape WADI_ENUM {
+    WADI_BODY_BOX = 0,
+    WADI_BODY_SPHERE = 1
+} wadi_body_shape;
 
 /** A body in the water. World axes: x east, y north, z up. */
 typedef struct wadi_body {
     uint32_t struct_size;
-    int32_t shape;                /* WADI_BODY_BOX or WADI_BODY_SPHERE */
+    wadi_body_shape shape;
     float position[3];            /* of its middle [m] */
     float orientation[4];         /* unit quaternion x, y, z, w from the body's axes to the world's; spheres ignore it */
     float half_size[3];           /* box: half edges along its own axes [m], above 0 */
@@ -583,7 +617,7 @@ WADI_API wadi_result wadi_world_get_memory(wadi_world_id world, wadi_memory_item
 
 typedef struct wadi_effect_info {
     char name[32];                /* as level files write it */
-    int32_t on;                   /* 1 = its passes run and its fields exist */
+    wadi_bool on;                 /* 1 = its passes run and its fields exist */
     char why[160];                /* one sentence: why it is on or off */
 } wadi_effect_info;
 /** The effects and why each is on or off. *count: capacity in, effects out; effects may be NULL to ask the number. Does not
@@ -596,13 +630,13 @@ WADI_API wadi_result wadi_world_get_error(wadi_world_id world);
 
 /* ---- Edits ---- */
 
-typedef enum wadi_layer {
+typedef enum wadi_layer WADI_ENUM {
     WADI_LAYER_TERRAIN = 0,
     WADI_LAYER_SAND = 1,
     WADI_LAYER_WATER = 2
 } wadi_layer;
 
-typedef enum wadi_edit_kind {
+typedef enum wadi_edit_kind WADI_ENUM {
     WADI_EDIT_BRUSH = 0, /* adds to (amount > 0) or takes from a layer within a disc or capsule */
     WADI_EDIT_STAMP = 1, /* the same by an image over a rectangle */
     WADI_EDIT_PUSH = 2   /* a body that drags sand and water along and feels nothing itself; moves no mass */
@@ -612,9 +646,9 @@ typedef enum wadi_edit_kind {
  *  Positions are kept to 1/256 of a cell. */
 typedef struct wadi_edit {
     uint32_t struct_size;
-    int32_t kind;         /* wadi_edit_kind */
-    int32_t layer;        /* wadi_layer, of brush and stamp */
-    int32_t capsule;      /* brush and push: 0 = disc round (x0, y0), 1 = all within radius of the line from (x0, y0) to (x1, y1) */
+    wadi_edit_kind kind;
+    wadi_layer layer;     /* of brush and stamp */
+    wadi_bool capsule;    /* brush and push: 0 = disc round (x0, y0), 1 = all within radius of the line from (x0, y0) to (x1, y1) */
     uint64_t step;        /* the water step ahead of which it acts, as wadi_world_get_time counts; 0 = the next one */
     double x0, y0;        /* [m], -1e9 ... 1e9; of a stamp the low corner */
     double x1, y1;        /* [m], capsule and stamp only; of a stamp the high corner, greater than the low one */
@@ -691,7 +725,7 @@ WADI_API wadi_result wadi_world_write_region(wadi_world_id world, wadi_field fie
 
 /** 1 = from now on remember every edit, written region, trim and change of the material with its step, in host memory that grows; 0 = stop and drop the log.
  *  Off at first. Going back in time drops what was remembered for later steps. Does not wait. */
-WADI_API wadi_result wadi_world_set_command_log(wadi_world_id world, int32_t on);
+WADI_API wadi_result wadi_world_set_command_log(wadi_world_id world, wadi_bool on);
 /** The log as bytes, with all stamps of the world: a few dozen bytes per edit, versioned and checksummed. *size: bytes at `data` in,
  *  bytes of the log out; data may be NULL to ask the number. Does not wait. Errors: BAD_ARGUMENT (size NULL or too small). */
 WADI_API wadi_result wadi_world_get_commands(wadi_world_id world, void* data, size_t* size);
@@ -708,7 +742,7 @@ WADI_API wadi_result wadi_world_play_commands(wadi_world_id world, const void* d
  *  then with room for *size bytes: fills it and sets *size to what it wrote. Returns 1, or 0 where there is no such file. `name` is
  *  as the level writes it, '/' between folders, and never leads out of the level's folder but with overrides.any_files. Called only
  *  inside wadi_create_world_from_level_text, on its thread. Should not throw: whatever it throws ends that call with INTERNAL. */
-typedef int32_t (*wadi_read_file_callback)(void* user, const char* name, void* data, size_t* size);
+typedef wadi_bool (*wadi_read_file_callback)(void* user, const char* name, void* data, size_t* size);
 
 /** A world from the text of a level file. Maps and series that it names come from read_file; with read_file NULL the text may name
  *  none: nothing is read from disk. Errors: those of wadi_create_world_from_level. */

@@ -28,13 +28,13 @@
     X(const char*, field_name, (wadi_field field)) \
     X(wadi_result, world_read_field, (wadi_world_id world, wadi_field field, float* values, size_t count)) \
     X(wadi_result, world_get_stats, (wadi_world_id world, wadi_world_stats* stats)) \
-    X(wadi_result, world_set_profiling, (wadi_world_id world, int32_t on)) \
+    X(wadi_result, world_set_profiling, (wadi_world_id world, wadi_bool on)) \
     X(wadi_result, world_get_stage_timings, (wadi_world_id world, wadi_stage_timing* timings, uint32_t* count)) \
     X(wadi_result, world_set_update_settings, (wadi_world_id world, const wadi_update_settings* settings)) \
     X(wadi_result, world_update, (wadi_world_id world, uint64_t host_nanoseconds, wadi_frame* frame)) \
-    X(wadi_result, world_set_outputs, (wadi_world_id world, uint32_t mask)) \
+    X(wadi_result, world_set_outputs, (wadi_world_id world, wadi_output_mask mask)) \
     X(wadi_result, world_get_view, (wadi_world_id world, wadi_output output, wadi_output_set set, wadi_output_view* view)) \
-    X(wadi_result, world_set_host_outputs, (wadi_world_id world, uint32_t mask)) \
+    X(wadi_result, world_set_host_outputs, (wadi_world_id world, wadi_output_mask mask)) \
     X(wadi_result, world_get_host_output, (wadi_world_id world, wadi_output output, const float** data, uint64_t* row_pitch, uint64_t* step)) \
     X(wadi_result, world_get_tiles, (wadi_world_id world, wadi_tile* tiles, uint32_t* count, uint64_t* step)) \
     X(wadi_result, world_get_dirty_regions, (wadi_world_id world, int64_t since_step, wadi_region* regions, uint32_t* count, uint64_t* step)) \
@@ -63,7 +63,7 @@
     X(wadi_result, world_set_material, (wadi_world_id world, const char* name, double value)) \
     X(wadi_result, world_read_region, (wadi_world_id world, wadi_field field, const wadi_region* region, float* values, size_t count)) \
     X(wadi_result, world_write_region, (wadi_world_id world, wadi_field field, const wadi_region* region, const float* values, size_t count)) \
-    X(wadi_result, world_set_command_log, (wadi_world_id world, int32_t on)) \
+    X(wadi_result, world_set_command_log, (wadi_world_id world, wadi_bool on)) \
     X(wadi_result, world_get_commands, (wadi_world_id world, void* data, size_t* size)) \
     X(wadi_result, world_play_commands, (wadi_world_id world, const void* data, size_t size)) \
     X(wadi_result, create_world_from_level_text, (const char* json, wadi_read_file_callback read_file, void* user, const wadi_level_overrides* overrides, const wadi_device_options* options, wadi_world_id* world))

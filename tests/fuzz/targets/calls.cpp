@@ -39,8 +39,8 @@ void call(Input& in, wadi_world_id& world, std::vector<unsigned char>& snapshot,
         break;
     case 1: {
         auto edit = wadi_default_edit();
-        edit.kind = static_cast<std::int32_t>(in.whole());
-        edit.layer = static_cast<std::int32_t>(in.whole());
+        edit.kind = static_cast<wadi_edit_kind>(in.whole());
+        edit.layer = static_cast<wadi_layer>(in.whole());
         edit.step = in.whole();
         edit.stamp = in.whole();
         edit.x0 = in.number(), edit.y0 = in.number(), edit.x1 = in.number(), edit.y1 = in.number();
