@@ -38,11 +38,39 @@ compute::RunJobs to_run_jobs(const wadi_device_options& options) {
     };
 }
 
+// What the host's code throws is a refusal.
+std::shared_ptr<const compute::Allocator> to_allocator(const wadi_device_options& options) {
+    if (options.allocate_memory == nullptr) return nullptr;
+    return std::make_shared<const compute::Allocator>(compute::Allocator{
+        [allocate = options.allocate_memory, user = options.memory_user](std::size_t bytes, std::size_t alignment) -> void* {
+            const compute::DefaultFloats kept; // whatever the host's code sets
+            try {
+                return allocate(user, bytes, alignment);
+            } catch (const ThreadCancelled&) {
+                throw;
+            } catch (...) {
+                return nullptr;
+            }
+        },
+        [give_back = options.free_memory, user = options.memory_user](void* memory, std::size_t bytes) {
+            const compute::DefaultFloats kept;
+            try {
+                give_back(user, memory, bytes);
+            } catch (const ThreadCancelled&) {
+                throw;
+            } catch (...) {
+            }
+        }});
+}
+
 Result<std::unique_ptr<compute::Device>> open(const wadi_device_options& options, const compute::Log& log) {
     if (options.device < -1)
         return error(Code::bad_argument, "wadi_device_options.device: " + std::to_string(options.device) + " is below -1");
+    if ((options.allocate_memory == nullptr) != (options.free_memory == nullptr))
+        return error(Code::bad_argument, "wadi_device_options: allocate_memory and free_memory are given together or not at all");
     compute::DeviceOptions o;
     o.log = log;
+    o.allocator = to_allocator(options);
     o.threads = options.threads;
     o.run_jobs = to_run_jobs(options);
     o.validate = options.validate != 0;

@@ -25,7 +25,7 @@ std::int64_t area(const compute::Range2& r) { return std::int64_t{std::max(0, r.
 } // namespace
 
 CpuDevice::CpuDevice(const InstructionSet& set, const compute::DeviceOptions& options)
-    : set_(set), full_barriers_(options.full_barriers) {
+    : set_(set), full_barriers_(options.full_barriers), allocator_(options.allocator) {
     capabilities_.backend = "cpu";
     capabilities_.name = processor_name();
     capabilities_.kind = compute::DeviceKind::cpu;
@@ -56,7 +56,7 @@ CpuDevice::~CpuDevice() {
     if (runner_.joinable()) runner_.join();
 }
 
-Result<compute::Buffer> CpuDevice::create_buffer(const compute::BufferDesc& desc) {
+Result<BudgetShare> CpuDevice::share_of_budget(const compute::BufferDesc& desc) {
     auto& budget = MemoryBudget::of_process();
     bool fits = budget.take(desc.bytes);
     if (!fits) {
@@ -69,7 +69,16 @@ Result<compute::Buffer> CpuDevice::create_buffer(const compute::BufferDesc& desc
                                               " MiB more than the " + std::to_string(budget.room() >> 20) +
                                               " MiB that this machine can give");
     }
-    BudgetShare share(desc.bytes);
+    return BudgetShare(desc.bytes);
+}
+
+Result<compute::Buffer> CpuDevice::create_buffer(const compute::BufferDesc& desc) {
+    BudgetShare share;
+    if (allocator_ == nullptr) { // a host knows what it has
+        auto found = share_of_budget(desc);
+        if (!found) return found.status();
+        share = std::move(*found);
+    }
     // Fields start 64 bytes apart modulo 4 KiB: equal offsets in many arrays would share cache sets.
     const std::size_t stagger = 64 * ((counters_.allocations + 1) % 64);
     buffers_.reserve();
@@ -77,7 +86,8 @@ Result<compute::Buffer> CpuDevice::create_buffer(const compute::BufferDesc& desc
     auto& memory = *owner;
     // The host's first touch of a large page would clear all of it, in a call of a frame.
     const bool small = desc.host != compute::HostAccess::none && desc.bytes <= most_in_small_pages;
-    memory.block = (small ? small_pages_ : pages_).take(desc.bytes, stagger);
+    memory.block =
+        allocator_ ? take_from(allocator_, desc.bytes, stagger) : (small ? small_pages_ : pages_).take(desc.bytes, stagger);
     if (!memory.block)
         return error(Code::out_of_memory, "buffer '" + desc.label + "': no memory for " + std::to_string(desc.bytes) + " bytes");
     memory.data = memory.block.get();
@@ -109,7 +119,7 @@ void CpuDevice::destroy_buffer(compute::Buffer buffer) { retired_buffers_.put(bu
 
 void CpuDevice::free(backends::Retired<Memory>& buffers, backends::Retired<Recorded>& programs) {
     programs.release(UINT64_MAX, SIZE_MAX, [](Recorded&) {});
-    buffers.release(UINT64_MAX, SIZE_MAX, [](Memory& memory) { Pages::forget(memory.data, memory.bytes); });
+    buffers.release(UINT64_MAX, SIZE_MAX, [](Memory&) {});
 }
 
 void CpuDevice::drain() {

@@ -102,6 +102,8 @@ class CpuDevice final : public compute::Device {
 
     Memory& at(compute::Buffer buffer) const { return *buffers_.find(buffer.id); }
     void drain();
+    /// A share of what this machine can give. Errors: out_of_memory.
+    Result<BudgetShare> share_of_budget(const compute::BufferDesc& desc);
     /// The newest submission that has.
     std::uint64_t finished_so_far();
     /// Frees what was destroyed; nothing may use it any more.
@@ -125,6 +127,7 @@ class CpuDevice final : public compute::Device {
     const InstructionSet& set_;
     std::optional<ThreadPool> pool_;
     const bool full_barriers_;
+    const std::shared_ptr<const compute::Allocator> allocator_; // null: pages of the system's
     compute::Capabilities capabilities_;
     compute::DeviceCounters counters_;
     PageArena pages_{true}, small_pages_{false};

@@ -1,5 +1,6 @@
 #include "backends/cpu/host_memory.hpp"
 #include <algorithm>
+#include <cstring>
 #include <mutex>
 #include <new>
 #include <set>
@@ -70,7 +71,16 @@ std::shared_ptr<std::byte> PageArena::take(std::size_t bytes, std::size_t offset
     }
     std::byte* const data = pages->data() + place(used_);
     used_ = place(used_) + bytes;
-    return {std::move(pages), data};
+    return {data, [kept = std::move(pages), bytes](std::byte* begin) { Pages::forget(begin, bytes); }}; // others keep the mapping
+}
+
+std::shared_ptr<std::byte> take_from(std::shared_ptr<const compute::Allocator> allocator, std::size_t bytes, std::size_t offset) {
+    constexpr std::size_t alignment = 64; // a line of the cache, the widest vector
+    const std::size_t whole = offset + bytes;
+    auto* const begin = static_cast<std::byte*>(allocator->allocate(whole, alignment));
+    if (begin == nullptr) return nullptr;
+    std::memset(begin, 0, whole);
+    return {begin + offset, [from = std::move(allocator), begin, whole](std::byte*) { from->free(begin, whole); }};
 }
 
 } // namespace wadi::cpu

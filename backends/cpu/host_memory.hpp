@@ -1,5 +1,6 @@
-// What the backend asks of the operating system.
+// What the backend asks of the operating system, or of the host in its place.
 #pragma once
+#include "engine/compute/device.hpp"
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -41,6 +42,9 @@ class Pages {
     std::byte* data_;
     std::size_t bytes_;
 };
+
+/// Zeros in memory of the host's, at a multiple of 64 bytes; null where it refuses. Goes back to it with the last pointer.
+std::shared_ptr<std::byte> take_from(std::shared_ptr<const compute::Allocator> allocator, std::size_t bytes, std::size_t offset);
 
 /// Buffers side by side in a few large mappings: where each had its own, most would be too small for a large page.
 class PageArena {

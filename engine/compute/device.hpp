@@ -71,16 +71,23 @@ using Log = std::function<void(int severity, const std::string& message)>;
 /// Calls `job` `count` times, on any threads, at once or one after the other, and returns when all calls have. Must not throw.
 using RunJobs = std::function<void(int count, const std::function<void()>& job)>;
 
+/// A host's memory. Called from any thread, those of several devices at once; neither throws.
+struct Allocator {
+    std::function<void*(std::size_t bytes, std::size_t alignment)> allocate; // null where it refuses
+    std::function<void(void* memory, std::size_t bytes)> free;
+};
+
 struct DeviceOptions {
-    int threads = 0;                // CPU backend: worker threads, 0 = all cores
-    RunJobs run_jobs;               // CPU backend: a host's threads in place of all but the device thread; `threads` calls a pass
-    std::string instruction_set;    // CPU backend: "" = best, "base", "avx2", "avx512"
-    bool validate = false;          // Vulkan: validation and synchronization validation layers
-    bool full_barriers = false;     // a barrier before every operation
-    std::optional<HostDevice> host; // Vulkan: run on the host's device; CUDA: beside it
-    std::shared_ptr<Lender> lender; // CUDA: lends shared buffers and semaphores; filled when the device is opened
-    bool no_replay = false;         // record anew for each submit (GPU backends; the CPU has nothing recorded)
-    Log log;                        // of drivers and validation layers
+    int threads = 0;  // CPU backend: worker threads, 0 = all cores
+    RunJobs run_jobs; // CPU backend: a host's threads in place of all but the device thread; `threads` calls a pass
+    std::shared_ptr<const Allocator> allocator; // CPU backend: of all buffers; null = the system's pages
+    std::string instruction_set;                // CPU backend: "" = best, "base", "avx2", "avx512"
+    bool validate = false;                      // Vulkan: validation and synchronization validation layers
+    bool full_barriers = false;                 // a barrier before every operation
+    std::optional<HostDevice> host;             // Vulkan: run on the host's device; CUDA: beside it
+    std::shared_ptr<Lender> lender;             // CUDA: lends shared buffers and semaphores; filled when the device is opened
+    bool no_replay = false;                     // record anew for each submit (GPU backends; the CPU has nothing recorded)
+    Log log;                                    // of drivers and validation layers
 };
 
 /// Memory that the host reads or writes in place.
@@ -138,8 +145,8 @@ class Device {
     /// here may be read once its ticket has finished. Such buffers take part in copies only: compile() refuses them in
     /// dispatches and fills.
     virtual std::span<std::byte> mapped(Buffer buffer) = 0;
-    /// Frees a buffer once work in flight is done with it; programs that use it can only be destroyed after that. Null is ignored.
-    /// Does not wait where the backend can help it (the CPU).
+    /// Frees a buffer once work in flight is done with it; programs that use it can only be destroyed after that. Null is
+    /// ignored. Does not wait where the backend can help it (the CPU).
     virtual void destroy_buffer(Buffer buffer) = 0;
     /// Copies host bytes into a buffer, ordered after all earlier and before all later submissions. May wait.
     virtual Status write(Buffer buffer, std::uint64_t offset, std::span<const std::byte> bytes) = 0;

@@ -110,6 +110,12 @@ typedef void (*wadi_job)(void* data, uint32_t n);
  *  a thread of the library, several times a step; must not throw and must not call the library. */
 typedef void (*wadi_run_jobs_callback)(void* user, uint32_t count, wadi_job job, void* data);
 
+/** The host's memory: `bytes` (1 or more) at a multiple of `alignment`, a power of two, or NULL where it refuses. They need not be zero. */
+typedef void* (*wadi_allocate_callback)(void* user, size_t bytes, size_t alignment);
+/** Takes back, whole, what the allocate callback gave. Both are called from threads of the library and of the host, from several at
+ *  once; they must not call the library; what they throw counts as a refusal. */
+typedef void (*wadi_free_callback)(void* user, void* memory, size_t bytes);
+
 /** Where and how a world runs. */
 typedef struct wadi_device_options {
     uint32_t struct_size;
@@ -123,6 +129,14 @@ typedef struct wadi_device_options {
     wadi_run_jobs_callback run_jobs; /* NULL, or: the CPU backend has no threads of its own but the one that takes steps in order; a pass has
                                         `threads` parts. Every bit stays, whatever the number */
     void* jobs_user;
+    wadi_allocate_callback allocate_memory; /* both NULL, or with the CPU backend all that wadi_world_get_memory lists comes from here, and
+                                               goes back until wadi_destroy_world returns: fields, outputs, copies for the host, snapshots under
+                                               way, kept states, queries. A refusal is OUT_OF_MEMORY of the call, and the world as it was, but
+                                               that kept states go where a promotion finds no room for theirs.
+                                               Not from here: what a call needs while it lasts (level files, statistics), edits that wait, the
+                                               command log, programs, threads; and GPU backends, whose memory is the driver's */
+    wadi_free_callback free_memory;
+    void* memory_user;
 } wadi_device_options;
 static inline wadi_device_options wadi_default_device_options(void) {
     WADI_ZERO_STRUCT(wadi_device_options);
