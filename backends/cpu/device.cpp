@@ -3,6 +3,7 @@
 #include "backends/cpu/host_memory.hpp"
 #include "engine/compute/float_environment.hpp"
 #include "engine/compute/hazards.hpp"
+#include "engine/compute/thread_name.hpp"
 #include <algorithm>
 #include <chrono>
 #include <cstring>
@@ -307,6 +308,7 @@ Result<std::vector<compute::Timing>> CpuDevice::timings(compute::Ticket ticket) 
 }
 
 void CpuDevice::device_thread() {
+    compute::name_this_thread("wadi device");
     const compute::DefaultFloats floats;
     std::unique_lock lock(mutex_);
     for (;;) {

@@ -1,6 +1,8 @@
 #include "backends/cpu/thread_pool.hpp"
 #include "backends/cpu/processor.hpp"
 #include "engine/compute/float_environment.hpp"
+#include "engine/compute/thread_name.hpp"
+#include <cstdio>
 #include <exception>
 
 namespace wadi::cpu {
@@ -31,7 +33,7 @@ void Remaining::wait() {
 ThreadPool::ThreadPool(int threads, compute::RunJobs jobs) : jobs_(std::move(jobs)), most_jobs_(threads) {
     if (jobs_) return;
     try {
-        while (size() < threads) workers_.emplace_back([this] { worker(); });
+        while (size() < threads) workers_.emplace_back([this, number = size() + 1] { worker(number); });
     } catch (const std::exception&) { // no more threads, or no memory for them: those that there are do the work
     }
 }
@@ -63,7 +65,10 @@ bool ThreadPool::enter(std::uint64_t& seen) {
     return false;
 }
 
-void ThreadPool::worker() {
+void ThreadPool::worker(int number) {
+    char name[32];
+    std::snprintf(name, sizeof name, "wadi cpu %d", number);
+    compute::name_this_thread(name);
     const compute::DefaultFloats floats;
     std::uint64_t seen = 0;
     while (!stop_.load()) {

@@ -45,7 +45,8 @@ class ThreadPool {
     static constexpr std::uint64_t one_generation = std::uint64_t{1} << 33;
     static constexpr std::uint64_t inside = open_bit - 1;
 
-    void worker();
+    /// The caller of run() is number 1.
+    void worker(int number);
     bool enter(std::uint64_t& seen);
 
     const compute::RunJobs jobs_;

@@ -1,5 +1,6 @@
 #include "engine/saves/worker.hpp"
 #include "engine/compute/float_environment.hpp"
+#include "engine/compute/thread_name.hpp"
 #include <exception>
 
 namespace wadi {
@@ -27,6 +28,7 @@ Status Worker::start(std::function<void()> job) {
 }
 
 void Worker::run() {
+    compute::name_this_thread("wadi save");
     const compute::DefaultFloats floats;
     for (unsigned done = 0;; ++done) {
         changed_.wait([&] { return jobs_.load(std::memory_order_acquire) != done; });

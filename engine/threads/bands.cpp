@@ -1,5 +1,6 @@
 #include "engine/threads/bands.hpp"
 #include "engine/compute/float_environment.hpp"
+#include "engine/compute/thread_name.hpp"
 #include <algorithm>
 #include <atomic>
 #include <exception>
@@ -44,6 +45,7 @@ void in_bands(std::size_t count, std::size_t band,
         const std::size_t threads = std::min(allowed_threads(), bands);
         while (others.size() + 1 < threads)
             others.emplace_back([&] {
+                compute::name_this_thread("wadi helper");
                 const compute::DefaultFloats floats;
                 const ThreadLimit alone(1); // bands within a band are its own
                 share();

@@ -1,8 +1,16 @@
 // One world is for one thread at a time: a second one is turned away unharmed. Different worlds are independent.
 #include "tests/plugin/abi_worlds.hpp"
 #include <atomic>
+#include <chrono>
 #include <doctest/doctest.h>
 #include <thread>
+#if defined(__linux__)
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sys/resource.h>
+#include <unistd.h>
+#endif
 
 using namespace wadi::test;
 
@@ -127,3 +135,54 @@ TEST_CASE("the CPU backend on a host's job system, one thread or several, gives 
         }
     }
 }
+
+#if defined(__linux__)
+namespace {
+
+// Threads of this process by name, with their nice values.
+std::multimap<std::string, int> named_threads() {
+    std::multimap<std::string, int> found;
+    for (const auto& task : std::filesystem::directory_iterator("/proc/self/task")) {
+        std::ifstream file(task.path() / "comm");
+        std::string name;
+        std::getline(file, name);
+        const auto id = static_cast<id_t>(std::stoul(task.path().filename().string()));
+        if (name.starts_with("wadi ")) found.emplace(name, getpriority(PRIO_PROCESS, id));
+    }
+    return found;
+}
+
+// Threads begin and end some time beside the calls that make and join them.
+std::multimap<std::string, int> named_threads_once_there_are(std::size_t count) {
+    for (int n = 0; n < 10000 && named_threads().size() != count; ++n) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return named_threads();
+}
+
+} // namespace
+
+TEST_CASE("the library's threads have names, and the priority of the thread that made the world") {
+    REQUIRE(named_threads_once_there_are(0).empty()); // of earlier tests
+    std::thread([] {
+        setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), getpriority(PRIO_PROCESS, static_cast<id_t>(gettid())) + 1);
+        const int nice = getpriority(PRIO_PROCESS, static_cast<id_t>(gettid()));
+        auto options = cpu_device();
+        options.threads = 3;
+        wadi_world_id id{};
+        REQUIRE(wadi_create_world_from_level_text(
+                    R"({ "format_version": 1, "name": "threads", "grid": { "nx": 8, "ny": 8, "dx": 0.5 },
+            "dt": 0.02, "water": [ { "shape": "plane", "height": 1 } ] })",
+                    nullptr, nullptr, nullptr, &options, &id) == WADI_OK);
+        const AbiWorld world(id);
+        uint64_t ticket = 0;
+        REQUIRE(wadi_world_begin_save(id, &ticket) == WADI_OK);
+        std::vector<unsigned char> bytes(1 << 20);
+        size_t size = bytes.size();
+        while (wadi_world_end_save(id, ticket, bytes.data(), &size) == WADI_NOT_READY) size = bytes.size();
+        const auto found = named_threads_once_there_are(4);
+        const std::multimap<std::string, int> expected = {
+            {"wadi cpu 2", nice}, {"wadi cpu 3", nice}, {"wadi device", nice}, {"wadi save", nice}};
+        CHECK(found == expected);
+    }).join();
+    CHECK(named_threads_once_there_are(0).empty());
+}
+#endif
