@@ -1,15 +1,28 @@
-/* Wadi: sand, water and wet sand on a height field. The plugin's whole interface, C99.
+/* Wadi: sand, water and wet sand on a height field. The plugin's whole interface, C99, in the order of use:
  *
- * Units: metres, seconds, kilograms. Fields are row-major, nx * ny floats, x fastest; row 0 is the south side (y = 0),
- * column 0 the west side (x = 0); up is z. "Elevation" and "surface" are heights above the level's zero, "depth" is how thick a layer is.
+ *   versions, errors . devices . worlds . steps and frames . outputs . reading . points and bodies . edits . material
+ *   saving and going back . command log . looking inside
+ *
+ * Units: metres, seconds, kilograms. Fields are row-major, nx * ny floats, x fastest; row 0 is the south side (y = 0), column 0 the west
+ * side (x = 0); z is up. "Elevation" and "surface" are heights above the level's zero, "depth" is how thick a layer is. H is the
+ * elevation of the ground, hs the depth of sand, W the depth of all water, above the sand and inside it.
+ *
+ * Each call says what it does, then its limits, then what it waits for and which errors it has of its own:
+ *   Waits   Nothing, where it does not say. "The steps": those asked for so far must be done. "Room": where memory must be made or freed
+ *           it waits for the device. Everything else runs beside the host.
+ *   Errors  Every call that can fail returns a wadi_result; wadi_get_last_error() then has one line of text for this thread. Not
+ *           repeated at each call: BAD_ARGUMENT (a null or destroyed world; a struct, array or result that is NULL and may not be; a wrong
+ *           struct_size), BUSY, INTERNAL, DEVICE_LOST (from calls that use a device), and OUT_OF_MEMORY of the host's own memory, after
+ *           which, but for calls that say so, the world must be destroyed. An error changes nothing where the call does not say more.
+ *   Counts  *count: room in elements in, their number out; the array may be NULL to ask the number.
+ * No call aborts, throws or prints. A world is used by one thread at a time: a call that meets another one inside the same world does
+ * nothing and returns BUSY. Different worlds are independent. A forked child cannot use its parent's worlds. The calling thread's
+ * floating-point environment counts for nothing and is as it was after every call.
+ *
  * A struct that begins with struct_size grows at its end in later versions: start from its wadi_default_*() function, then change what
  * you need. A host and a library of different versions understand each other as long as WADI_ABI_VERSION is the same: what a host's
  * struct lacks has its default; a field that a library does not know must be 0, or it refuses the call and says so. In arrays of such
  * structs all have the size of the first. Structs without struct_size, and what enums mean, never change.
- * Every function that can fail returns a wadi_result; wadi_get_last_error() then has one line of text for this thread.
- * No function aborts, throws or prints. A world is used by one thread at a time: a call that meets another one inside the same
- * world does nothing and returns WADI_ERROR_BUSY. Different worlds are independent. A forked child cannot use its parent's worlds.
- * The calling thread's floating-point environment counts for nothing and is as it was after every call.
  */
 #ifndef WADI_H
 #define WADI_H
@@ -29,9 +42,25 @@
 #define WADI_API __attribute__((visibility("default")))
 #endif
 
+/* A struct that is all zero but for its size. */
+#if defined(__cplusplus)
+#define WADI_ZERO_STRUCT(type) type value = {}; value.struct_size = sizeof(type)
+#else
+#define WADI_ZERO_STRUCT(type) type value = {0}; value.struct_size = sizeof(type)
+#endif
+
+/* Enums have 32 bits, in structs too. */
+#if defined(__cplusplus)
+#define WADI_ENUM : int32_t
+#else
+#define WADI_ENUM
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* ---- Versions, errors ---- */
 
 /** Counts up when hosts must be compiled anew; everything else grows. */
 #define WADI_ABI_VERSION 1u
@@ -47,19 +76,6 @@ WADI_API uint32_t wadi_get_abi_version(void);
 /** The version of the library that is loaded, as WADI_MAKE_VERSION writes it: at least WADI_VERSION has all that this header names. */
 WADI_API uint32_t wadi_get_version(void);
 
-/* A struct that is all zero but for its size. */
-#if defined(__cplusplus)
-#define WADI_ZERO_STRUCT(type) type value = {}; value.struct_size = sizeof(type)
-#else
-#define WADI_ZERO_STRUCT(type) type value = {0}; value.struct_size = sizeof(type)
-#endif
-
-/* Enums have 32 bits, in structs too. */
-#if defined(__cplusplus)
-#define WADI_ENUM : int32_t
-#else
-#define WADI_ENUM
-#endif
 /** 0 = no, 1 = yes. */
 typedef int32_t wadi_bool;
 
@@ -81,12 +97,6 @@ typedef char wadi_enum_has_32_bits[sizeof(wadi_result) == 4 ? 1 : -1];
  *  stays good as long as the thread, with the text of the newest error. */
 WADI_API const char* wadi_get_last_error(void);
 
-/** A world by index and generation; all zero is null. Copy it freely; a destroyed one is recognised and refused. */
-typedef struct wadi_world_id {
-    uint32_t index;
-    uint32_t generation;
-} wadi_world_id;
-
 typedef enum wadi_log_level WADI_ENUM {
     WADI_LOG_ERROR = 0,
     WADI_LOG_WARNING = 1,
@@ -97,11 +107,24 @@ typedef enum wadi_log_level WADI_ENUM {
  *  it must not call the library; what it throws is lost. */
 typedef void (*wadi_log_callback)(void* user, wadi_log_level level, const char* message);
 
-/** The cells (i, j) with i0 <= i < i0 + nx and j0 <= j < j0 + ny. */
-typedef struct wadi_region {
-    int32_t i0, j0;
-    int32_t nx, ny;
-} wadi_region;
+/* ---- Devices ---- */
+
+typedef struct wadi_device_info {
+    uint32_t struct_size;
+    char backend[16];
+    int32_t index;             /* within its backend */
+    char name[256];
+    wadi_bool is_software;     /* 1 for the CPU and for software Vulkan devices */
+    uint64_t memory_bytes;     /* 0 = unknown */
+} wadi_device_info;
+static inline wadi_device_info wadi_default_device_info(void) {
+    WADI_ZERO_STRUCT(wadi_device_info);
+    return value;
+}
+/** Lists the devices of all backends of this build.
+ *  `notes` (may be NULL) receives one line per backend without a device, saying why, cut to notes_size bytes.
+ *  Errors: BAD_ARGUMENT (sizes of infos that differ). */
+WADI_API wadi_result wadi_list_devices(wadi_device_info* infos, uint32_t* count, char* notes, size_t notes_size);
 
 /** Part `n` of a pass of the CPU backend: any thread may run it, parts in any order and at once. */
 typedef void (*wadi_job)(void* data, uint32_t n);
@@ -109,7 +132,6 @@ typedef void (*wadi_job)(void* data, uint32_t n);
  *  when all have returned. A part that has begun may wait for others that have begun: they must be threads, not fibres of one. Called from
  *  a thread of the library, several times a step; must not throw and must not call the library. */
 typedef void (*wadi_run_jobs_callback)(void* user, uint32_t count, wadi_job job, void* data);
-
 /** The host's memory: `bytes` (1 or more) at a multiple of `alignment`, a power of two, or NULL where it refuses. They need not be zero. */
 typedef void* (*wadi_allocate_callback)(void* user, size_t bytes, size_t alignment);
 /** Takes back, whole, what the allocate callback gave. Both are called from threads of the library and of the host, from several at
@@ -125,15 +147,16 @@ typedef struct wadi_device_options {
     wadi_bool validate;        /* 1 = Vulkan validation layers; messages go to the log callback */
     wadi_log_callback log;     /* may be NULL */
     void* log_user;
-    const struct wadi_vulkan_host* vulkan_host; /* NULL, or the host's own Vulkan device (wadi_vulkan.h): "auto" and "vulkan" run on it, "cuda" beside it */
-    wadi_run_jobs_callback run_jobs; /* NULL, or: the CPU backend has no threads of its own but the one that takes steps in order; a pass has
-                                        `threads` parts. Every bit stays, whatever the number */
+    const struct wadi_vulkan_host* vulkan_host; /* NULL, or the host's own Vulkan device (wadi_vulkan.h): "auto" and "vulkan" run on it,
+                                                   "cuda" beside it */
+    wadi_run_jobs_callback run_jobs; /* NULL, or: the CPU backend has no threads of its own but the one that takes steps in order; a
+                                        pass has `threads` parts. Every bit stays, whatever the number */
     void* jobs_user;
-    wadi_allocate_callback allocate_memory; /* both NULL, or with the CPU backend all that wadi_world_get_memory lists comes from here, and
-                                               goes back until wadi_destroy_world returns: fields, outputs, copies for the host, snapshots under
-                                               way, kept states, queries. A refusal is OUT_OF_MEMORY of the call, and the world as it was, but
-                                               that kept states go where a promotion finds no room for theirs.
-                                               Not from here: what a call needs while it lasts (level files, statistics), edits that wait, the
+    wadi_allocate_callback allocate_memory; /* both NULL, or with the CPU backend all that wadi_world_get_memory lists comes from here,
+                                               and goes back until wadi_destroy_world returns: fields, outputs, copies for the host,
+                                               snapshots under way, kept states, queries. A refusal is OUT_OF_MEMORY of the call, and the
+                                               world as it was, but that kept states go where a promotion finds no room for theirs. Not
+                                               from here: what a call needs while it lasts (level files, statistics), edits that wait, the
                                                command log, programs, threads; and GPU backends, whose memory is the driver's */
     wadi_free_callback free_memory;
     void* memory_user;
@@ -145,22 +168,13 @@ static inline wadi_device_options wadi_default_device_options(void) {
     return value;
 }
 
-typedef struct wadi_device_info {
-    uint32_t struct_size;
-    char backend[16];
-    int32_t index;             /* within its backend */
-    char name[256];
-    wadi_bool is_software;     /* 1 for the CPU and for software Vulkan devices */
-    uint64_t memory_bytes;     /* 0 = unknown */
-} wadi_device_info;
-static inline wadi_device_info wadi_default_device_info(void) {
-    WADI_ZERO_STRUCT(wadi_device_info);
-    return value;
-}
-/** Lists the devices of all backends of this build. *count: capacity in, number of devices out; infos may be NULL to ask the
- *  number. `notes` (may be NULL) receives one line per backend without a device, saying why. Errors: BAD_ARGUMENT (count NULL, a
- *  struct_size among infos). */
-WADI_API wadi_result wadi_list_devices(wadi_device_info* infos, uint32_t* count, char* notes, size_t notes_size);
+/* ---- Worlds ---- */
+
+/** A world by index and generation; all zero is null. Copy it freely; a destroyed one is recognised and refused. */
+typedef struct wadi_world_id {
+    uint32_t index;
+    uint32_t generation;
+} wadi_world_id;
 
 /** A choice that a level makes, too. */
 typedef enum wadi_choice WADI_ENUM {
@@ -178,7 +192,6 @@ typedef enum wadi_active_tiles WADI_ENUM {
     WADI_ACTIVE_TILES_32 = 32,
     WADI_ACTIVE_TILES_64 = 64
 } wadi_active_tiles;
-
 /** Overrides for a level file; a value of 0 or NULL keeps the file's. */
 typedef struct wadi_level_overrides {
     uint32_t struct_size;
@@ -208,13 +221,27 @@ typedef struct wadi_accuracy_preset {
     double error;              /* mean absolute error, factor */
     double gpu_cost, cpu_cost; /* time per simulated second, factor: one H100, 16 CPU threads */
 } wadi_accuracy_preset;
-/** Fills up to *count presets by rising accuracy and sets *count to their number; presets may be NULL to ask for it. */
+/** Lists the accuracy presets by rising accuracy. */
 WADI_API wadi_result wadi_list_accuracy_presets(wadi_accuracy_preset* presets, uint32_t* count);
 
 /** Creates a world from a level file (.json) or from a terrain map (.png, .r16, .npy, .asc).
- *  Errors: NOT_FOUND, BAD_FILE, BAD_ARGUMENT, OUT_OF_MEMORY, NOT_SUPPORTED. */
+ *  overrides, options: NULL = the defaults.
+ *  Waits: for compilers of drivers.
+ *  Errors: NOT_FOUND, BAD_FILE, BAD_ARGUMENT, OUT_OF_MEMORY, NOT_SUPPORTED; no world is made. */
 WADI_API wadi_result wadi_create_world_from_level(const char* path, const wadi_level_overrides* overrides,
                                                   const wadi_device_options* options, wadi_world_id* world);
+
+/** Reads a file that a level names, for the host's own file system. Called with data NULL first: sets *size to the file's bytes;
+ *  then with room for *size bytes: fills it and sets *size to what it wrote. Returns 1, or 0 where there is no such file. `name` is
+ *  as the level writes it, '/' between folders, and never leads out of the level's folder but with overrides.any_files. Called only
+ *  inside wadi_create_world_from_level_text, on its thread. Should not throw: whatever it throws ends that call with INTERNAL. */
+typedef wadi_bool (*wadi_read_file_callback)(void* user, const char* name, void* data, size_t* size);
+/** Creates a world from the text of a level file.
+ *  Maps and series that it names come from read_file; with read_file NULL it may name none: nothing is read from disk.
+ *  Waits and errors: those of wadi_create_world_from_level. */
+WADI_API wadi_result wadi_create_world_from_level_text(const char* json, wadi_read_file_callback read_file, void* user,
+                                                       const wadi_level_overrides* overrides, const wadi_device_options* options,
+                                                       wadi_world_id* world);
 
 /** A world from arrays: settings as the text of a level file without its "terrain", "sand", "water", "velocities"
  *  and "roughness" entries, which may name no files, and fields of nx * ny floats. NULL = zero everywhere. */
@@ -233,10 +260,13 @@ static inline wadi_world_arrays wadi_default_world_arrays(void) {
     WADI_ZERO_STRUCT(wadi_world_arrays);
     return value;
 }
+/** Creates a world from arrays.
+ *  Waits and errors: those of wadi_create_world_from_level. */
 WADI_API wadi_result wadi_create_world_from_arrays(const wadi_world_arrays* arrays, const wadi_device_options* options,
                                                    wadi_world_id* world);
 
-/** Frees a world. A null or destroyed id gives BAD_ARGUMENT and changes nothing. */
+/** Frees a world.
+ *  Waits: for what the device is at. */
 WADI_API wadi_result wadi_destroy_world(wadi_world_id world);
 
 typedef struct wadi_world_info {
@@ -260,94 +290,12 @@ static inline wadi_world_info wadi_default_world_info(void) {
     WADI_ZERO_STRUCT(wadi_world_info);
     return value;
 }
+/** Tells what a world is. */
 WADI_API wadi_result wadi_world_get_info(wadi_world_id world, wadi_world_info* info);
-/** Text of warning n of the level, or NULL. */
+/** The text of warning n of the level; NULL and an error beyond the last. It lives as long as the world. */
 WADI_API const char* wadi_world_get_warning(wadi_world_id world, uint32_t n);
 
-/** The plan as text: effects on and why, passes, buffers, bytes per cell. Returns the length without the final zero; writes at
- *  most `size` bytes including it. 0 and an error for a bad world. */
-WADI_API size_t wadi_world_describe_plan(wadi_world_id world, char* text, size_t size);
-
-/** A table of the library as text, of any world and none: "settings" (keys of level files with unit, range, default), "effects",
- *  "fields", "stages", or "schema" (the settings as JSON). Returns the length without the final zero; writes at most `size` bytes
- *  including it. 0 and an error for another name. */
-WADI_API size_t wadi_describe_table(const char* table, char* text, size_t size);
-
-/** Advances by `steps` water steps of fixed dt. Returns before the device has finished; reads wait for it. */
-WADI_API wadi_result wadi_world_step(wadi_world_id world, uint32_t steps);
-
-/** Simulated time [s] and water steps so far. Either pointer may be NULL. */
-WADI_API wadi_result wadi_world_get_time(wadi_world_id world, double* seconds, uint64_t* steps);
-
-typedef enum wadi_field WADI_ENUM {
-    WADI_FIELD_TERRAIN = 0,          /* H, elevation of the ground [m] */
-    WADI_FIELD_SAND_DEPTH = 1,       /* hs [m] */
-    WADI_FIELD_TOTAL_WATER_DEPTH = 2, /* W, depth of all water, above the sand and inside it [m] */
-    WADI_FIELD_WATER_DEPTH = 3,      /* pure water above the sand, W - min(W, hs) [m] */
-    WADI_FIELD_FREE_SURFACE = 4,     /* H + max(W, hs), elevation of what a viewer sees [m] */
-    WADI_FIELD_SATURATION = 5,       /* W/(W + hs) where there is sand, else 0 */
-    WADI_FIELD_WATER_VELOCITY_X = 6, /* pure water, cell centre [m/s] */
-    WADI_FIELD_WATER_VELOCITY_Y = 7,
-    WADI_FIELD_SAND_VELOCITY_X = 8,  /* [m/s] */
-    WADI_FIELD_SAND_VELOCITY_Y = 9,
-    WADI_FIELD_MIXED_VELOCITY_X = 10, /* water inside sand [m/s] */
-    WADI_FIELD_MIXED_VELOCITY_Y = 11,
-    WADI_FIELD_STRETCH_XX = 12,      /* left stretch V - I of the sand */
-    WADI_FIELD_STRETCH_XY = 13,
-    WADI_FIELD_STRETCH_YY = 14,
-    WADI_FIELD_COUNT = 15
-} wadi_field;
-/** Short name used by tools: "H", "hs", "W", "hw", "surface", "phi", "uw", "vw", "us", "vs", "um", "vm", "Vxx", "Vxy", "Vyy"; NULL if unknown. */
-WADI_API const char* wadi_field_name(wadi_field field);
-
-/** Reads a field as nx * ny floats; waits for the steps already asked for. A field that the world's effects lack reads as zero. */
-WADI_API wadi_result wadi_world_read_field(wadi_world_id world, wadi_field field, float* values, size_t count);
-
-/** State now: extremes, limits at work, and the ledger. */
-typedef struct wadi_world_stats {
-    uint32_t struct_size;
-    double time;                  /* [s] */
-    uint64_t steps;
-    double sand_volume;           /* [m3] now */
-    double water_volume;
-    double sand_initial;          /* [m3] at creation */
-    double water_initial;
-    double sand_in, sand_out;     /* [m3] by sources, sinks, rain, evaporation and sides since creation */
-    double water_in, water_out;
-    double refused;               /* [m3] of sources and rain that found no room below method.largest_height, the highest elevation */
-    int64_t sand_drift_quanta;    /* now - (initial + in - out) in quanta of depth x cell area; 0 = exact; sums stop at 2^60 */
-    int64_t water_drift_quanta;
-    double quantum;               /* [m] */
-    double largest_sand_depth;    /* hs [m] */
-    double largest_total_water_depth; /* W [m] */
-    double largest_water_speed;   /* largest face velocity of pure and mixed water [m/s] */
-    double largest_sand_speed;    /* [m/s] */
-    double smallest_depth;        /* least hs or W [m]: never negative */
-    uint64_t not_finite;          /* values that are NaN or infinite: never any */
-    uint64_t clamped_faces;       /* faces at the velocity clamp */
-    uint64_t capped_faces;        /* faces whose gravity the next step caps */
-    uint64_t limited_cells;       /* cells whose outflow the next step limits */
-    uint64_t tiles, active_tiles; /* of the world, and of those the ones that the newest step ran over, in the longer of its two lists where water
-                                     and sand have one each; 0 without active tiles */
-    uint64_t hash;                /* 64-bit state hash, ghosts excluded */
-} wadi_world_stats;
-static inline wadi_world_stats wadi_default_world_stats(void) {
-    WADI_ZERO_STRUCT(wadi_world_stats);
-    return value;
-}
-WADI_API wadi_result wadi_world_get_stats(wadi_world_id world, wadi_world_stats* stats);
-
-/** 1 = every step records timestamps (a separately recorded program; off by default). */
-WADI_API wadi_result wadi_world_set_profiling(wadi_world_id world, wadi_bool on);
-typedef struct wadi_stage_timing {
-    char name[64];
-    double milliseconds;          /* mean per water step, all its sand substeps together */
-    uint32_t passes;              /* dispatches per water step */
-} wadi_stage_timing;
-/** Mean times since profiling was switched on. *count: capacity in, stages out; timings may be NULL to ask the number. */
-WADI_API wadi_result wadi_world_get_stage_timings(wadi_world_id world, wadi_stage_timing* timings, uint32_t* count);
-
-/* ---- Per frame ---- */
+/* ---- Steps and frames ---- */
 
 /** How wadi_world_update turns host time into water steps. */
 typedef struct wadi_update_settings {
@@ -365,8 +313,9 @@ static inline wadi_update_settings wadi_default_update_settings(void) {
     value.max_steps_in_flight = 8;
     return value;
 }
-/** Takes effect with the next update. Does not wait, unless interpolate_outputs changes: that allocates or frees as
- *  wadi_world_set_outputs does. Errors, the settings staying as they were: BAD_ARGUMENT (out of range), OUT_OF_MEMORY, DEVICE_LOST. */
+/** Sets how updates take steps, from the next one on.
+ *  Waits: nothing, unless interpolate_outputs changes: room, as wadi_world_set_outputs.
+ *  Errors: BAD_ARGUMENT (out of range), OUT_OF_MEMORY. */
 WADI_API wadi_result wadi_world_set_update_settings(wadi_world_id world, const wadi_update_settings* settings);
 
 /** What one update did. */
@@ -385,14 +334,23 @@ static inline wadi_frame wadi_default_frame(void) {
     WADI_ZERO_STRUCT(wadi_frame);
     return value;
 }
-
-/** Advances by `host_nanoseconds` of host time since the last update (0 is allowed). Steps are fixed: after a total of t
- *  nanoseconds, less those dropped, floor(t / dt) water steps are done (dt as the double dt * 1e9, the quotient exact), so the same
- *  total gives the same bits in frames of any length. Does not wait for the device: what it submits runs beside the host.
- *  wadi_world_step may be called between updates: its steps are beside this clock, which goes on where it was. Every call that
- *  reads or changes the state first finishes a step that `spread` began; the update in which it falls due does not repeat it.
- *  Errors: BAD_ARGUMENT (world, struct_size), DEVICE_LOST. */
+/** Advances by `host_nanoseconds` of host time since the last update (0 is allowed), then publishes the outputs: the call of each frame.
+ *  Steps are fixed: after a total of t nanoseconds, less those dropped, floor(t / dt) water steps are done (dt as the double dt * 1e9,
+ *  the quotient exact), so the same total gives the same bits in frames of any length. wadi_world_step may be called between updates:
+ *  its steps are beside this clock, which goes on where it was. Every call that reads or changes the state first finishes a step that
+ *  `spread` began; the update in which it falls due does not repeat it.
+ *  Waits: nothing, unless max_steps_in_flight is 0; a step ahead of which an edit brings a new material may (wadi_world_edit).
+ *  Errors: OUT_OF_MEMORY (a new material). */
 WADI_API wadi_result wadi_world_update(wadi_world_id world, uint64_t host_nanoseconds, wadi_frame* frame);
+
+/** Advances by `steps` water steps of fixed dt.
+ *  Returns before the device has finished; reads wait for it.
+ *  Waits: while the device's queue is full.
+ *  Errors: OUT_OF_MEMORY (a new material). */
+WADI_API wadi_result wadi_world_step(wadi_world_id world, uint32_t steps);
+
+/** Simulated time [s] and water steps so far. Either pointer may be NULL. */
+WADI_API wadi_result wadi_world_get_time(wadi_world_id world, double* seconds, uint64_t* steps);
 
 /* ---- Outputs ---- */
 
@@ -420,10 +378,11 @@ typedef uint32_t wadi_output_mask;
 /** One more bit for wadi_world_set_outputs: lowest and highest elevation of tiles and their changes, wadi_world_get_tiles. */
 #define WADI_OUTPUT_TILES_BIT 0x80000000u
 
-/** Chooses what every update publishes; 0 = nothing, which costs nothing. Each output takes three buffers (previous, current, being
- *  written), the tiles in addition those of SAND_SURFACE and FREE_SURFACE. Allocates and frees, and waits for the device where the
- *  mask changes; views taken before are then void, and there is nothing to view until the next update.
- *  Errors, nothing being changed: BAD_ARGUMENT (an unknown bit), OUT_OF_MEMORY, DEVICE_LOST. */
+/** Chooses what every update publishes; 0 = nothing, which costs nothing.
+ *  Each output takes three buffers (previous, current, being written), the tiles in addition those of SAND_SURFACE and FREE_SURFACE.
+ *  Where the mask changes, views taken before are void, and there is nothing to view until the next update.
+ *  Waits: room, where the mask changes.
+ *  Errors: BAD_ARGUMENT (an unknown bit), OUT_OF_MEMORY. */
 WADI_API wadi_result wadi_world_set_outputs(wadi_world_id world, wadi_output_mask mask);
 
 typedef enum wadi_output_set WADI_ENUM {
@@ -443,7 +402,6 @@ typedef enum wadi_format WADI_ENUM {
     WADI_FORMAT_R32G32_FLOAT = 2,
     WADI_FORMAT_R32G32B32A32_FLOAT = 4
 } wadi_format; /* the value is the number of floats */
-
 /** Where a published field lies on the device. Read only. */
 typedef struct wadi_output_view {
     uint32_t struct_size;
@@ -462,20 +420,27 @@ static inline wadi_output_view wadi_default_output_view(void) {
     WADI_ZERO_STRUCT(wadi_output_view);
     return value;
 }
-/** Views an output. Does not wait. PREVIOUS and CURRENT stay as they are during the next update at least: a publish writes the third
- *  set. Errors: BAD_ARGUMENT (no such output or set, not asked for), NOT_READY (not published yet; PREVIOUS: only once), DEVICE_LOST. */
+/** Views an output on the device.
+ *  PREVIOUS and CURRENT stay as they are during the next update at least: a publish writes the third set.
+ *  Errors: BAD_ARGUMENT (no such output or set, not asked for), NOT_READY (not published yet; PREVIOUS: only once). */
 WADI_API wadi_result wadi_world_get_view(wadi_world_id world, wadi_output output, wadi_output_set set, wadi_output_view* view);
 
-/** For hosts that share no API with the device: outputs whose publishes are also copied to host memory. They need not be in the mask
- *  of wadi_world_set_outputs. 0 = none, which costs nothing. Allocates, waits and fails as wadi_world_set_outputs does. */
+/** Chooses outputs whose publishes are also copied to host memory, for hosts that share no API with the device; 0 = none.
+ *  They need not be in the mask of wadi_world_set_outputs.
+ *  Waits and errors: those of wadi_world_set_outputs. */
 WADI_API wadi_result wadi_world_set_host_outputs(wadi_world_id world, wadi_output_mask mask);
-/** The newest copy that has arrived, usually of the update before: cell (i, j) begins at byte j * row_pitch + i * 4 * floats per
- *  cell. The same for all calls between two updates; valid until the second next update or until a mask changes. Does not wait.
- *  row_pitch [bytes] and step may be NULL.
- *  Errors: BAD_ARGUMENT (no such output, not asked for, data NULL), NOT_READY (none has arrived yet), DEVICE_LOST. */
+/** The newest copy that has arrived, usually of the update before.
+ *  Cell (i, j) begins at byte j * row_pitch + i * bytes of a cell. The same for all calls between two updates; valid until the second
+ *  next update or until a mask changes. row_pitch [bytes] and step may be NULL.
+ *  Errors: BAD_ARGUMENT (no such output, not asked for), NOT_READY (none has arrived yet). */
 WADI_API wadi_result wadi_world_get_host_output(wadi_world_id world, wadi_output output, const float** data, uint64_t* row_pitch,
                                                 uint64_t* step);
 
+/** The cells (i, j) with i0 <= i < i0 + nx and j0 <= j < j0 + ny. */
+typedef struct wadi_region {
+    int32_t i0, j0;
+    int32_t nx, ny;
+} wadi_region;
 /** A tile of 32 x 32 cells (less at the east and north rim): cells i ... i + nx - 1, j ... j + ny - 1. */
 typedef struct wadi_tile {
     int32_t i, j, nx, ny;
@@ -484,75 +449,100 @@ typedef struct wadi_tile {
     int64_t changed_step;          /* step of the newest publish in which a cell's surface, solid or visible, was another than in the
                                       publish before; at first that of the first publish */
 } wadi_tile;
-/** The newest tiles that have arrived from the device, in rows from south to north. *count: capacity in, tiles out; tiles may be NULL
- *  to ask the number. *step (may be NULL): of the publish. Needs WADI_OUTPUT_TILES_BIT. Does not wait.
- *  Errors: BAD_ARGUMENT (not asked for, count NULL), NOT_READY (none has arrived yet), DEVICE_LOST. */
+/** The newest tiles that have arrived from the device, in rows from south to north.
+ *  Needs WADI_OUTPUT_TILES_BIT. *step (may be NULL): of the publish.
+ *  Errors: BAD_ARGUMENT (not asked for), NOT_READY (none has arrived yet). */
 WADI_API wadi_result wadi_world_get_tiles(wadi_world_id world, wadi_tile* tiles, uint32_t* count, uint64_t* step);
-
-/** Rectangles that hold every cell whose solid or visible surface changed in a publish after step `since_step` (-1 = ever): tiles,
- *  neighbours in a row of tiles as one. Pass *step of one call as since_step to the next, and -1 after wadi_world_load.
- *  *count, *step and errors as in wadi_world_get_tiles; also BAD_ARGUMENT for since_step < -1. */
+/** Rectangles that hold every cell whose solid or visible surface changed in a publish after step `since_step` (-1 = ever).
+ *  They are tiles, neighbours in a row of tiles as one. Pass *step of one call as since_step to the next, and -1 after wadi_world_load.
+ *  Errors: those of wadi_world_get_tiles; BAD_ARGUMENT (since_step below -1). */
 WADI_API wadi_result wadi_world_get_dirty_regions(wadi_world_id world, int64_t since_step, wadi_region* regions, uint32_t* count,
                                                   uint64_t* step);
 
-/* ---- Snapshots ---- */
+/* ---- Reading ---- */
 
-/** Saves the state to memory, to the bit: fields, ledgers and running totals, not the level itself nor edits that wait. *size: bytes at `data` in,
- *  bytes of the snapshot out; data may be NULL to ask the number, which waits for nothing. Waits for the steps asked for.
- *  Errors: BAD_ARGUMENT (size NULL or too small), DEVICE_LOST. */
-WADI_API wadi_result wadi_world_save(wadi_world_id world, void* data, size_t* size);
-/** Goes to a saved state: the world continues as the saved one would have, in every bit, on any backend that passes the
- *  exact-float test. The snapshot must be of a world of the same level settings (grid, dt, material, method, sides, sources, rain);
- *  its material is taken as it was changed by then; initial fields may differ; effects that only this world has start from zero, and the world is promoted to those that only the
- *  snapshot has. Edits that wait and steps kept for roll-back are forgotten. Waits for the device.
- *  Errors, all leaving the world unchanged: BAD_FILE (no snapshot, a newer version, truncated, changed), BAD_ARGUMENT (of another
- *  level, or with effects that this world's level forces off), OUT_OF_MEMORY, DEVICE_LOST. */
-WADI_API wadi_result wadi_world_load(wadi_world_id world, const void* data, size_t size);
-/** wadi_world_save to a file, written beside it under a name that ends in ".part" and that no other call has, brought to the disk and
- *  renamed when it is whole: also of several savers to one path each leaves a whole file. A process that is killed meanwhile leaves its
- *  part. Errors, an earlier file unchanged: NOT_FOUND (the folder cannot be written to), BAD_FILE (writing failed, or path is a folder,
- *  pipe or device). */
-WADI_API wadi_result wadi_world_save_file(wadi_world_id world, const char* path);
-/** wadi_world_load from a regular file; one larger than any snapshot of this world is refused unread. Errors: NOT_FOUND, and those of
- *  wadi_world_load. */
-WADI_API wadi_result wadi_world_load_file(wadi_world_id world, const char* path);
+typedef enum wadi_field WADI_ENUM {
+    WADI_FIELD_TERRAIN = 0,          /* H, elevation of the ground [m] */
+    WADI_FIELD_SAND_DEPTH = 1,       /* hs [m] */
+    WADI_FIELD_TOTAL_WATER_DEPTH = 2, /* W, depth of all water, above the sand and inside it [m] */
+    WADI_FIELD_WATER_DEPTH = 3,      /* pure water above the sand, W - min(W, hs) [m] */
+    WADI_FIELD_FREE_SURFACE = 4,     /* H + max(W, hs), elevation of what a viewer sees [m] */
+    WADI_FIELD_SATURATION = 5,       /* W/(W + hs) where there is sand, else 0 */
+    WADI_FIELD_WATER_VELOCITY_X = 6, /* pure water, cell centre [m/s] */
+    WADI_FIELD_WATER_VELOCITY_Y = 7,
+    WADI_FIELD_SAND_VELOCITY_X = 8,  /* [m/s] */
+    WADI_FIELD_SAND_VELOCITY_Y = 9,
+    WADI_FIELD_MIXED_VELOCITY_X = 10, /* water inside sand [m/s] */
+    WADI_FIELD_MIXED_VELOCITY_Y = 11,
+    WADI_FIELD_STRETCH_XX = 12,      /* left stretch V - I of the sand */
+    WADI_FIELD_STRETCH_XY = 13,
+    WADI_FIELD_STRETCH_YY = 14,
+    WADI_FIELD_COUNT = 15
+} wadi_field;
+/** Short name used by tools: "H", "hs", "W", "hw", "surface", "phi", "uw", "vw", "us", "vs", "um", "vm", "Vxx", "Vxy", "Vyy"; NULL if
+ *  unknown. */
+WADI_API const char* wadi_field_name(wadi_field field);
 
-/** Asks for a snapshot of the state after the steps asked for so far, or, in the middle of a step that runs in parts, after that
- *  step. Returns at once: the device copies the state aside. The first call allocates room for it. A snapshot asked for earlier
- *  that nobody has begun to fetch is forgotten. NOT_READY: the device or a worker is still at an earlier one. */
-WADI_API wadi_result wadi_world_begin_save(wadi_world_id world, uint64_t* ticket);
-/** Fetches it: NOT_READY until the snapshot lies in `data`, then OK, once. Never waits: a worker thread fills `data`, so from the
- *  first call on that memory must stay where it is, and the same pointer must be passed, until a call returns OK or the world is
- *  destroyed; an error does not end that. *size as in wadi_world_save; data may be NULL to ask the number.
- *  Errors: BAD_ARGUMENT (another ticket, another data, size NULL or too small), DEVICE_LOST (before the copy aside was done),
- *  OUT_OF_MEMORY (the system refuses the worker's thread: a later call may succeed). */
-WADI_API wadi_result wadi_world_end_save(wadi_world_id world, uint64_t ticket, void* data, size_t* size);
+/** Reads a field, count = nx * ny floats.
+ *  A field that the world's effects lack reads as zero.
+ *  Waits: the steps.
+ *  Errors: BAD_ARGUMENT (field, count). */
+WADI_API wadi_result wadi_world_read_field(wadi_world_id world, wadi_field field, float* values, size_t count);
+/** Reads a field in a region within the grid, count = its nx * ny floats.
+ *  Waits: the steps.
+ *  Errors: BAD_ARGUMENT (field, region, count). */
+WADI_API wadi_result wadi_world_read_region(wadi_world_id world, wadi_field field, const wadi_region* region, float* values, size_t count);
 
-/** Keeps earlier states on the device: the newest `frames` (0 ... 256; 0 = off, frees them) of the state now and of every later step
- *  that is a multiple of interval_steps (1 or more). Each takes the bytes of a snapshot, allocated here. States kept before are
- *  forgotten. Does not wait, but may when it frees. Errors: BAD_ARGUMENT, OUT_OF_MEMORY (nothing is kept then), DEVICE_LOST. */
-WADI_API wadi_result wadi_world_set_rollback(wadi_world_id world, uint32_t frames, uint32_t interval_steps);
-/** Steps that can be gone back to, oldest first. *count: capacity in, steps out; steps may be NULL to ask the number. */
-WADI_API wadi_result wadi_world_get_rollback_steps(wadi_world_id world, uint64_t* steps, uint32_t* count);
-/** Goes back to the newest kept step <= `step`, written to *reached (may be NULL); later kept steps and edits that wait are forgotten. The world goes on
- *  from there as it did the first time, in every bit, given the same input. Waits only where the material was another then. Steps
- *  with an effect that the world has lost since are forgotten. Errors: BAD_ARGUMENT (no step that old is kept; world unchanged),
- *  DEVICE_LOST. */
-WADI_API wadi_result wadi_world_roll_back(wadi_world_id world, uint64_t step, uint64_t* reached);
-
-/** 64-bit hash of the state, ghosts and terrain excluded: wadi_world_stats.hash without the rest. Equal states have equal hashes on
- *  every backend that passes the exact-float test. Waits for the steps asked for and reads the whole state. */
+/** State now: extremes, limits at work, and the ledger. */
+typedef struct wadi_world_stats {
+    uint32_t struct_size;
+    double time;                  /* [s] */
+    uint64_t steps;
+    double sand_volume;           /* [m3] now */
+    double water_volume;
+    double sand_initial;          /* [m3] at creation */
+    double water_initial;
+    double sand_in, sand_out;     /* [m3] by sources, sinks, rain, evaporation and sides since creation */
+    double water_in, water_out;
+    double refused;               /* [m3] of sources and rain that found no room below method.largest_height, the highest elevation */
+    int64_t sand_drift_quanta;    /* now - (initial + in - out) in quanta of depth x cell area; 0 = exact; sums stop at 2^60 */
+    int64_t water_drift_quanta;
+    double quantum;               /* [m] */
+    double largest_sand_depth;    /* hs [m] */
+    double largest_total_water_depth; /* W [m] */
+    double largest_water_speed;   /* largest face velocity of pure and mixed water [m/s] */
+    double largest_sand_speed;    /* [m/s] */
+    double smallest_depth;        /* least hs or W [m]: never negative */
+    uint64_t not_finite;          /* values that are NaN or infinite: never any */
+    uint64_t clamped_faces;       /* faces at the velocity clamp */
+    uint64_t capped_faces;        /* faces whose gravity the next step caps */
+    uint64_t limited_cells;       /* cells whose outflow the next step limits */
+    uint64_t tiles, active_tiles; /* of the world, and of those the ones that the newest step ran over, in the longer of its two lists
+                                     where water and sand have one each; 0 without active tiles */
+    uint64_t hash;                /* 64-bit state hash, ghosts excluded */
+} wadi_world_stats;
+static inline wadi_world_stats wadi_default_world_stats(void) {
+    WADI_ZERO_STRUCT(wadi_world_stats);
+    return value;
+}
+/** Takes the statistics: reads the whole state, so not for every frame.
+ *  Waits: the steps. */
+WADI_API wadi_result wadi_world_get_stats(wadi_world_id world, wadi_world_stats* stats);
+/** 64-bit hash of the state, ghosts and terrain excluded: wadi_world_stats.hash without the rest.
+ *  Equal states have equal hashes on every backend that passes the exact-float test. Reads the whole state.
+ *  Waits: the steps. */
 WADI_API wadi_result wadi_world_get_hash(wadi_world_id world, uint64_t* hash);
 
-/* ---- Queries ---- */
+/* ---- Points and bodies ---- */
 
 /** The state at one point. */
 typedef struct wadi_query_result {
     float terrain;                /* elevation of the ground [m]; elevations and depths are bilinear between cell centres */
     float sand_depth;             /* [m] */
     float water_depth;            /* pure water above the sand [m]; 0 where all four cells around are dry */
-    float surface;                /* elevation of the visible surface, H + max(W, hs) [m]. At the water's edge it leads from the water's surface
-                                     in the last wet cell to the ground of the dry one, as a mesh through the cell centres does */
+    float surface;                /* elevation of the visible surface, H + max(W, hs) [m]. At the water's edge it leads from the
+                                     water's surface in the last wet cell to the ground of the dry one, as a mesh through the cell
+                                     centres does */
     float velocity[2];            /* of the pure water, between faces [m/s]; 0 on dry faces */
     float normal[3];              /* of the visible surface, unit length, up; slopes bilinear between cell centres */
     float saturation;             /* W/(W + hs) of the sand, 0 without sand */
@@ -560,14 +550,15 @@ typedef struct wadi_query_result {
 } wadi_query_result;
 
 /** Asks for the state at `count` (1 ... 65536) points of the world: x, y of each in metres from the south-west corner of the grid.
- *  Answered for the state after the steps asked for so far or, in the middle of a step that runs in parts, after that step. Never
- *  waits; the first eight calls, and the first eight with more points than before (in powers of two, 1024 at least), allocate, and
- *  the latter wait for the device. Eight batches may be under way.
- *  NOT_READY: all eight are; ask again later. Errors: BAD_ARGUMENT (count, a coordinate that is NaN or infinite), DEVICE_LOST. */
+ *  Answered for the state after the steps asked for so far or, in the middle of a step that runs in parts, after that step. Eight batches
+ *  may be under way. The first eight calls allocate.
+ *  Waits: nothing, but room for the first eight calls with more points than before (in powers of two, 1024 at least).
+ *  Errors: NOT_READY (eight are under way), BAD_ARGUMENT (count, a coordinate that is NaN or infinite), OUT_OF_MEMORY. */
 WADI_API wadi_result wadi_world_query(wadi_world_id world, const float* xy, uint32_t count, uint64_t* ticket);
-/** The answers in the order of the points, their number and the step they are of. NOT_READY until they are there; never waits. They
- *  may be fetched again until eight later batches were asked for. results may be NULL to ask count and step only; count and step
- *  may be NULL. Errors: BAD_ARGUMENT (unknown or too old a ticket, capacity below the number), DEVICE_LOST. */
+/** The answers in the order of the points, their number and the step they are of.
+ *  They may be fetched again until eight later batches were asked for. results may be NULL to ask count and step only; count and step
+ *  may be NULL.
+ *  Errors: NOT_READY (not there yet), BAD_ARGUMENT (unknown or too old a ticket, capacity below the number). */
 WADI_API wadi_result wadi_world_get_query(wadi_world_id world, uint64_t ticket, wadi_query_result* results, uint32_t capacity,
                                           uint32_t* count, uint64_t* step);
 
@@ -575,7 +566,6 @@ typedef enum wadi_body_shape WADI_ENUM {
     WADI_BODY_BOX = 0,
     WADI_BODY_SPHERE = 1
 } wadi_body_shape;
-
 /** A body in the water. World axes: x east, y north, z up. */
 typedef struct wadi_body {
     uint32_t struct_size;
@@ -606,41 +596,20 @@ static inline wadi_body wadi_default_body(void) {
     return value;
 }
 
-/** The points to pass to wadi_world_query for a body: samples * samples for a box, those within the circle for a sphere. *count:
- *  points that fit xy in, points out; xy may be NULL to ask the number. Needs no world. Errors: BAD_ARGUMENT. */
+/** The points to pass to wadi_world_query for a body: samples * samples for a box, those within the circle for a sphere.
+ *  Needs no world. *count: points that fit xy in, points out; xy may be NULL to ask the number.
+ *  Errors: BAD_ARGUMENT (a field of the body, too little room). */
 WADI_API wadi_result wadi_buoyancy_points(const wadi_body* body, float* xy, uint32_t* count);
-/** Force [N] and torque about the body's middle [N m] of the water, from the answers for those points (the body may have moved
- *  meanwhile). The body is cut into columns, upright or along its steepest axis. Where V of a column lies between bed and surface:
+/** Force [N] and torque about the body's middle [N m] of the water, from the answers for those points.
+ *  The body may have moved meanwhile. It is cut into columns, upright or along its steepest axis. Where V of a column lies between bed
+ *  and surface:
  *  buoyancy  water_density * gravity * V, upwards, at the middle of that part;
  *  drag      V / volume * (linear_drag * du + water_density * quadratic_drag * area * |du| * du / 2) there, with du the water's
  *            velocity (vertical: 0) less the body's, area = pi radius^2 or volume^(2/3) of a box.
- *  The weight of the body is not in it; points outside the grid give nothing. Errors: BAD_ARGUMENT (body, count not that of
- *  wadi_buoyancy_points). */
+ *  The weight of the body is not in it; points outside the grid give nothing. Needs no world.
+ *  Errors: BAD_ARGUMENT (a field of the body, count not that of wadi_buoyancy_points). */
 WADI_API wadi_result wadi_buoyancy_force(const wadi_body* body, const wadi_query_result* results, uint32_t count, float force[3],
                                          float torque[3]);
-
-/* ---- Introspection ---- */
-
-typedef struct wadi_memory_item {
-    char label[64];               /* the field, or what the buffer is for */
-    uint64_t bytes;
-} wadi_memory_item;
-/** Every buffer the world holds on its device, those for the host to read included; they add up to wadi_world_info.device_bytes.
- *  *count: capacity in, buffers out; items may be NULL to ask the number. Does not wait. */
-WADI_API wadi_result wadi_world_get_memory(wadi_world_id world, wadi_memory_item* items, uint32_t* count);
-
-typedef struct wadi_effect_info {
-    char name[32];                /* as level files write it */
-    wadi_bool on;                 /* 1 = its passes run and its fields exist */
-    char why[160];                /* one sentence: why it is on or off */
-} wadi_effect_info;
-/** The effects and why each is on or off. *count: capacity in, effects out; effects may be NULL to ask the number. Does not
- *  wait. */
-WADI_API wadi_result wadi_world_get_effects(wadi_world_id world, wadi_effect_info* effects, uint32_t* count);
-
-/** OK, or what broke the world for good (DEVICE_LOST) with wadi_get_last_error() saying how. Does not wait: a fault that the
- *  device has not reported yet is not known. */
-WADI_API wadi_result wadi_world_get_error(wadi_world_id world);
 
 /* ---- Edits ---- */
 
@@ -649,7 +618,6 @@ typedef enum wadi_layer WADI_ENUM {
     WADI_LAYER_SAND = 1,
     WADI_LAYER_WATER = 2
 } wadi_layer;
-
 typedef enum wadi_edit_kind WADI_ENUM {
     WADI_EDIT_BRUSH = 0, /* adds to (amount > 0) or takes from a layer within a disc or capsule */
     WADI_EDIT_STAMP = 1, /* the same by an image over a rectangle */
@@ -668,14 +636,13 @@ typedef struct wadi_edit {
     double x1, y1;        /* [m], capsule and stamp only; of a stamp the high corner, greater than the low one */
     double radius;        /* [m], 1e-9 ... 1e9, brush and push */
     double softness;      /* 0 ... 1, brush and push: share of the radius over which the effect falls to 0 (3 s^2 - 2 s^3) */
-    double amount;        /* brush: change at the centre [m], of the terrain's elevation or of a layer's depth, water's being W; stamp: the same per
-                           * unit of the image. At most twice method.largest_height up or down */
+    double amount;        /* brush: change at the centre [m], of the terrain's elevation or of a layer's depth, water's being W;
+                           * stamp: the same per unit of the image. At most twice method.largest_height up or down */
     double strength;      /* 0 ... 1, push: how far velocities are drawn to the body's at the centre */
     double velocity_x;    /* [m/s], -1e4 ... 1e4, push: the body's velocity */
     double velocity_y;
     uint32_t stamp;       /* stamp: its number, from wadi_world_create_stamp */
 } wadi_edit;
-/** A brush on terrain. */
 static inline wadi_edit wadi_default_edit(void) {
     WADI_ZERO_STRUCT(wadi_edit);
     value.radius = 1;
@@ -684,27 +651,40 @@ static inline wadi_edit wadi_default_edit(void) {
     return value;
 }
 
-/** Queues `count` edits. Those of one step act in the order of the calls, ahead of that step; in the middle of a step that runs in
- *  parts "the next one" is the one after it. Depths change by whole quanta and every quantum is in the ledger; what finds no room
- *  below method.largest_height is refused and counted (wadi_world_stats.refused); no more is taken than there is. Sand and water
- *  keep their depth where terrain changes, added sand is unstrained, or in balance with method.prestress. An edit that adds a material
- *  the world has not held so far promotes it when its step comes: buffers are allocated and programs recorded anew, once, and that
- *  step may wait for the device.
- *  Edits of the level itself act ahead of these and are no part of the command log.
- *  Returns at once. wadi_world_load and every other way back in time drops the edits that wait: queue those of later steps again.
+/** Queues `count` edits.
+ *  Those of one step act in the order of the calls, ahead of that step; in the middle of a step that runs in parts "the next one" is the
+ *  one after it. Depths change by whole quanta and every quantum is in the ledger; what finds no room below method.largest_height is
+ *  refused and counted (wadi_world_stats.refused); no more is taken than there is. Sand and water keep their depth where terrain changes,
+ *  added sand is unstrained, or in balance with method.prestress. An edit that adds a material the world has not held so far promotes it
+ *  when its step comes: buffers are allocated and programs recorded anew, once, and that step may wait for the device. Edits of the
+ *  level itself act ahead of these and are no part of the command log. wadi_world_load and every other way back in time drops the edits
+ *  that wait: queue those of later steps again.
  *  Errors: BAD_ARGUMENT, naming edit, field and range, or `effects` when the level forces off what an edit adds; none is queued. */
 WADI_API wadi_result wadi_world_edit(wadi_world_id world, const wadi_edit* edits, uint32_t count);
 
 /** Copies an image for stamps: nx * ny values (1 ... 4096 each, |value| <= 1e12), row 0 in the south, bilinear between pixels.
- *  *stamp counts up from 1; stamps live as long as the world. Allocates; may wait. Errors: BAD_ARGUMENT, OUT_OF_MEMORY. */
+ *  *stamp counts up from 1; stamps live as long as the world.
+ *  Waits: room.
+ *  Errors: BAD_ARGUMENT, OUT_OF_MEMORY. */
 WADI_API wadi_result wadi_world_create_stamp(wadi_world_id world, int32_t nx, int32_t ny, const float* values, uint32_t* stamp);
 
-/** Compiles the pipelines of every effect that the level allows, so that a later promotion only allocates and records. Costs time once
- *  (GPU drivers: up to seconds) and next to no memory; call it while loading. Does not wait for steps. */
+/** Overwrites TERRAIN, SAND_DEPTH or TOTAL_WATER_DEPTH [m] in a region at once, after the steps asked for.
+ *  Values are rounded to quanta; what that adds or takes is in the ledger; velocities stay. Promotes like an edit.
+ *  Waits: the steps.
+ *  Errors: BAD_ARGUMENT (another field, a region outside, NaN, a negative depth, a column above method.largest_height: the message
+ *  names the cell; `effects` forced off), OUT_OF_MEMORY. */
+WADI_API wadi_result wadi_world_write_region(wadi_world_id world, wadi_field field, const wadi_region* region, const float* values,
+                                             size_t count);
+
+/** Compiles the pipelines of every effect that the level allows, so that a later promotion only allocates and records.
+ *  Costs time once (GPU drivers: up to seconds) and next to no memory; call it while loading.
+ *  Waits: for compilers of drivers. */
 WADI_API wadi_result wadi_world_prepare_effects(wadi_world_id world);
-/** Frees the passes and buffers of materials that the world no longer holds; what it gave and took stays in the ledger. Waits for
- *  the steps asked for and reads the depths. */
+/** Frees the passes and buffers of materials that the world no longer holds; what it gave and took stays in the ledger.
+ *  Waits: the steps, and reads the depths. */
 WADI_API wadi_result wadi_world_trim(wadi_world_id world);
+
+/* ---- Material ---- */
 
 /** One number of the material. */
 typedef struct wadi_material_info {
@@ -712,57 +692,134 @@ typedef struct wadi_material_info {
     double value;                 /* now; units as in level files */
     double least, most;           /* what wadi_world_set_material takes */
 } wadi_material_info;
-/** The numbers of the material and their present values. *count: capacity in, numbers out; infos may be NULL to ask the number. Does
- *  not wait. */
+/** Lists the numbers of the material and their present values. */
 WADI_API wadi_result wadi_world_get_material(wadi_world_id world, wadi_material_info* infos, uint32_t* count);
-/** Changes one of them from the next whole step on, in the level's units. Effects follow as for a level with that value: 0 in
- *  young_modulus, exchange_rate, diffusion_rate, bed_friction and manning, or bed_shear drops its effect (and the strain of the sand with
- *  elastoplastic), a value above 0 brings it, which allocates. Where effects stay, no pipeline is made: the step is recorded anew, once per
- *  change. Ahead of the first step the world becomes that of a level with the value, in every bit; later, sand keeps the strain that it has
- *  (with method.prestress, that in balance with the material it was drawn with). Waits for the device in these two cases alone: ahead of
- *  the first step, and where young_modulus was 0. The command log has it; snapshots
- *  and kept steps hold the values of their moment and bring them back. The level's warnings are not asked again. Errors, nothing changed:
- *  NOT_FOUND (name), BAD_ARGUMENT (out of range, NaN, saturations out of order, or a number of an effect that the level forces off: the
- *  message says which), OUT_OF_MEMORY, NOT_READY (inside a recording), DEVICE_LOST. */
+/** Changes one of them from the next whole step on, in the level's units.
+ *  Effects follow as for a level with that value: 0 in young_modulus, exchange_rate, diffusion_rate, bed_friction and manning, or
+ *  bed_shear drops its effect (and the strain of the sand with elastoplastic), a value above 0 brings it, which allocates. Where effects
+ *  stay, no pipeline is made: the step is recorded anew, once per change. Ahead of the first step the world becomes that of a level with
+ *  the value, in every bit; later, sand keeps the strain that it has (with method.prestress, that in balance with the material it was
+ *  drawn with). The command log has it; snapshots and kept steps hold the values of their moment and bring them back. The level's
+ *  warnings are not asked again.
+ *  Waits: nothing, but the steps ahead of the first step, and where young_modulus was 0.
+ *  Errors: NOT_FOUND (name), BAD_ARGUMENT (out of range, NaN, saturations out of order, or a number of an effect that the level forces
+ *  off: the message says which), OUT_OF_MEMORY, NOT_READY (inside a recording). */
 WADI_API wadi_result wadi_world_set_material(wadi_world_id world, const char* name, double value);
 
-/** Reads a field in a region within the grid, count = nx * ny floats; waits for the steps asked for. Errors: BAD_ARGUMENT. */
-WADI_API wadi_result wadi_world_read_region(wadi_world_id world, wadi_field field, const wadi_region* region, float* values, size_t count);
-/** Overwrites TERRAIN, SAND_DEPTH or TOTAL_WATER_DEPTH [m] in a region at once, after the steps asked for, which it waits for. Values
- *  are rounded to quanta; what that adds or takes is in the ledger; velocities stay. Promotes like an edit.
- *  Errors, nothing changed: BAD_ARGUMENT (another field, a region outside, NaN, a negative depth, a column above
- *  method.largest_height: the message names the cell; `effects` forced off). */
-WADI_API wadi_result wadi_world_write_region(wadi_world_id world, wadi_field field, const wadi_region* region, const float* values,
-                                             size_t count);
+/* ---- Saving and going back ---- */
+
+/** Saves the state to memory, to the bit: fields, ledgers and running totals, not the level itself nor edits that wait.
+ *  *size: bytes at `data` in, bytes of the snapshot out; data may be NULL to ask the number.
+ *  Waits: the steps; nothing to ask the number.
+ *  Errors: BAD_ARGUMENT (size too small). */
+WADI_API wadi_result wadi_world_save(wadi_world_id world, void* data, size_t* size);
+/** Goes to a saved state: the world continues as the saved one would have, in every bit, on any backend that passes the exact-float
+ *  test.
+ *  The snapshot must be of a world of the same level settings (grid, dt, material, method, sides, sources, rain); its material is taken
+ *  as it was changed by then; initial fields may differ; effects that only this world has start from zero, and the world is promoted to
+ *  those that only the snapshot has. Edits that wait and steps kept for roll-back are forgotten.
+ *  Waits: the steps.
+ *  Errors, the world as it was, also where the host's own memory ends: BAD_FILE (no snapshot, a newer version, truncated, changed),
+ *  BAD_ARGUMENT (of another level, or with effects that this world's level forces off), OUT_OF_MEMORY. */
+WADI_API wadi_result wadi_world_load(wadi_world_id world, const void* data, size_t size);
+/** wadi_world_save to a file.
+ *  Written beside it under a name that ends in ".part" and that no other call has, brought to the disk and renamed when it is whole: also
+ *  of several savers to one path each leaves a whole file. A process that is killed meanwhile leaves its part.
+ *  Waits: the steps, the disk.
+ *  Errors, an earlier file unchanged: NOT_FOUND (the folder cannot be written to), BAD_FILE (writing failed, or path is a folder, pipe or
+ *  device). */
+WADI_API wadi_result wadi_world_save_file(wadi_world_id world, const char* path);
+/** wadi_world_load from a regular file; one larger than any snapshot of this world is refused unread.
+ *  Waits: the steps, the disk.
+ *  Errors: NOT_FOUND, and those of wadi_world_load. */
+WADI_API wadi_result wadi_world_load_file(wadi_world_id world, const char* path);
+
+/** Asks for a snapshot of the state after the steps asked for so far, or, in the middle of a step that runs in parts, after that step.
+ *  The device copies the state aside; the first call allocates room for it. A snapshot asked for earlier that nobody has begun to fetch is
+ *  forgotten.
+ *  Errors: NOT_READY (the device or a worker is still at an earlier one), OUT_OF_MEMORY. */
+WADI_API wadi_result wadi_world_begin_save(wadi_world_id world, uint64_t* ticket);
+/** Fetches it: NOT_READY until the snapshot lies in `data`, then OK, once.
+ *  A worker thread fills `data`, so from the first call on that memory must stay where it is, and the same pointer must be passed, until a
+ *  call returns OK or the world is destroyed; an error does not end that. *size as in wadi_world_save; data may be NULL to ask the number.
+ *  Errors: BAD_ARGUMENT (another ticket, another data, size too small), DEVICE_LOST (before the copy aside was done), OUT_OF_MEMORY (the
+ *  system refuses the worker's thread: a later call may succeed). */
+WADI_API wadi_result wadi_world_end_save(wadi_world_id world, uint64_t ticket, void* data, size_t* size);
+
+/** Keeps earlier states on the device: the newest `frames` (0 ... 256; 0 = off, frees them) of the state now and of every later step
+ *  that is a multiple of interval_steps (1 or more).
+ *  Each takes the bytes of a snapshot, allocated here. States kept before are forgotten.
+ *  Waits: nothing, but may when it frees.
+ *  Errors: BAD_ARGUMENT, OUT_OF_MEMORY (nothing is kept then). */
+WADI_API wadi_result wadi_world_set_rollback(wadi_world_id world, uint32_t frames, uint32_t interval_steps);
+/** Lists the steps that can be gone back to, oldest first. */
+WADI_API wadi_result wadi_world_get_rollback_steps(wadi_world_id world, uint64_t* steps, uint32_t* count);
+/** Goes back to the newest kept step <= `step`, written to *reached (may be NULL).
+ *  Later kept steps and edits that wait are forgotten. The world goes on from there as it did the first time, in every bit, given the
+ *  same input. Steps with an effect that the world has lost since are forgotten.
+ *  Waits: nothing, but the steps where the material was another then.
+ *  Errors: BAD_ARGUMENT (no step that old is kept). */
+WADI_API wadi_result wadi_world_roll_back(wadi_world_id world, uint64_t step, uint64_t* reached);
 
 /* ---- Command log ---- */
 
-/** 1 = from now on remember every edit, written region, trim and change of the material with its step, in host memory that grows; 0 = stop and drop the log.
- *  Off at first. Going back in time drops what was remembered for later steps. Does not wait. */
+/** 1 = from now on remember every edit, written region, trim and change of the material with its step, in host memory that grows;
+ *  0 = stop and drop the log.
+ *  Off at first. Going back in time drops what was remembered for later steps. */
 WADI_API wadi_result wadi_world_set_command_log(wadi_world_id world, wadi_bool on);
-/** The log as bytes, with all stamps of the world: a few dozen bytes per edit, versioned and checksummed. *size: bytes at `data` in,
- *  bytes of the log out; data may be NULL to ask the number. Does not wait. Errors: BAD_ARGUMENT (size NULL or too small). */
+/** The log as bytes, with all stamps of the world: a few dozen bytes per edit, versioned and checksummed.
+ *  *size: bytes at `data` in, bytes of the log out; data may be NULL to ask the number.
+ *  Errors: BAD_ARGUMENT (size too small). */
 WADI_API wadi_result wadi_world_get_commands(wadi_world_id world, void* data, size_t* size);
-/** Queues the commands of a log in a world of the same level: a fresh one, or one that stands where logging began. After the same
- *  number of steps, in frames of any rhythm, both have the same hash, on every backend that passes the exact-float test. Allocates
- *  for stamps; waits where a written region or trim counts at once, as do later steps ahead of which one counts.
- *  Errors, nothing queued: BAD_FILE (no log, a newer version, truncated, changed), BAD_ARGUMENT (of another level, or with commands
- *  for steps already done). */
+/** Queues the commands of a log in a world of the same level: a fresh one, or one that stands where logging began.
+ *  After the same number of steps, in frames of any rhythm, both have the same hash, on every backend that passes the exact-float test.
+ *  Waits: room for stamps; the steps where a written region or trim counts at once, as do later steps ahead of which one counts.
+ *  Errors, nothing queued: BAD_FILE (no log, a newer version, truncated, changed), BAD_ARGUMENT (of another level, or with commands for
+ *  steps already done). */
 WADI_API wadi_result wadi_world_play_commands(wadi_world_id world, const void* data, size_t size);
 
-/* ---- Levels from memory ---- */
+/* ---- Looking inside ---- */
 
-/** Reads a file that a level names, for the host's own file system. Called with data NULL first: sets *size to the file's bytes;
- *  then with room for *size bytes: fills it and sets *size to what it wrote. Returns 1, or 0 where there is no such file. `name` is
- *  as the level writes it, '/' between folders, and never leads out of the level's folder but with overrides.any_files. Called only
- *  inside wadi_create_world_from_level_text, on its thread. Should not throw: whatever it throws ends that call with INTERNAL. */
-typedef wadi_bool (*wadi_read_file_callback)(void* user, const char* name, void* data, size_t* size);
+/** The plan as text: effects on and why, passes, buffers, bytes per cell.
+ *  Returns the length without the final zero; writes at most `size` bytes including it. 0 and an error for a bad world. */
+WADI_API size_t wadi_world_describe_plan(wadi_world_id world, char* text, size_t size);
 
-/** A world from the text of a level file. Maps and series that it names come from read_file; with read_file NULL the text may name
- *  none: nothing is read from disk. Errors: those of wadi_create_world_from_level. */
-WADI_API wadi_result wadi_create_world_from_level_text(const char* json, wadi_read_file_callback read_file, void* user,
-                                                       const wadi_level_overrides* overrides, const wadi_device_options* options,
-                                                       wadi_world_id* world);
+/** A table of the library as text, of any world and none: "settings" (keys of level files with unit, range, default), "effects",
+ *  "fields", "stages", or "schema" (the settings as JSON).
+ *  Returns the length without the final zero; writes at most `size` bytes including it. 0 and an error for another name. */
+WADI_API size_t wadi_describe_table(const char* table, char* text, size_t size);
+
+typedef struct wadi_effect_info {
+    char name[32];                /* as level files write it */
+    wadi_bool on;                 /* 1 = its passes run and its fields exist */
+    char why[160];                /* one sentence: why it is on or off */
+} wadi_effect_info;
+/** Lists the effects and why each is on or off. */
+WADI_API wadi_result wadi_world_get_effects(wadi_world_id world, wadi_effect_info* effects, uint32_t* count);
+
+typedef struct wadi_memory_item {
+    char label[64];               /* the field, or what the buffer is for */
+    uint64_t bytes;
+} wadi_memory_item;
+/** Lists every buffer that the world holds on its device, those for the host to read included; they add up to
+ *  wadi_world_info.device_bytes. */
+WADI_API wadi_result wadi_world_get_memory(wadi_world_id world, wadi_memory_item* items, uint32_t* count);
+
+/** 1 = every step records timestamps, by programs recorded for it; off at first.
+ *  Waits: the steps that are timed. */
+WADI_API wadi_result wadi_world_set_profiling(wadi_world_id world, wadi_bool on);
+typedef struct wadi_stage_timing {
+    char name[64];
+    double milliseconds;          /* mean per water step, all its sand substeps together */
+    uint32_t passes;              /* dispatches per water step */
+} wadi_stage_timing;
+/** Lists the mean times since profiling was switched on.
+ *  Waits: the steps that are timed. */
+WADI_API wadi_result wadi_world_get_stage_timings(wadi_world_id world, wadi_stage_timing* timings, uint32_t* count);
+
+/** OK, or what broke the world for good (DEVICE_LOST) with wadi_get_last_error() saying how.
+ *  A fault that the device has not reported yet is not known. */
+WADI_API wadi_result wadi_world_get_error(wadi_world_id world);
 
 #ifdef __cplusplus
 }

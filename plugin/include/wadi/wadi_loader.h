@@ -17,27 +17,37 @@
     X(wadi_result, list_devices, (wadi_device_info* infos, uint32_t* count, char* notes, size_t notes_size)) \
     X(wadi_result, list_accuracy_presets, (wadi_accuracy_preset* presets, uint32_t* count)) \
     X(wadi_result, create_world_from_level, (const char* path, const wadi_level_overrides* overrides, const wadi_device_options* options, wadi_world_id* world)) \
+    X(wadi_result, create_world_from_level_text, (const char* json, wadi_read_file_callback read_file, void* user, const wadi_level_overrides* overrides, const wadi_device_options* options, wadi_world_id* world)) \
     X(wadi_result, create_world_from_arrays, (const wadi_world_arrays* arrays, const wadi_device_options* options, wadi_world_id* world)) \
     X(wadi_result, destroy_world, (wadi_world_id world)) \
     X(wadi_result, world_get_info, (wadi_world_id world, wadi_world_info* info)) \
     X(const char*, world_get_warning, (wadi_world_id world, uint32_t n)) \
-    X(size_t, world_describe_plan, (wadi_world_id world, char* text, size_t size)) \
-    X(size_t, describe_table, (const char* table, char* text, size_t size)) \
-    X(wadi_result, world_step, (wadi_world_id world, uint32_t steps)) \
-    X(wadi_result, world_get_time, (wadi_world_id world, double* seconds, uint64_t* steps)) \
-    X(const char*, field_name, (wadi_field field)) \
-    X(wadi_result, world_read_field, (wadi_world_id world, wadi_field field, float* values, size_t count)) \
-    X(wadi_result, world_get_stats, (wadi_world_id world, wadi_world_stats* stats)) \
-    X(wadi_result, world_set_profiling, (wadi_world_id world, wadi_bool on)) \
-    X(wadi_result, world_get_stage_timings, (wadi_world_id world, wadi_stage_timing* timings, uint32_t* count)) \
     X(wadi_result, world_set_update_settings, (wadi_world_id world, const wadi_update_settings* settings)) \
     X(wadi_result, world_update, (wadi_world_id world, uint64_t host_nanoseconds, wadi_frame* frame)) \
+    X(wadi_result, world_step, (wadi_world_id world, uint32_t steps)) \
+    X(wadi_result, world_get_time, (wadi_world_id world, double* seconds, uint64_t* steps)) \
     X(wadi_result, world_set_outputs, (wadi_world_id world, wadi_output_mask mask)) \
     X(wadi_result, world_get_view, (wadi_world_id world, wadi_output output, wadi_output_set set, wadi_output_view* view)) \
     X(wadi_result, world_set_host_outputs, (wadi_world_id world, wadi_output_mask mask)) \
     X(wadi_result, world_get_host_output, (wadi_world_id world, wadi_output output, const float** data, uint64_t* row_pitch, uint64_t* step)) \
     X(wadi_result, world_get_tiles, (wadi_world_id world, wadi_tile* tiles, uint32_t* count, uint64_t* step)) \
     X(wadi_result, world_get_dirty_regions, (wadi_world_id world, int64_t since_step, wadi_region* regions, uint32_t* count, uint64_t* step)) \
+    X(const char*, field_name, (wadi_field field)) \
+    X(wadi_result, world_read_field, (wadi_world_id world, wadi_field field, float* values, size_t count)) \
+    X(wadi_result, world_read_region, (wadi_world_id world, wadi_field field, const wadi_region* region, float* values, size_t count)) \
+    X(wadi_result, world_get_stats, (wadi_world_id world, wadi_world_stats* stats)) \
+    X(wadi_result, world_get_hash, (wadi_world_id world, uint64_t* hash)) \
+    X(wadi_result, world_query, (wadi_world_id world, const float* xy, uint32_t count, uint64_t* ticket)) \
+    X(wadi_result, world_get_query, (wadi_world_id world, uint64_t ticket, wadi_query_result* results, uint32_t capacity, uint32_t* count, uint64_t* step)) \
+    X(wadi_result, buoyancy_points, (const wadi_body* body, float* xy, uint32_t* count)) \
+    X(wadi_result, buoyancy_force, (const wadi_body* body, const wadi_query_result* results, uint32_t count, float force[3], float torque[3])) \
+    X(wadi_result, world_edit, (wadi_world_id world, const wadi_edit* edits, uint32_t count)) \
+    X(wadi_result, world_create_stamp, (wadi_world_id world, int32_t nx, int32_t ny, const float* values, uint32_t* stamp)) \
+    X(wadi_result, world_write_region, (wadi_world_id world, wadi_field field, const wadi_region* region, const float* values, size_t count)) \
+    X(wadi_result, world_prepare_effects, (wadi_world_id world)) \
+    X(wadi_result, world_trim, (wadi_world_id world)) \
+    X(wadi_result, world_get_material, (wadi_world_id world, wadi_material_info* infos, uint32_t* count)) \
+    X(wadi_result, world_set_material, (wadi_world_id world, const char* name, double value)) \
     X(wadi_result, world_save, (wadi_world_id world, void* data, size_t* size)) \
     X(wadi_result, world_load, (wadi_world_id world, const void* data, size_t size)) \
     X(wadi_result, world_save_file, (wadi_world_id world, const char* path)) \
@@ -47,26 +57,16 @@
     X(wadi_result, world_set_rollback, (wadi_world_id world, uint32_t frames, uint32_t interval_steps)) \
     X(wadi_result, world_get_rollback_steps, (wadi_world_id world, uint64_t* steps, uint32_t* count)) \
     X(wadi_result, world_roll_back, (wadi_world_id world, uint64_t step, uint64_t* reached)) \
-    X(wadi_result, world_get_hash, (wadi_world_id world, uint64_t* hash)) \
-    X(wadi_result, world_query, (wadi_world_id world, const float* xy, uint32_t count, uint64_t* ticket)) \
-    X(wadi_result, world_get_query, (wadi_world_id world, uint64_t ticket, wadi_query_result* results, uint32_t capacity, uint32_t* count, uint64_t* step)) \
-    X(wadi_result, buoyancy_points, (const wadi_body* body, float* xy, uint32_t* count)) \
-    X(wadi_result, buoyancy_force, (const wadi_body* body, const wadi_query_result* results, uint32_t count, float force[3], float torque[3])) \
-    X(wadi_result, world_get_memory, (wadi_world_id world, wadi_memory_item* items, uint32_t* count)) \
-    X(wadi_result, world_get_effects, (wadi_world_id world, wadi_effect_info* effects, uint32_t* count)) \
-    X(wadi_result, world_get_error, (wadi_world_id world)) \
-    X(wadi_result, world_edit, (wadi_world_id world, const wadi_edit* edits, uint32_t count)) \
-    X(wadi_result, world_create_stamp, (wadi_world_id world, int32_t nx, int32_t ny, const float* values, uint32_t* stamp)) \
-    X(wadi_result, world_prepare_effects, (wadi_world_id world)) \
-    X(wadi_result, world_trim, (wadi_world_id world)) \
-    X(wadi_result, world_get_material, (wadi_world_id world, wadi_material_info* infos, uint32_t* count)) \
-    X(wadi_result, world_set_material, (wadi_world_id world, const char* name, double value)) \
-    X(wadi_result, world_read_region, (wadi_world_id world, wadi_field field, const wadi_region* region, float* values, size_t count)) \
-    X(wadi_result, world_write_region, (wadi_world_id world, wadi_field field, const wadi_region* region, const float* values, size_t count)) \
     X(wadi_result, world_set_command_log, (wadi_world_id world, wadi_bool on)) \
     X(wadi_result, world_get_commands, (wadi_world_id world, void* data, size_t* size)) \
     X(wadi_result, world_play_commands, (wadi_world_id world, const void* data, size_t size)) \
-    X(wadi_result, create_world_from_level_text, (const char* json, wadi_read_file_callback read_file, void* user, const wadi_level_overrides* overrides, const wadi_device_options* options, wadi_world_id* world))
+    X(size_t, world_describe_plan, (wadi_world_id world, char* text, size_t size)) \
+    X(size_t, describe_table, (const char* table, char* text, size_t size)) \
+    X(wadi_result, world_get_effects, (wadi_world_id world, wadi_effect_info* effects, uint32_t* count)) \
+    X(wadi_result, world_get_memory, (wadi_world_id world, wadi_memory_item* items, uint32_t* count)) \
+    X(wadi_result, world_set_profiling, (wadi_world_id world, wadi_bool on)) \
+    X(wadi_result, world_get_stage_timings, (wadi_world_id world, wadi_stage_timing* timings, uint32_t* count)) \
+    X(wadi_result, world_get_error, (wadi_world_id world))
 
 typedef struct wadi_functions {
 #define WADI_MEMBER(RETURNS, NAME, ARGUMENTS) RETURNS (*NAME) ARGUMENTS;

@@ -81,10 +81,10 @@ with tempfile.TemporaryDirectory() as work:
         sys.exit("hosts with the first header find elsewhere: " + "; ".join(found))
     # Negative control: a field in the middle and a new number are found.
     text = (folders["present"] / "wadi/wadi.h").read_text(encoding="utf-8")
-    spoilt = text.replace("    double time; ", "    double before;\n    double time; ", 1).replace("WADI_LAYER_SAND = 1", "WADI_LAYER_SAND = 7")
+    spoilt = text.replace("    double time; ", "    double time, before; ").replace("WADI_LAYER_SAND = 1", "WADI_LAYER_SAND = 7")
     (folders["future"] / "wadi/wadi.h").write_text(spoilt, encoding="utf-8")
     found = moved({"first": folders["first"], "present": folders["future"]}, apis["first"], write_api.read(spoilt))
-    if not any(f.startswith("wadi_world_stats.time:") for f in found) or not any(f.startswith("WADI_LAYER_SAND:") for f in found):
+    if not any(f.startswith("wadi_world_stats.steps:") for f in found) or not any(f.startswith("WADI_LAYER_SAND:") for f in found):
         sys.exit(f"a header that lays out otherwise is not found: {found}")
     (folders["future"] / "wadi/wadi.h").write_text(grown, encoding="utf-8")
     refused = run(pathlib.Path(work) / "future", "future", "-DSET_UNKNOWN")
