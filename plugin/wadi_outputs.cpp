@@ -23,6 +23,10 @@ Status check_output(const char* function, wadi_output output) {
                                          std::to_string(WADI_OUTPUT_COUNT - 1));
 }
 
+wadi_format to_format(const OutputFormat& format) {
+    return format.component_bytes == 2 ? WADI_FORMAT_R16G16B16A16_FLOAT : static_cast<wadi_format>(format.components);
+}
+
 // Puts the function's name ahead of an engine's message.
 Status named(const char* function, Status status) {
     if (!status) status.message = std::string(function) + ": " + status.message;
@@ -65,7 +69,7 @@ wadi_result wadi_world_get_view(wadi_world_id id, wadi_output output, wadi_outpu
         own.buffer_bytes = found->buffer.bytes;
         own.nx = found->nx;
         own.ny = found->ny;
-        own.format = static_cast<wadi_format>(found->components);
+        own.format = to_format(found->format);
         own.step = found->step;
         own.finished = found->finished ? 1 : 0;
         give(view, own);
@@ -81,7 +85,7 @@ wadi_result wadi_world_get_host_output(wadi_world_id id, wadi_output output, con
         if (auto status = check_output(function, output); !status) return report(status);
         auto found = hosted.world->outputs().host_view(static_cast<Output>(output));
         if (!found) return report(named(function, found.status()));
-        *data = found->data;
+        *data = reinterpret_cast<const float*>(found->data);
         if (row_pitch != nullptr) *row_pitch = found->row_pitch;
         if (step != nullptr) *step = found->step;
         return report(ok_status());

@@ -13,7 +13,7 @@ namespace wadi::compute {
 enum class Access : std::uint8_t { in, out, inout };
 
 /// f32_or_f16: 16-bit floats with EFFECT_HALF_STORAGE.
-enum class Scalar : std::uint8_t { f32, u32, i32, vec2, vec4, f32_or_f16 };
+enum class Scalar : std::uint8_t { f32, u32, i32, vec2, vec4, uvec2, f32_or_f16 };
 
 /// Which (i, j) a stage runs over.
 /// cells: nx x ny. faces: (nx+1) x (ny+1). rim: 2(nx+ny) x 1, the outer faces in the order west, east, south, north.

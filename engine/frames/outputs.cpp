@@ -11,21 +11,23 @@ struct Kind {
     const char* stage;   // null: the field is copied as it is
     const char* binding; // the stage's output, or the field
     const char* layer;   // of publish_flow: whose velocity
-    int components;
+    OutputFormat format;
 };
 
 constexpr Kind kinds[] = {
-    {"terrain", nullptr, "terrain", nullptr, 1},
-    {"sand_surface", "publish_sand_surface", "sand_surface", nullptr, 1},
-    {"free_surface", "publish_free_surface", "free_surface", nullptr, 1},
-    {"sand_depth", nullptr, "sand_height", nullptr, 1},
-    {"water_depth", "publish_water_depth", "water_depth", nullptr, 1},
-    {"saturation", "publish_saturation", "surface_saturation", nullptr, 1},
-    {"flow", "publish_flow", "flow", "water_velocity_", 2},
-    {"sand_flow", "publish_flow", "flow", "sand_velocity_", 2},
-    {"foam", "publish_foam", "foam", nullptr, 1},
-    {"normal", "publish_normal", "normal", nullptr, 4},
-    {"smooth_surface", "publish_smooth_surface", "smooth_surface", nullptr, 1},
+    {"terrain", nullptr, "terrain", nullptr, {1}},
+    {"sand_surface", "publish_sand_surface", "sand_surface", nullptr, {1}},
+    {"free_surface", "publish_free_surface", "free_surface", nullptr, {1}},
+    {"sand_depth", nullptr, "sand_height", nullptr, {1}},
+    {"water_depth", "publish_water_depth", "water_depth", nullptr, {1}},
+    {"saturation", "publish_saturation", "surface_saturation", nullptr, {1}},
+    {"flow", "publish_flow", "flow", "water_velocity_", {2}},
+    {"sand_flow", "publish_flow", "flow", "sand_velocity_", {2}},
+    {"foam", "publish_foam", "foam", nullptr, {1}},
+    {"normal", "publish_normal", "normal", nullptr, {4}},
+    {"smooth_surface", "publish_smooth_surface", "smooth_surface", nullptr, {1}},
+    {"packed", "publish_packed", "packed_surface", nullptr, {4}},
+    {"packed_half", "publish_packed_half", "packed_surface", nullptr, {4, 2}},
 };
 static_assert(std::size(kinds) == static_cast<std::size_t>(Output::count));
 
@@ -56,25 +58,21 @@ std::uint32_t Outputs::fields_of(const Asked& asked) {
 
 std::uint32_t Outputs::interpolated() const {
     std::uint32_t mask = 0;
-    for_outputs(asked_.interpolate ? asked_.mask : 0, [&](Output o) { mask |= kind_of(o).components == 1 ? bit(o) : 0; });
+    for_outputs(asked_.interpolate ? asked_.mask : 0, [&](Output o) { mask |= kind_of(o).format.components == 1 ? bit(o) : 0; });
     return mask;
 }
 
 compute::Buffer Outputs::buffer(Output output, std::size_t set) const { return buffers_[label(output, set)]; }
 
-std::uint64_t Outputs::first_byte(Output output) const {
-    return state_.layout().index(0, 0) * 4 * static_cast<std::uint64_t>(kind_of(output).components);
-}
+std::uint64_t Outputs::first_byte(Output output) const { return state_.layout().index(0, 0) * kind_of(output).format.bytes(); }
 
 std::vector<compute::BufferDesc> Outputs::wanted_buffers(const Asked& asked) const {
     const auto& layout = state_.layout();
     std::vector<compute::BufferDesc> wanted;
     for_outputs(fields_of(asked), [&](Output o) {
         for (std::size_t set = 0; set < sets; ++set)
-            wanted.push_back({.bytes = layout.size() * 4 * static_cast<std::uint64_t>(kind_of(o).components),
-                              .label = label(o, set),
-                              .shared = true});
-        if (asked.interpolate && (asked.mask & bit(o)) != 0 && kind_of(o).components == 1)
+            wanted.push_back({.bytes = layout.size() * kind_of(o).format.bytes(), .label = label(o, set), .shared = true});
+        if (asked.interpolate && (asked.mask & bit(o)) != 0 && kind_of(o).format.components == 1)
             wanted.push_back({.bytes = layout.size() * 4, .label = interpolated_label(o), .shared = true});
     });
     if ((asked.mask & tiles_bit) != 0) {
@@ -94,7 +92,7 @@ std::vector<HostCopies::Item> Outputs::wanted_copies(const Asked& asked) const {
                        static_cast<std::uint64_t>(layout.nx);
     std::vector<HostCopies::Item> items;
     for_outputs(asked.host, [&](Output o) {
-        HostCopies::Item item{kind_of(o).name, {}, first_byte(o), cells * 4 * static_cast<std::uint64_t>(kind_of(o).components)};
+        HostCopies::Item item{kind_of(o).name, {}, first_byte(o), cells * kind_of(o).format.bytes()};
         for (std::size_t set = 0; set < sets; ++set) item.from[set] = buffer(o, set);
         items.push_back(item);
     });
@@ -240,9 +238,9 @@ Result<OutputView> Outputs::view(Output output, OutputSet set) const {
     if (!native) return native.status();
     OutputView view;
     view.buffer = *native;
-    view.components = kind_of(output).components;
+    view.format = kind_of(output).format;
     view.offset = first_byte(output);
-    view.row_pitch = static_cast<std::uint64_t>(state_.layout().pitch()) * 4 * static_cast<std::uint64_t>(view.components);
+    view.row_pitch = static_cast<std::uint64_t>(state_.layout().pitch()) * view.format.bytes();
     view.nx = state_.layout().nx;
     view.ny = state_.layout().ny;
     view.step = sets_[at].step;
@@ -256,9 +254,7 @@ Result<Outputs::HostView> Outputs::host_view(Output output) {
     auto copy = copies_.newest();
     if (!copy) return copy.status();
     const auto& contents = (*copy)->contents.at(kind.name);
-    return HostView{reinterpret_cast<const float*>(contents.data()),
-                    static_cast<std::uint64_t>(state_.layout().pitch()) * 4 * static_cast<std::uint64_t>(kind.components),
-                    (*copy)->step};
+    return HostView{contents.data(), static_cast<std::uint64_t>(state_.layout().pitch()) * kind.format.bytes(), (*copy)->step};
 }
 
 Result<Tiles> Outputs::tiles() {

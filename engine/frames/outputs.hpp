@@ -19,12 +19,21 @@ enum class Output : std::uint32_t {
     foam,
     normal,
     smooth_surface,
+    packed,
+    packed_half,
     count
 };
 constexpr std::uint32_t bit(Output output) { return 1u << static_cast<std::uint32_t>(output); }
 constexpr std::uint32_t all_outputs = bit(Output::count) - 1;
 /// One more bit of the mask, which is no field: see Tile.
 constexpr std::uint32_t tiles_bit = 1u << 31;
+
+/// What lies in a cell of an output: so many floats.
+struct OutputFormat {
+    int components = 1;      // 1, 2 or 4
+    int component_bytes = 4; // 4, or 2: IEEE binary16
+    std::uint64_t bytes() const { return static_cast<std::uint64_t>(components * component_bytes); }
+};
 
 enum class OutputSet { previous, current, interpolated };
 
@@ -34,7 +43,7 @@ struct OutputView {
     std::uint64_t offset = 0;    // of cell (0, 0) [bytes]
     std::uint64_t row_pitch = 0; // [bytes]
     int nx = 0, ny = 0;
-    int components = 1;     // floats per cell: 1, 2 or 4
+    OutputFormat format;
     std::uint64_t step = 0; // the state after that many steps
     bool finished = false;  // the device has written it
 };
@@ -64,7 +73,7 @@ class Outputs {
     Result<OutputView> view(Output output, OutputSet set) const;
     /// The newest copy in host memory; its rows are row_pitch bytes apart. Errors: bad_argument (not asked for), not_ready.
     struct HostView {
-        const float* data = nullptr;
+        const std::byte* data = nullptr;
         std::uint64_t row_pitch = 0, step = 0;
     };
     Result<HostView> host_view(Output output);

@@ -13,4 +13,11 @@ FN float breaking_foam(float rise, float wave2) { return wclamp((divide_or_zero(
 // Films thinner than a tenth of a cell carry less.
 FN float film_weight(float depth, float inv_dx) { return wclamp(10.0f * depth * inv_dx, 0.0f, 1.0f); }
 
+// Of water of a depth; `inflow`: sum of what enters less what leaves along both axes [m/s], -div(u) dx.
+FN float foam_of(float depth, float speed2, float inflow, float gravity, float inv_dx) {
+    float wave2 = gravity * depth;
+    float rise = depth * inflow * inv_dx;
+    return flush(wmax(jet_foam(speed2, wave2), breaking_foam(rise, wave2)) * film_weight(depth, inv_dx));
+}
+
 #endif

@@ -12,7 +12,7 @@ namespace {
 
 const std::set<std::string> extents = {"CELLS",  "FACES", "RIM",       "STRIPS",    "SOURCE_PIECES",
                                        "POINTS", "TILES", "TILE_ROWS", "TILE_LINES"};
-const std::set<std::string> types = {"float", "float_or_half", "uint", "int", "vec2", "vec4"};
+const std::set<std::string> types = {"float", "float_or_half", "uint", "int", "vec2", "vec4", "uvec2"};
 
 std::string joined(const std::set<std::string>& words) {
     std::string text;

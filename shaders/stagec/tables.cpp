@@ -42,9 +42,13 @@ std::string stage_table(const std::vector<std::string>& paths, const Effects& ef
         const Stage& s = fused.stage;
         o << "constexpr StageBinding bindings_" << s.name << "[] = {\n";
         for (const auto& b : s.bindings) {
-            const std::map<std::string, std::string> types = {{"float", "f32"}, {"uint", "u32"},
-                                                              {"int", "i32"},   {"vec2", "vec2"},
-                                                              {"vec4", "vec4"}, {"float_or_half", "f32_or_f16"}};
+            const std::map<std::string, std::string> types = {{"float", "f32"},
+                                                              {"uint", "u32"},
+                                                              {"int", "i32"},
+                                                              {"vec2", "vec2"},
+                                                              {"vec4", "vec4"},
+                                                              {"uvec2", "uvec2"},
+                                                              {"float_or_half", "f32_or_f16"}};
             const std::map<std::string, std::string> access = {{"IN", "in"}, {"OUT", "out"}, {"INOUT", "inout"}};
             o << "    {\"" << b.name << "\", " << b.slot << ", Access::" << access.at(b.access)
               << ", Scalar::" << types.at(b.type) << ", " << b.condition << ", " << b.empty << "},\n";

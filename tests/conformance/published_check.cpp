@@ -1,5 +1,6 @@
 // Published fields by their definitions, in both precisions: single cells, the flow map, foam, normals, the smoothed surface and
 // the interpolation between two publishes.
+#include "engine/step/half.hpp"
 #include "tests/conformance/stage_checks.hpp"
 #include <algorithm>
 #include <array>
@@ -50,6 +51,10 @@ template <class Real> struct Publisher {
         const Real size = std::sqrt(1 + x * x + y * y);
         return {-x / size, -y / size, 1 / size, 0};
     }
+    Real saturation(int i, int j) const {
+        const bool dry = !(sand(i, j) > param(run.params.dry_threshold));
+        return dry ? Real(0) : water(i, j) / (water(i, j) + sand(i, j));
+    }
     Real smooth(int i, int j) const {
         Real sum = 0;
         for (int b = -1; b <= 1; ++b)
@@ -66,13 +71,13 @@ template <class Real> struct Publisher {
         if (name == "sand_surface") return {in("terrain", i, j) + sand(i, j)};
         if (name == "foam") return {foam(i, j)};
         if (name == "normal") return normal(i, j);
+        if (name == "packed_surface") return {surface(i, j), depth(i, j), foam(i, j), saturation(i, j)};
         if (name == "smooth_surface") return {smooth(i, j)};
         if (name == "interpolated_output") {
             const Real f = param(run.pilot.input.interpolation), from = in("previous_output", i, j);
             return {from + f * (in("current_output", i, j) - from)};
         }
-        const bool dry = !(sand(i, j) > param(run.params.dry_threshold));
-        return {dry ? Real(0) : water(i, j) / (water(i, j) + sand(i, j))};
+        return {saturation(i, j)};
     }
 };
 
@@ -84,7 +89,10 @@ Verdict check_published(const StageRun& run) {
     for (const auto& binding : run.stage.bindings) {
         if (binding.access != compute::Access::out) continue;
         const std::string name(binding.name);
-        const std::size_t components = binding.type == compute::Scalar::vec4 ? 4 : binding.type == compute::Scalar::vec2 ? 2 : 1;
+        const bool half = binding.type == compute::Scalar::uvec2; // four 16-bit floats
+        const std::size_t components = half || binding.type == compute::Scalar::vec4 ? 4
+                                       : binding.type == compute::Scalar::vec2       ? 2
+                                                                                     : 1;
         std::vector<std::vector<float>> got(components, std::vector<float>(layout.size())), narrow = got;
         std::vector<std::vector<double>> exact(components, std::vector<double>(layout.size()));
         std::vector<FieldCheck> checks; // the components of one vector share a scale
@@ -92,8 +100,11 @@ Verdict check_published(const StageRun& run) {
             for (int j = 0; j < layout.ny; ++j) {
                 for (int i = 0; i < layout.nx; ++i) {
                     const std::size_t at = layout.index(i, j);
-                    got[n][at] = run.buffer(name.c_str()).floats()[at * components + n];
-                    narrow[n][at] = Publisher<float>{run}.value(name, i, j)[n];
+                    const auto& buffer = run.buffer(name.c_str());
+                    const float value = Publisher<float>{run}.value(name, i, j)[n];
+                    got[n][at] = half ? from_half(static_cast<std::uint16_t>(buffer.words()[at * 2 + n / 2] >> 16 * (n % 2)))
+                                      : buffer.floats()[at * components + n];
+                    narrow[n][at] = half ? from_half(to_half(value)) : value;
                     exact[n][at] = Publisher<double>{run}.value(name, i, j)[n];
                 }
             }

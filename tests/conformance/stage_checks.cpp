@@ -168,6 +168,8 @@ constexpr Definition definitions[] = {
     {"publish_foam", check_published},
     {"publish_free_surface", check_published},
     {"publish_normal", check_published},
+    {"publish_packed", check_published},
+    {"publish_packed_half", check_published},
     {"publish_sand_surface", check_published},
     {"publish_saturation", check_published},
     {"publish_smooth_surface", check_published},

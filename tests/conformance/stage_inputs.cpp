@@ -35,7 +35,7 @@ constexpr std::array stages_with_stale_ghosts = {"center_water_velocity",
                                                  "apply_sand_stress"};
 
 std::size_t components_of(compute::Scalar type) {
-    return type == compute::Scalar::vec4 ? 4 : type == compute::Scalar::vec2 ? 2 : 1;
+    return type == compute::Scalar::vec4 ? 4 : type == compute::Scalar::vec2 || type == compute::Scalar::uvec2 ? 2 : 1;
 }
 
 bool contains(const compute::Range2& r, int i, int j) { return i >= r.i0 && i < r.i1 && j >= r.j0 && j < r.j1; }

@@ -3,6 +3,7 @@
 #include "tests/plugin/plugin_world.hpp"
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <initializer_list>
@@ -15,7 +16,26 @@ namespace {
 constexpr uint32_t every_output = WADI_OUTPUT_BIT(WADI_OUTPUT_COUNT) - 1u;
 
 int components(wadi_output output) {
-    return output == WADI_OUTPUT_NORMAL ? 4 : output == WADI_OUTPUT_FLOW || output == WADI_OUTPUT_SAND_VELOCITY ? 2 : 1;
+    const bool four = output == WADI_OUTPUT_NORMAL || output == WADI_OUTPUT_PACKED;
+    return four ? 4 : output == WADI_OUTPUT_FLOW || output == WADI_OUTPUT_SAND_VELOCITY ? 2 : 1;
+}
+
+// An IEEE binary16 number that is finite.
+double half_value(unsigned bits) {
+    const int exponent = static_cast<int>(bits >> 10 & 31u), mantissa = static_cast<int>(bits & 1023u);
+    const double size = exponent == 0 ? std::ldexp(mantissa, -24) : std::ldexp(1024 + mantissa, exponent - 25);
+    return (bits & 0x8000u) != 0 ? -size : size;
+}
+
+// Whether the bits are those of the 16-bit float nearest to a value, the even one of two.
+bool nearest_half(unsigned bits, double value) {
+    const double miss = std::abs(half_value(bits) - value);
+    for (const unsigned beside : {bits + 1, bits - 1}) {
+        if ((bits & 0x7fffu) == 0 && beside == bits - 1) continue;
+        const double other = std::abs(half_value(beside) - value);
+        if (other < miss || (other == miss && (bits & 1u) != 0)) return false;
+    }
+    return bits != 0x8000u;
 }
 
 // One component of a published field as nx * ny floats.
@@ -122,6 +142,57 @@ TEST_CASE("published fields are those that reading gives, on every backend") {
                 sum += static_cast<float>((2 - std::abs(a)) * (2 - std::abs(b))) * at(world, surface, i + a, j + b);
         }
         CHECK(at(world, smooth, i, j) == doctest::Approx(sum / 16));
+    }
+}
+
+TEST_CASE("packed outputs hold what its four outputs hold, those of 16 bits the nearest to it, on every backend") {
+    CHECK(nearest_half(0x3c00, 1)); // controls
+    CHECK(nearest_half(0xbc00, -1.0004));
+    CHECK(nearest_half(0x0001, 5e-8));
+    CHECK_FALSE(nearest_half(0x3c01, 1));
+    CHECK_FALSE(nearest_half(0x3c01, 1 + std::ldexp(1, -11)));
+    for (const auto& backend : backends()) {
+        CAPTURE(backend);
+        const World world(backend, 40, 36, 0.01, 0, 3);
+        const std::vector<float> pit(40 * 36, -1.3F); // elevations of both signs
+        const wadi_region low{0, 0, 40, 18};
+        REQUIRE(wadi_world_write_region(world.id, WADI_FIELD_TERRAIN, &low, pit.data(), 40 * 18) == WADI_OK);
+        REQUIRE(wadi_world_set_outputs(world.id, WADI_OUTPUT_BIT(WADI_OUTPUT_PACKED_HALF)) == WADI_OK);
+        REQUIRE(wadi_world_set_host_outputs(world.id, every_output) == WADI_OK);
+        world.keep_all_steps();
+        for (int n = 0; n < 30; ++n) world.update(step_time);
+        world.wait();
+        world.update(0);
+        world.wait();
+        const float* data = nullptr;
+        uint64_t pitch = 0;
+        REQUIRE(wadi_world_get_host_output(world.id, WADI_OUTPUT_PACKED_HALF, &data, &pitch, nullptr) == WADI_OK);
+        const wadi_output_view seen = [&] {
+            auto found = wadi_default_output_view();
+            CHECK(wadi_world_get_view(world.id, WADI_OUTPUT_PACKED_HALF, WADI_OUTPUT_CURRENT, &found) == WADI_OK);
+            return found;
+        }();
+        CHECK(seen.format == WADI_FORMAT_R16G16B16A16_FLOAT);
+        CHECK(seen.row_pitch == pitch);
+        CHECK(seen.offset % 8 == 0);
+        CHECK(view(world, WADI_OUTPUT_PACKED, WADI_OUTPUT_CURRENT).row_pitch == 2 * pitch);
+        const wadi_output channels[4] = {WADI_OUTPUT_FREE_SURFACE, WADI_OUTPUT_WATER_DEPTH, WADI_OUTPUT_FOAM,
+                                         WADI_OUTPUT_SATURATION};
+        for (int channel = 0; channel < 4; ++channel) {
+            CAPTURE(channel);
+            const auto alone = host(world, channels[channel]);
+            CHECK(host(world, WADI_OUTPUT_PACKED, channel) == alone);
+            CHECK(*std::max_element(alone.begin(), alone.end()) > 0.0F);
+            int wrong = 0;
+            for (int j = 0; j < world.ny; ++j) {
+                const auto* row = reinterpret_cast<const uint16_t*>(data) + static_cast<uint64_t>(j) * pitch / 2;
+                for (int i = 0; i < world.nx; ++i)
+                    wrong += nearest_half(row[i * 4 + channel], static_cast<double>(at(world, alone, i, j))) ? 0 : 1;
+            }
+            CHECK(wrong == 0);
+        }
+        const auto surface = host(world, WADI_OUTPUT_FREE_SURFACE);
+        CHECK(*std::min_element(surface.begin(), surface.end()) < 0.0F);
     }
 }
 

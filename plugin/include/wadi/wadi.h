@@ -346,7 +346,7 @@ WADI_API wadi_result wadi_world_update(wadi_world_id world, uint64_t host_nanose
 /** Advances by `steps` water steps of fixed dt.
  *  Returns before the device has finished; reads wait for it.
  *  Waits: while the device's queue is full.
- *  Errors: OUT_OF_MEMORY (a new material). */
+ *  Errors: OUT_OF_MEMORY (a new material; the steps ahead of it are taken, wadi_world_get_time counts them). */
 WADI_API wadi_result wadi_world_step(wadi_world_id world, uint32_t steps);
 
 /** Simulated time [s] and water steps so far. Either pointer may be NULL. */
@@ -369,7 +369,10 @@ typedef enum wadi_output WADI_ENUM {
                                        Fr = |u|/sqrt(g h) (fast water), R = -h div(u)/sqrt(g h) (rising, breaking fronts) */
     WADI_OUTPUT_NORMAL = 9,         /* unit normal of the visible surface: east, north, up, 0; 4 floats */
     WADI_OUTPUT_SMOOTH_SURFACE = 10, /* elevation of the visible surface after a 3 x 3 Gaussian [m], 1 float */
-    WADI_OUTPUT_COUNT = 11
+    WADI_OUTPUT_PACKED = 11,        /* one texel to draw a surface with: FREE_SURFACE, WATER_DEPTH, FOAM, SATURATION; 4 floats */
+    WADI_OUTPUT_PACKED_HALF = 12,   /* the same, each rounded to a 16-bit float (11 bits: a surface 16 ... 32 m up to 16 mm), at most
+                                       65504; 8 bytes */
+    WADI_OUTPUT_COUNT = 13
 } wadi_output;
 /** Outputs, each by WADI_OUTPUT_BIT. */
 typedef uint32_t wadi_output_mask;
@@ -400,8 +403,9 @@ typedef enum wadi_handle_kind WADI_ENUM {
 typedef enum wadi_format WADI_ENUM {
     WADI_FORMAT_R32_FLOAT = 1,
     WADI_FORMAT_R32G32_FLOAT = 2,
-    WADI_FORMAT_R32G32B32A32_FLOAT = 4
-} wadi_format; /* the value is the number of floats */
+    WADI_FORMAT_R32G32B32A32_FLOAT = 4,
+    WADI_FORMAT_R16G16B16A16_FLOAT = 8 /* 8 bytes; those above: so many floats of 4 bytes */
+} wadi_format;
 /** Where a published field lies on the device. Read only. */
 typedef struct wadi_output_view {
     uint32_t struct_size;
@@ -430,8 +434,9 @@ WADI_API wadi_result wadi_world_get_view(wadi_world_id world, wadi_output output
  *  Waits and errors: those of wadi_world_set_outputs. */
 WADI_API wadi_result wadi_world_set_host_outputs(wadi_world_id world, wadi_output_mask mask);
 /** The newest copy that has arrived, usually of the update before.
- *  Cell (i, j) begins at byte j * row_pitch + i * bytes of a cell. The same for all calls between two updates; valid until the second
- *  next update or until a mask changes. row_pitch [bytes] and step may be NULL.
+ *  Cell (i, j) begins at byte j * row_pitch + i * bytes of a cell; PACKED_HALF has four 16-bit floats there (const uint16_t*). The
+ *  same for all calls between two updates; valid until the second next update or until a mask changes. row_pitch [bytes] and step may be
+ *  NULL.
  *  Errors: BAD_ARGUMENT (no such output, not asked for), NOT_READY (none has arrived yet). */
 WADI_API wadi_result wadi_world_get_host_output(wadi_world_id world, wadi_output output, const float** data, uint64_t* row_pitch,
                                                 uint64_t* step);
