@@ -1,6 +1,5 @@
 """A half column in plane strain or a quarter of a round one, by the material point method, in Taichi: MLS-MPM (Hu et al. 2018) with
-Drucker-Prager sand (Klar et al. 2016, section 6) and the correction of volume of Tampubolon et al. (2017, section 4.3.4). One processor
-thread, single precision. Importing it raises ImportError where Taichi is not installed."""
+Drucker-Prager sand (Klar et al. 2016) and the volume correction of Tampubolon et al. (2017). One processor thread, single precision. Importing it raises ImportError where Taichi is not installed."""
 import math
 import time
 
@@ -28,8 +27,7 @@ class Column:
         self.step_size = COURANT * cell / math.sqrt((self.lame + 2 * self.shear) / DENSITY)
         self.tip = 3 * cohesion / cone / (3 * self.lame + 2 * self.shear) if cohesion else 0.0  # in logarithmic volume
         sine = math.sin(math.atan(cone))
-        self.cone = math.sqrt(2 / 3) * 2 * sine / (3 - sine)  # Klar et al. 2016, the alpha of their equation 27
-        self.spacing = cell / SIDE
+        self.cone = math.sqrt(2 / 3) * 2 * sine / (3 - sine)  # alpha of Klar et al. 2016
         places = self.sites(half, height)
         self.count = len(places)
         area = math.pi * half**2 / 4 if dimensions == 3 else half
@@ -52,11 +50,12 @@ class Column:
 
     def sites(self, half, height):
         """Places of the particles: a lattice, each moved by up to a quarter of its spacing."""
-        across, up = (np.arange(round(length / self.spacing)) + 0.5 for length in (half, height))
+        spacing = self.cell / SIDE
+        across, up = (np.arange(round(length / spacing)) + 0.5 for length in (half, height))
         axes = np.meshgrid(*[across] * (self.dimensions - 1), up, indexing="ij")
         places = np.stack([axis.ravel() for axis in axes], axis=1)
         places += np.random.default_rng(1).uniform(-0.25, 0.25, places.shape)
-        places *= self.spacing
+        places *= spacing
         return places[np.linalg.norm(places[:, :-1], axis=1) < half]
 
     @ti.func
@@ -69,7 +68,7 @@ class Column:
 
     @ti.func
     def returned(self, strain, gained):
-        """Strain on or inside the cone, and what volume is still to be lost (Klar et al. 2016, section 6.3)."""
+        """Strain on or inside the cone, and what volume is still to be lost: projection to the yield surface, Klar et al. 2016."""
         whole = strain + (gained - self.tip) / 3
         trace = whole.sum()
         deviator = whole - trace / 3
@@ -154,10 +153,11 @@ class Column:
             self.clock += self.step_size
         return time.process_time() - begin
 
-    def depths(self, width, samples=4):
-        """Depth of the sand in rings or strips of `width` about the middle; a particle is as wide as its spacing."""
+    def depths(self, width, samples=8):
+        """Depth of the sand in rings or strips of `width` about the middle; a particle is as wide as a cell, which is what makes coarse
+        ones err least."""
         places = self.x.to_numpy()[:, :-1]
-        offsets = ((np.arange(samples) + 0.5) / samples - 0.5) * self.spacing
+        offsets = ((np.arange(samples) + 0.5) / samples - 0.5) * self.cell
         count = int(self.last / width) + 1
         held, shares = np.zeros(count), samples ** (self.dimensions - 1)
         for moved in np.stack(np.meshgrid(*[offsets] * (self.dimensions - 1)), axis=-1).reshape(shares, -1):
