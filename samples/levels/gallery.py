@@ -53,7 +53,8 @@ def shots(folder):
     level = read_level(folder)
     yield None, level, folder / "picture.png"
     for variant, patch in sorted(level.get("variants", {}).items()):
-        yield variant, merged(level, patch), folder / f"picture_{variant}.png"
+        if patch:  # {} is the level itself
+            yield variant, merged(level, patch), folder / f"picture_{variant}.png"
 
 
 def take(options, folder, variant, level, picture):
