@@ -28,6 +28,7 @@ import charts  # noqa: E402
 import columns  # noqa: E402  scenes, references and measures of tests/sand
 import cuts  # noqa: E402
 import shapes  # noqa: E402
+import stamps  # noqa: E402
 from scene import Lab, level  # noqa: E402
 
 ASPECTS, HALF, STRIP = columns.ASPECTS, columns.HALF, columns.STRIP
@@ -208,6 +209,7 @@ def write_page(results, cohesive, out):
     lines += ["## Cohesive columns", "", f"Planar, a = 1, after {cuts.SECONDS} s, dry sand with cohesion.", ""]
     head = ["Rankine's height / the column's", "", "share of Rankine's wedge that left", "toe [m]", "centre [m]"]
     lines += table(head, [[f"{ratio:g}", f"{method}, {cell:g} m", f"{left:.2f}", f"{toe:.1f}", f"{centre:.2f}"] for ratio, method, cell, left, toe, centre in cohesive])
+    lines += ["", stamps.stamp("mpm")]
     page = out / "README.md"
     text = page.read_text() if page.exists() else f"# Wadi beside the material point method\n\n{BEGIN_MARK}{END_MARK}"
     start, end = text.index(BEGIN_MARK) + len(BEGIN_MARK), text.index(END_MARK)

@@ -1,5 +1,6 @@
 """A half column in plane strain or a quarter of a round one, by the material point method, in Taichi: MLS-MPM (Hu et al. 2018) with
-Drucker-Prager sand (Klar et al. 2016) and the volume correction of Tampubolon et al. (2017). One processor thread, single precision. Importing it raises ImportError where Taichi is not installed."""
+Drucker-Prager sand (Klar et al. 2016) and the volume correction of Tampubolon et al. (2017). One processor thread, single precision.
+Importing it raises ImportError where Taichi is not installed."""
 import math
 import time
 
