@@ -16,6 +16,7 @@ import sys
 
 import pairs
 import recordings
+import stamps
 
 # effect: (level, cells, seconds, what the level is changed by, what to look at)
 SHOWN = {
@@ -108,7 +109,7 @@ def write_page(recorder, only, out):
     lines = ["# Effect by effect", "", "What leaving one effect out of a level changes (`\"effects\": { NAME: \"off\" }`, what needs it off as well; `shock_viscosity`, a choice of method: 0); left with it, right without. Sand and water "
              "surface: mean absolute difference in percent of the range over which they moved with the effect on. Pixels: of the picture, different by a tenth or more. "
              f"Made by `samples/report/effects.py BIN` on {device['backend']}: {device['name']}{'; processor time' if recorder.processor_time else ''}, least of three.", "",
-             "| " + " | ".join(head) + " |", "| --- | --- " + "| ---: " * (len(head) - 2) + "|", *("| " + " | ".join(row) + " |" for row in numbers), "", *shown]
+             "| " + " | ".join(head) + " |", "| --- | --- " + "| ---: " * (len(head) - 2) + "|", *("| " + " | ".join(row) + " |" for row in numbers), "", *shown, stamps.stamp("effects"), ""]
     (out / "README.md").write_text("\n".join(lines))
 
 

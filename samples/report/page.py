@@ -4,6 +4,7 @@ import math
 
 import charts
 import scenes
+import stamps
 from prices import LEDGER_LEVEL as LEVEL, LEDGER_PASSES as PASSES, WATER_LEVEL
 import sweep
 from scene import NORMS
@@ -40,7 +41,7 @@ class Page:
         self.html.append(svg)
 
     def write(self):
-        (self.out / "README.md").write_text("\n".join(self.markdown))
+        (self.out / "README.md").write_text("\n".join([*self.markdown, stamps.stamp("report"), ""]))
         style = "body{font-family:sans-serif;max-width:75em;margin:2em auto;padding:0 1em}table{border-collapse:collapse;margin:1em 0}td,th{border:1px solid #ccc;padding:.2em .5em;text-align:right}td:first-child,th:first-child{text-align:left}"
         (self.out / "report.html").write_text(f"<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Wadi: what accuracy costs</title><style>{style}</style>\n"
                                               + "\n".join(self.html) + "</html>\n")

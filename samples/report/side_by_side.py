@@ -18,7 +18,9 @@ import sys
 import cases
 import charts
 import exact
+import literal
 import recordings
+import stamps
 from recordings import LEVELS
 
 import check_claims  # beside measures: recordings put it on the path
@@ -81,15 +83,25 @@ def profiles(recorder, out):
         (out / f"{name}.svg").write_text(charts.line_chart(title, "x [m]", "depth [m]", series))
 
 
+def shown(name, method, variant=None):
+    """What a recorder runs of a shipped level, and how. Bed load is ours, and without the outflow limiter nothing bounds it: published goes
+    without (literal.py has what happens else)."""
+    if method != "published":
+        return {"level": name, "method": method, "variant": variant}
+    level = recordings.read_level(name)
+    level = recordings.merged(level, level.get("variants", {}).get(variant, {}))
+    return {"level": recordings.merged(level, {"effects": {"bed_shear": "off"}}), "method": method}
+
+
 def claims_of(recorder, name, method, small):
     """[(sentence, value, unit, bound as text, holds)] of a level under a method, and its largest values."""
     expected = json.loads((LEVELS / name / "expected.json").read_text())
     runs, worst = {}, {}
     for run_name, run in expected["runs"].items():
-        options = {**(expected["small"] if small else {}), **run, "method": method}
+        options = {**(expected["small"] if small else {}), **run}
+        options |= shown(name, method, options.pop("variant", None))
         seconds = options.pop("seconds", max(expected["times"]))
-        runs[run_name], summary = recorder.record(name, seconds=seconds, times=expected["times"], fields=("H", "hs", "W", "hw", "surface", "phi"),
-                                                  **options)
+        runs[run_name], summary = recorder.record(seconds=seconds, times=expected["times"], fields=("H", "hs", "W", "hw", "surface", "phi"), **options)
         for what, value in (("water", summary["extremes"]["largest_water_speed_m_per_s"]), ("sand", summary["extremes"]["largest_sand_speed_m_per_s"]),
                             ("drift", max(abs(entry["relative_drift"]) if entry["drift_quanta"] else 0
                                           for entry in (summary["ledger"][m] for m in ("water", "sand")))),
@@ -107,7 +119,7 @@ def picture(recorder, name, method, small, out):
     expected = json.loads((LEVELS / name / "expected.json").read_text())
     options = dict(expected["small"]) if small else {}
     options.pop("seconds", None)
-    run, _ = recorder.record(name, method=method, seconds=max(expected["times"]), pictures=3, **options)
+    run, _ = recorder.record(**shown(name, method), seconds=max(expected["times"]), pictures=3, **options)
     shutil.copy(run.folder / "contact_sheet.png", out / f"{name}_{method}.png")
 
 
@@ -161,6 +173,9 @@ def write_page(recorder, conformance, options):
                                 for method, (_, w) in sides.items()) + ".", ""]
         if name in LEVELS_WITH_PICTURES:
             lines += table(METHODS, [[f"![{name}, {method}]({name}_{method}.png)" for method in METHODS]]) + [""]
+    if not options.only:
+        lines += literal.lines(recorder, out, table)
+    lines += [stamps.stamp("methods"), ""]
     page = out / "README.md"
     text = page.read_text() if page.exists() else f"# Methods\n\n{BEGIN}{END}"
     start, end = text.index(BEGIN) + len(BEGIN), text.index(END)

@@ -15,6 +15,7 @@ import charts
 import prices
 import recordings
 import scenes
+import stamps
 from side_by_side import METHODS, number, table
 
 SCENES = {  # the paper's grids; its time steps do not fit our grids' lengths
@@ -301,6 +302,7 @@ def main():
         for section in sections:
             lines += section()
             page.write_text(text[:start] + "\n".join(lines) + text[end:])
+        page.write_text(text[:start] + "\n".join([*lines, stamps.stamp("timings"), ""]) + text[end:])
     finally:
         for recorder in recorders.values():
             recorder.close()
