@@ -36,10 +36,10 @@ class Recorder:
         self.close()
 
     def record(self, level, *, method=None, variant=None, accuracy=None, size=None, dt=None, fused=None, seconds=None, times=(), fields=("H", "hs", "W", "surface"),
-               pictures=0, profile=False, benchmark=False, files=None):
+               pictures=0, profile=False, benchmark=False, files=None, water_scale=None):
         """level: a shipped level's name, or a level as a dict. times [s]: when `fields` are kept. pictures: how many on the contact
         sheet. benchmark: figures of the state are taken at the end only, and no step leaves tiles out.
-        files: {name: (nx, ny, values)}, NPY maps beside a level given as a dict. Returns (measures.Run, the recorder's summary)."""
+        files: {name: (nx, ny, values)}, NPY maps beside a level given as a dict. water_scale: depth drawn in deep blue [m]. Returns (measures.Run, the recorder's summary)."""
         self.count += 1
         folder = pathlib.Path(self.scratch.name) / f"{self.count:04d}"
         folder.mkdir()
@@ -51,7 +51,7 @@ class Recorder:
         else:
             where = LEVELS / level
         command = [self.program, str(where), "--backend", self.backend, "--threads", str(self.threads), "--out", str(folder), "--summary", str(folder / "summary.json")]
-        for key, value in (("method", method), ("variant", variant), ("accuracy", accuracy), ("dt", dt), ("fused-stages", fused), ("seconds", seconds)):
+        for key, value in (("method", method), ("variant", variant), ("accuracy", accuracy), ("dt", dt), ("fused-stages", fused), ("seconds", seconds), ("water-scale", water_scale)):
             if value is not None:
                 command += [f"--{key}", str(value)]
         if size is not None:

@@ -30,6 +30,7 @@ KINDS = {  # a kind of page: the parts, and the scripts and files besides
                tuple(f"samples/report/{name}" for name in ("wadi-report", "exact.py", "prices.py", "sand_scenes.py", "scene.py", "scenes.py", "sweep.py",
                                                            "water_scenes.py"))),
     "effects": (("stages", "step", "defaults", "levels"), ("samples/report/effects.py", "samples/report/pairs.py")),
+    "errors": (("stages", "step", "defaults"), tuple(f"samples/report/{name}.py" for name in ("errors", "pairs", "scene", "scenes", "sweep"))),
     "methods": (("stages", "step", "defaults", "levels"), ("samples/report/side_by_side.py", "samples/report/literal.py", "samples/report/cases.py", "samples/report/exact.py",
                                                            "samples/levels/*/expected.json")),
     "mpm": (("stages", "step", "defaults"), ("samples/report/mpm.py", "samples/report/mpm_solver.py", *SAND_LAB)),
@@ -40,6 +41,7 @@ KINDS = {  # a kind of page: the parts, and the scripts and files besides
 PAGES = {
     "samples/report/README.md": "advice",
     "samples/report/effects/README.md": "effects",
+    "samples/report/errors/README.md": "errors",
     "samples/report/h100/README.md": "report",
     "samples/report/methods/README.md": "methods",
     "samples/report/mpm/README.md": "mpm",

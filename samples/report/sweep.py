@@ -97,13 +97,18 @@ def forced_off(effect):
     return {name: "off" for name in (effect, NEEDED_BY.get(effect)) if name}
 
 
-def measure(recorder, scene, point, repeats):
-    """A point's row: error, other measures, time. A refused level gives its message as `failed`."""
+def level_of(scene, point):
     level = scene.make(point.n)
     level["dt"] = point.dt * scene.step(level["grid"]["dx"])
     level = recordings.choose(level, substeps=point.ratio, **CHOICES[point.choice])
     if point.off:
         level["effects"] = {**level.get("effects", {}), **forced_off(point.off)}
+    return level
+
+
+def measure(recorder, scene, point, repeats):
+    """A point's row: error, other measures, time. A refused level gives its message as `failed`."""
+    level = level_of(scene, point)
     row = {"point": point.name(), "scene": scene.key, "kind": scene.kind, "truth": scene.truth, "n": point.n, "dt_factor": point.dt, "dt": level["dt"], "T": point.ratio,
            "choice": point.choice, "off": point.off}
     try:
