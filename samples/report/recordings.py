@@ -44,7 +44,7 @@ class Recorder:
         folder = pathlib.Path(self.scratch.name) / f"{self.count:04d}"
         folder.mkdir()
         if isinstance(level, dict):
-            where = folder / "level.json"
+            where = folder / f"{re.sub(r'[^a-z0-9]+', '_', level.get('name', 'level').lower())}.json"  # which the recorder writes on pictures
             where.write_text(json.dumps(level))  # its maps may be a shipped level's, by whole paths
             for name, (nx, ny, values) in (files or {}).items():
                 write_npy(folder / name, nx, ny, values)
