@@ -138,9 +138,10 @@ void plan_water_motion(Builder& b) {
 void plan_inflow(Builder b) {
     if (b.has(EFFECT_SOURCES)) b.run("apply_sources");
     if (b.has(EFFECT_RAIN)) b.run("apply_rain");
-    if (b.has(EFFECT_DIFFUSION_AHEAD)) { // ahead of the sides, which fill the ghosts of the height that it makes current
+    if (b.has(EFFECT_DIFFUSION_AHEAD)) {
         b.run("diffuse_mixed_velocity", {"mixed_velocity_x", "mixed_velocity_y"});
-        b.run("diffuse_mixed_height", {"water_height"});
+        b.run("diffuse_mixed_height");
+        b.run("spread_mixed_water");
     }
     if (b.has(EFFECT_WATER | EFFECT_OPEN_SIDES)) b.run("open_sides");
 }

@@ -25,7 +25,7 @@ PAPER = {  # Table 2: percent per row, then ms per step on the authors' GPU
     "dam_break": (1.4, 2.0, 3.0, 6.7, 44.1, 8.9, 6.7, 2.8, 24.6, 0.46), "seepage": (0.9, 1.0, 2.8, 6.2, 40.5, 6.0, 7.4, 2.1, 33.1, 3.54),
     "flush": (1.3, 0.9, 4.0, 5.2, 45.5, 5.7, 6.7, 1.9, 28.6, 2.04), "canyon": (0.8, 0.9, 3.0, 4.8, 38.4, 5.2, 6.2, 1.8, 38.9, 0.61)}
 ROWS = {  # the paper's rows and the stages that do their work
-    "diffuse and integrate water": ("diffuse_mixed_water", "diffuse_mixed_velocity", "diffuse_mixed_height", "limit_water_outflow",
+    "diffuse and integrate water": ("diffuse_mixed_water", "diffuse_mixed_velocity", "diffuse_mixed_height", "spread_mixed_water", "limit_water_outflow",
                                     "compute_water_flux", "integrate_water_height"),
     "integrate water velocity": ("integrate_water_velocity", "backtrace_water_velocity", "push_mixed_water"),
     "integrate sand height": ("limit_sand_outflow", "compute_sand_flux", "integrate_sand_height", "compute_bed_load"),

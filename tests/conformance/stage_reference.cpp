@@ -28,6 +28,7 @@ constexpr Step<Real> steps[] = {
     {"diffuse_mixed_water", &Solver<Real>::diffuse_mixed_water, EFFECT_DIFFUSION},
     {"limit_water_outflow", &Solver<Real>::limit_water_outflow, EFFECT_WATER},
     {"diffuse_mixed_height", &Solver<Real>::diffuse_mixed_height, EFFECT_DIFFUSION_AHEAD},
+    {"spread_mixed_water", &Solver<Real>::spread_mixed_water, EFFECT_DIFFUSION_AHEAD},
     {"compute_water_flux", &Solver<Real>::compute_water_flux, EFFECT_WATER},
     {"account_sides", nullptr, EFFECT_OPEN_SIDES},
     {"integrate_water_height", &Solver<Real>::integrate_water_height, EFFECT_WATER},

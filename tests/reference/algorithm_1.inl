@@ -12,10 +12,12 @@ template <class Real> void Solver<Real>::diffuse_mixed_height() {
         const std::size_t R = ax.cell(a, b);
         const Real moved = whole_quanta(number * (old[L] - old[R]), P.quantum, false);
         mixed[L] -= moved;
-        water[L] -= moved;
         mixed[R] += moved;
-        water[R] += moved;
     });
+}
+
+template <class Real> void Solver<Real>::spread_mixed_water() {
+    for (std::size_t c = 0; c < cells(); ++c) water[c] += mixed[c] - std::min(water[c], sand[c]);
 }
 
 template <class Real> void Solver<Real>::measure_layer_exchange() {

@@ -223,6 +223,7 @@ template <class Real> void Solver<Real>::step() {
     if (ahead) {
         diffuse_mixed_velocity();
         diffuse_mixed_height();
+        spread_mixed_water();
     }
     const Field<Real> spread = mixed;
     update_open_sides();

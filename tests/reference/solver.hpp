@@ -96,7 +96,8 @@ template <class Real> class Solver {
     void apply_drag();                           // 2.14 -> sand_velocity, mixed_velocity (pure_velocity in the single-layer mask)
     void apply_friction();                       // 2.8 -> sand_velocity, mixed_velocity (pure_velocity in the single-layer mask)
     // 2.21, water as the paper has it
-    void diffuse_mixed_height();   // -> water, mixed
+    void diffuse_mixed_height();   // -> mixed
+    void spread_mixed_water();     // -> water
     void measure_layer_exchange(); // from mixed_predicted to mixed -> layer_exchange
     void give_layer_exchange();    // -> pure_velocity, mixed_velocity
     void renew_split();            // -> mixed_predicted
