@@ -15,10 +15,11 @@ import sys
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 KEPT = "samples/report/kept_pages.md"
 STAMP = re.compile(r"<!-- measured at (\S+): (.*) -->")
+INCLUDE = re.compile(r'^#include "(\S+\.glsl)"', re.M)
 ROW = re.compile(r"\| `([^`]+)` \| `([0-9a-f]+)` \| (.+) \|")
 
 PARTS = {  # what decides the state after a step, whatever runs it
-    "stages": ("shaders/stages/**/*.stage", "shaders/physics/*.glsl", "shaders/step_params.h"),
+    "stages": tuple(f"shaders/stages/{room}/*.stage" for room in ("boundary", "layer", "sand", "water")) + ("shaders/step_params.h",),
     "step": ("engine/step/step_plan.cpp", "engine/step/world_params.cpp", "engine/step/step_inputs.cpp", "engine/step/initial_fields.cpp",
              "engine/step/prestress.cpp", "engine/step/source_shapes.cpp"),
     "defaults": ("engine/settings/settings.hpp", "engine/settings/method_presets.cpp"),
@@ -59,9 +60,21 @@ def bare(path):
     return " ".join(re.sub(r"//[^\n]*|/\*.*?\*/", " ", text, flags=re.S).split())
 
 
+def with_included(paths):
+    """The paths and what stages among them include."""
+    found, waiting = set(), list(paths)
+    while waiting:
+        path = waiting.pop()
+        if path not in found:
+            found.add(path)
+            names = INCLUDE.findall(path.read_text(encoding="utf-8")) if path.suffix in (".stage", ".glsl") else []
+            waiting += [(path.parent / name).resolve() for name in names]
+    return found
+
+
 def digest(root, patterns):
     total = hashlib.sha256()
-    for path in sorted({path for pattern in patterns for path in root.glob(pattern)}):
+    for path in sorted(with_included(path.resolve() for pattern in patterns for path in root.glob(pattern))):
         total.update(bare(path).encode() + b"\0")
     return total.hexdigest()[:8]
 

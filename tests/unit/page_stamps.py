@@ -41,6 +41,20 @@ def check(root):
     return found
 
 
+def sees_included():
+    """A formula that a stage includes counts as the stage does."""
+    with tempfile.TemporaryDirectory() as folder:
+        root = pathlib.Path(folder).resolve()
+        for path, text in (("shaders/stages/sand/a.stage", '#include "../../physics/a.glsl"\n'), ("shaders/physics/a.glsl", "1"), ("shaders/physics/b.glsl", "1")):
+            (root / path).parent.mkdir(parents=True, exist_ok=True)
+            (root / path).write_text(text)
+        found = []
+        for name in ("b", "a"):
+            (root / f"shaders/physics/{name}.glsl").write_text("2")
+            found.append(stamps.digest(root, stamps.PARTS["stages"]))
+        return found[0] != found[1]
+
+
 def controls():
     """Planted faults must be seen, and nothing else."""
     page, kind = next(iter(stamps.PAGES.items()))
@@ -70,7 +84,7 @@ def controls():
 
 
 def main():
-    wrong = controls()
+    wrong = controls() + ([] if sees_included() else ["a changed formula"])
     print(*(f"the checker is wrong about {what}" for what in wrong), sep="\n", end="\n" if wrong else "")
     found = check(pathlib.Path(sys.argv[1]).resolve())
     print(*found, f"{len(stamps.PAGES)} pages, {len(found)} breaches", sep="\n")
