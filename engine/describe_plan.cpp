@@ -64,15 +64,15 @@ std::string describe_plan(const WorldState& world) {
             partner_bytes += field.ping_pong ? field.element_bytes() : 0;
             state_names += (state_names.empty() ? "" : ", ") + field.name + (field.ping_pong ? " x2" : "");
         } else if (field.role == FieldRole::scratch) {
-            scratch_names += (scratch_names.empty() ? "" : ", ") + field.name + " @" + std::to_string(field.memory);
+            scratch_names += (scratch_names.empty() ? "" : ", ") + field.name + (field.memory < 0 ? "" : " @" + std::to_string(field.memory));
         }
     }
     out << "buffers: " << plan.field_buffers() << " fields = " << state << " state + " << partners << " ping-pong + "
-        << plan.scratch_blocks << " scratch\n"
+        << plan.scratch_buffers() << " scratch\n"
         << "  state    " << state_names << "\n";
     if (!scratch_names.empty()) out << "  scratch  " << scratch_names << "  (@n: shared memory block)\n";
     out << "bytes per cell: " << plan.bytes_per_cell() << " (state " << state_bytes << ", ping-pong " << partner_bytes
-        << ", scratch " << 4 * plan.scratch_blocks << "); on the device " << world.device().bytes() / 1024
+        << ", scratch " << 4 * plan.scratch_buffers() << "); on the device " << world.device().bytes() / 1024
         << " KiB with padding, ledgers and outputs\n";
     char line[160];
     std::snprintf(line, sizeof line,

@@ -58,7 +58,7 @@ std::vector<KeptField> FieldStore::kept(const std::vector<PlanField>& fields) co
 std::vector<compute::BufferDesc> FieldStore::wanted_by(const StepPlan& plan) const {
     std::vector<compute::BufferDesc> wanted;
     for (const auto& field : plan.fields) {
-        if (field.role == FieldRole::scratch) continue;
+        if (field.role == FieldRole::scratch && field.memory >= 0) continue;
         wanted.push_back({bytes_of(field), field.name});
         if (field.ping_pong) wanted.push_back({bytes_of(field), next_name(field.name)});
     }
@@ -100,7 +100,7 @@ compute::Buffer FieldStore::buffer(const std::string& name, const Parity& parity
     const std::string base = base_name(name);
     const auto* field = find(base);
     if (field == nullptr) return {};
-    if (field->role == FieldRole::scratch) return buffers_[scratch_label(field->memory)];
+    if (field->role == FieldRole::scratch && field->memory >= 0) return buffers_[scratch_label(field->memory)];
     return buffers_[is_next(name) == parity.contains(base) ? base : next_name(base)];
 }
 

@@ -1,5 +1,6 @@
 // What a plan costs per cell: memory, and bytes that its passes move.
 #include "engine/step/step_plan.hpp"
+#include <algorithm>
 
 namespace wadi {
 
@@ -9,8 +10,13 @@ bool lasts(const PlanField& field) { return field.role == FieldRole::state || fi
 
 } // namespace
 
+int StepPlan::scratch_buffers() const {
+    const auto of_its_own = [](const PlanField& f) { return f.role == FieldRole::scratch && f.memory < 0; };
+    return scratch_blocks + static_cast<int>(std::count_if(fields.begin(), fields.end(), of_its_own));
+}
+
 int StepPlan::field_buffers() const {
-    int count = scratch_blocks;
+    int count = scratch_buffers();
     for (const auto& field : fields) {
         if (lasts(field)) count += field.ping_pong ? 2 : 1;
     }
@@ -18,7 +24,7 @@ int StepPlan::field_buffers() const {
 }
 
 double StepPlan::bytes_per_cell() const {
-    int bytes = 4 * scratch_blocks;
+    int bytes = 4 * scratch_buffers();
     for (const auto& field : fields)
         if (lasts(field)) bytes += field.element_bytes() * (field.ping_pong ? 2 : 1);
     return bytes;

@@ -344,7 +344,8 @@ void share_scratch(StepPlan& plan) {
     };
     std::vector<Life> lives;
     for (auto& field : plan.fields) {
-        if (field.role != FieldRole::scratch) continue;
+        // Its ghosts are read. They are 0, and what another field of this plan or of the one before leaves there must not get in.
+        if (field.role != FieldRole::scratch || field.name == "mixed_diffused") continue;
         Life life{&field, order.size(), 0};
         for (std::size_t n = 0; n < order.size(); ++n) {
             if (std::find(order[n]->fields.begin(), order[n]->fields.end(), field.name) == order[n]->fields.end()) continue;
@@ -352,8 +353,6 @@ void share_scratch(StepPlan& plan) {
             life.last = std::max(life.last, n);
         }
         if (life.first < plan.water_passes.size() && life.last >= plan.water_passes.size()) life.last = order.size();
-        if (field.name == "mixed_diffused")
-            life = {&field, 0, order.size()}; // its ghosts are read: no face of another writes there
         lives.push_back(life);
     }
     std::sort(lives.begin(), lives.end(), [](const Life& a, const Life& b) { return a.first < b.first; });
@@ -439,7 +438,7 @@ void share_fields(StepPlan& tiled, StepPlan& whole) {
             continue;
         }
         tiled.fields.push_back(field);
-        if (field.role == FieldRole::scratch) tiled.fields.back().memory = tiled.scratch_blocks++;
+        if (field.role == FieldRole::scratch && field.memory >= 0) tiled.fields.back().memory = tiled.scratch_blocks++;
     }
     std::sort(tiled.fields.begin(), tiled.fields.end(), [](const PlanField& a, const PlanField& b) { return a.name < b.name; });
     whole.fields = tiled.fields;

@@ -32,7 +32,7 @@ struct PlanField {
     std::string name;
     FieldRole role = FieldRole::state;
     bool ping_pong = false;
-    int memory = -1;   // scratch: number of the memory block it shares with other scratch fields
+    int memory = -1;   // scratch: number of the memory block it shares with other scratch fields; -1: of its own
     bool half = false; // 16-bit floats
 
     int element_bytes() const { return half ? 2 : 4; }
@@ -54,6 +54,8 @@ struct StepPlan {
     /// Cells that one step carries a change along at most: the sum of what its passes read around them.
     int reach = 0;
 
+    /// Memories of scratch fields: blocks, and those of fields that share none.
+    int scratch_buffers() const;
     /// Buffers of nx * ny numbers: state, ping-pong partners and shared scratch.
     int field_buffers() const;
     /// Bytes per cell of those.
