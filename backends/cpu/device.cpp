@@ -11,6 +11,7 @@
 #include <functional>
 #include <limits>
 #include <new>
+#include <system_error>
 
 namespace wadi::cpu {
 
@@ -40,9 +41,11 @@ CpuDevice::CpuDevice(const InstructionSet& set, const compute::DeviceOptions& op
     capabilities_.queue_depth = most_in_flight;
 }
 
-// The device thread comes first: without it nothing runs, without others all does.
 void CpuDevice::start(int threads, const compute::RunJobs& jobs) {
-    runner_ = std::thread([this] { device_thread(); });
+    try {
+        runner_ = std::thread([this] { device_thread(); });
+    } catch (const std::system_error&) { // none left, or a system without any: what is submitted runs within submit
+    }
     pool_.emplace(threads, jobs);
     const int got = pool_->size();
     capabilities_.driver = std::string(set_.name) + ", " + std::to_string(got) + (got == 1 ? " thread" : " threads");
@@ -288,9 +291,14 @@ Result<compute::Ticket> CpuDevice::submit_inputs(compute::Program program, std::
     queue_.back().programs = std::move(retired_programs_);
     ++submitted_;
     ++counters_.submits;
+    const compute::Ticket ticket{submitted_};
+    if (!runner_.joinable()) {
+        run_next(lock);
+        return ticket;
+    }
     lock.unlock();
     changed_.notify_all();
-    return compute::Ticket{submitted_};
+    return ticket;
 }
 
 bool CpuDevice::finished(compute::Ticket ticket) { return finished_so_far() >= ticket.value; }
@@ -314,20 +322,24 @@ void CpuDevice::device_thread() {
     for (;;) {
         changed_.wait(lock, [this] { return stop_ || !queue_.empty(); });
         if (queue_.empty()) return;
-        Submission& next = queue_.front(); // stays where it is while others are put behind it
-        lock.unlock();
-        std::vector<compute::Timing> times;
-        execute(*next.program, next.inputs, times);
-        free(next.buffers, next.programs);
-        lock.lock();
-        done_ = next.ticket;
-        queue_.pop_front();
-        if (!times.empty()) {
-            timings_[done_] = std::move(times);
-            if (timings_.size() > kept_timings) timings_.erase(timings_.begin());
-        }
-        changed_.notify_all();
+        run_next(lock);
     }
+}
+
+void CpuDevice::run_next(std::unique_lock<std::mutex>& lock) {
+    Submission& next = queue_.front(); // stays where it is while others are put behind it
+    lock.unlock();
+    std::vector<compute::Timing> times;
+    execute(*next.program, next.inputs, times);
+    free(next.buffers, next.programs);
+    lock.lock();
+    done_ = next.ticket;
+    queue_.pop_front();
+    if (!times.empty()) {
+        timings_[done_] = std::move(times);
+        if (timings_.size() > kept_timings) timings_.erase(timings_.begin());
+    }
+    changed_.notify_all();
 }
 
 void CpuDevice::look_into_written(const Step& step) {
@@ -437,7 +449,7 @@ const backends::Backend& cpu_backend() {
                 auto device = std::make_unique<CpuDevice>(*set, options);
                 device->start(options.threads == 0 ? std::min(cores, most_threads) : options.threads, options.run_jobs);
                 return std::unique_ptr<compute::Device>(std::move(device));
-            } catch (const std::exception& e) { // the system refuses threads or memory
+            } catch (const std::exception& e) { // the system refuses memory
                 return error(Code::out_of_memory, std::string("the CPU device cannot start: ") + e.what());
             }
         }};

@@ -109,6 +109,8 @@ class CpuDevice final : public compute::Device {
     /// Frees what was destroyed; nothing may use it any more.
     static void free(backends::Retired<Memory>& buffers, backends::Retired<Recorded>& programs);
     void device_thread();
+    /// The oldest submission that waits, with the lock given back meanwhile.
+    void run_next(std::unique_lock<std::mutex>& lock);
     void execute(Recorded& program, std::span<const StepInput> inputs, std::vector<compute::Timing>& timings);
     /// Errors: internal (more outputs than any stage has).
     Status set_active(const compute::Dispatch& dispatch, const compute::StageInfo& stage, Step& step);

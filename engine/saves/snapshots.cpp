@@ -205,8 +205,7 @@ Status Snapshots::end_save(std::uint64_t ticket, std::span<std::byte> to) {
     if (waits_for_ == Waits::device && state_.device().finished(copied_)) {
         if (auto status = state_.device().wait(copied_); !status) return status;
         to_ = to.first(*bytes);
-        if (auto status = worker_.start([this] { assemble(); }); !status)
-            return error(status.code, "end_save: " + status.message);
+        worker_.start([this] { assemble(); });
         waits_for_ = Waits::worker;
     } else if (waits_for_ == Waits::worker) {
         if (to.data() != to_.data()) return error(Code::bad_argument, "end_save: data differs from that of the earlier calls");

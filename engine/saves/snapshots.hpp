@@ -33,8 +33,8 @@ class Snapshots {
     /// Bytes that end_save() wants. Errors: bad_argument (the ticket is not of the last begin_save, or was fetched).
     Result<std::uint64_t> saved_bytes(std::uint64_t ticket) const;
     /// not_ready until the snapshot lies in `to`, which a worker fills from some call on: it must stay the same until then,
-    /// through errors too. A device that is lost after that takes nothing away. Errors: bad_argument, device_lost, out_of_memory
-    /// (no thread for the worker; a later call may get one).
+    /// through errors too. A device that is lost after that takes nothing away. Where the system refuses the worker's thread the
+    /// call fills it. Errors: bad_argument, device_lost.
     Status end_save(std::uint64_t ticket, std::span<std::byte> to);
     /// To be called when the state is that between two steps again.
     Status at_boundary();

@@ -14,17 +14,16 @@ Worker::~Worker() {
     thread_.join();
 }
 
-Status Worker::start(std::function<void()> job) {
+void Worker::start(std::function<void()> job) {
     try {
         if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
-    } catch (const std::exception& e) {
-        return error(Code::out_of_memory, std::string("no thread: ") + e.what());
+    } catch (const std::exception&) { // no more threads, or no memory for one
+        return job();
     }
     job_ = std::move(job);
     busy_.store(true, std::memory_order_relaxed);
     jobs_.fetch_add(1, std::memory_order_release);
     changed_.wake();
-    return ok_status();
 }
 
 void Worker::run() {

@@ -1,6 +1,5 @@
 // A thread that does one job at a time beside the caller's.
 #pragma once
-#include "engine/compute/status.hpp"
 #include "engine/compute/waiter.hpp"
 #include <atomic>
 #include <functional>
@@ -16,8 +15,8 @@ class Worker {
     Worker(const Worker&) = delete;
     Worker& operator=(const Worker&) = delete;
 
-    /// Only while not busy. The job must not throw. Errors: out_of_memory (the system refuses the thread), nothing was begun.
-    Status start(std::function<void()> job);
+    /// Only while not busy. The job must not throw. It is done within the call where the system refuses the thread.
+    void start(std::function<void()> job);
     /// False once the job is done; its results may then be read.
     bool busy() const { return busy_.load(std::memory_order_acquire); }
 

@@ -747,8 +747,8 @@ WADI_API wadi_result wadi_world_begin_save(wadi_world_id world, uint64_t* ticket
 /** Fetches it: NOT_READY until the snapshot lies in `data`, then OK, once.
  *  A worker thread fills `data`, so from the first call on that memory must stay where it is, and the same pointer must be passed, until a
  *  call returns OK or the world is destroyed; an error does not end that. *size as in wadi_world_save; data may be NULL to ask the number.
- *  Errors: BAD_ARGUMENT (another ticket, another data, size too small), DEVICE_LOST (before the copy aside was done), OUT_OF_MEMORY (the
- *  system refuses the worker's thread: a later call may succeed). */
+ *  Where the system refuses that thread a call fills `data` itself.
+ *  Errors: BAD_ARGUMENT (another ticket, another data, size too small), DEVICE_LOST (before the copy aside was done). */
 WADI_API wadi_result wadi_world_end_save(wadi_world_id world, uint64_t ticket, void* data, size_t* size);
 
 /** Keeps earlier states on the device: the newest `frames` (0 ... 256; 0 = off, frees them) of the state now and of every later step
