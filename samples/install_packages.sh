@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Installs what Wadi needs to build and run on Debian 12, and nothing if all of it is there.
+# Installs what Wadi needs to build and run on Debian 12, or the packages named, and nothing if all of it is there.
 set -euo pipefail
 
 packages=(
@@ -16,6 +16,7 @@ packages=(
     # header libraries
     libglm-dev doctest-dev nlohmann-json3-dev libcli11-dev libstb-dev
 )
+[[ $# -eq 0 ]] || packages=("$@")
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
     echo "install_packages.sh: this is not a Debian system; install the counterparts of: ${packages[*]}" >&2

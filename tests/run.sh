@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # All tests: installs what is missing, builds, runs. Usage: tests/run.sh [PRESET ...], default: o3 ci asan.
 # o3: no tests; warnings that g++ has at -O3 alone, which are errors.
-# ci: every backend that this machine has, as preset release but quicker to build. asan: the CPU backend under the address and
-# undefined-behaviour sanitizers with every stage index checked. release, tsan, dev, cpu-only, vulkan-lavapipe and cuda work as well.
+# ci: every backend that this machine has, as preset release but quicker to build; then two lanes of tests/platforms. asan: the CPU
+# backend under the address and undefined-behaviour sanitizers with every stage index checked. release, tsan, dev, cpu-only,
+# vulkan-lavapipe and cuda work as well.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -34,6 +35,10 @@ for preset in "${presets[@]}"; do
     cmake --build --preset "$preset" -j "$jobs"
     say "test $preset"
     ctest --preset "$preset" -j "$jobs" || failed+=("$preset")
+    if [ "$preset" = ci ]; then
+        say "other platforms, those that cost least"
+        WADI_NATIVE_BUILD=build/ci WADI_SUITES=step WADI_JOBS=$jobs tests/platforms/run.sh static swiftshader || failed+=(platforms)
+    fi
 done
 say "done"
 if [ ${#failed[@]} -ne 0 ]; then

@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
-"""That g++ turns the rows of every stage of cells and faces into vector code. Usage: vectorised.py STAGEC SOURCE_DIR CXX [STAGE ...]."""
+"""That g++ turns the rows of every stage of cells and faces into vector code. Usage: vectorised.py STAGEC SOURCE_DIR CXX [STAGE ...].
+
+On x86-64 that is set avx2; a cross compiler for another processor is asked for set base, which on 64-bit ARM may use NEON."""
 import concurrent.futures
 import os
 import pathlib
@@ -8,22 +10,22 @@ import subprocess
 import sys
 import tempfile
 
-FLAGS = "-std=c++20 -O3 -mavx2 -ffp-contract=off -fno-math-errno -fno-trapping-math -fno-thread-jumps -DNDEBUG".split()
+FLAGS = "-std=c++20 -O3 -ffp-contract=off -fno-math-errno -fno-trapping-math -fno-thread-jumps -DNDEBUG".split()
 
 
-def fails(stage, stagec, source, cxx, spoil=""):
+def fails(stage, stagec, source, cxx, isa, spoil=""):
     """Whether no loop over a row of the stage's largest mask is vectorised."""
     with tempfile.TemporaryDirectory() as folder:
         code = pathlib.Path(folder) / "stage.cpp"
-        subprocess.run([stagec, "cpp", source / "shaders/effects.h", stage, code, "avx2", "all"], check=True)
+        subprocess.run([stagec, "cpp", source / "shaders/effects.h", stage, code, isa, "all"], check=True)
         text = code.read_text()
-        masks = [int(mask) for mask in re.findall(r"case (\d+)u: return wadi_stage_avx2::block", text)]
+        masks = [int(mask) for mask in re.findall(r"case (\d+)u: return wadi_stage_%s::block" % isa, text)]
         largest = max(masks, key=lambda mask: (mask.bit_count(), mask))
-        text = re.sub(rf"    case (?!{largest}u)\d+u: return wadi_stage_avx2::block<\d+u>;\n", "", text)
+        text = re.sub(rf"    case (?!{largest}u)\d+u: return wadi_stage_{isa}::block<\d+u>;\n", "", text)
         if spoil:
             text = text.replace("local.kernel(i, j);", spoil)
         code.write_text(text)
-        said = subprocess.run([cxx, *FLAGS, "-I", source / "shaders", "-I", source, "-c", code, "-o", os.devnull, "-fopt-info-vec-optimized"],
+        said = subprocess.run([cxx, *FLAGS, *([] if isa == "base" else [f"-m{isa}"]), "-I", source / "shaders", "-I", source, "-c", code, "-o", os.devnull, "-fopt-info-vec-optimized"],
                               capture_output=True, text=True)
         if said.returncode != 0:
             sys.exit(said.stderr)
@@ -36,17 +38,19 @@ def main():
     if "clang" in subprocess.run([cxx, "--version"], capture_output=True, text=True, check=True).stdout:
         print("not g++: nothing to ask")
         return 0
+    machine = subprocess.run([cxx, "-dumpmachine"], capture_output=True, text=True, check=True).stdout.strip()
+    isa = "avx2" if machine.startswith("x86_64") else "base"
     stages = [path for path in sorted((source / "shaders/stages").glob("*/*.stage")) if not names or path.stem in names]
     stages = [path for path in stages if re.search(r"^EXTENT\((CELLS|FACES)\)", path.read_text(), re.M)]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        bad = [path.stem for path, failed in zip(stages, pool.map(lambda path: fails(path, stagec, source, cxx), stages)) if failed]
+        bad = [path.stem for path, failed in zip(stages, pool.map(lambda path: fails(path, stagec, source, cxx, isa), stages)) if failed]
     for name in bad:
         print(f"FAIL {name}: no row in vectors; see rule 8 of shaders/README.md")
     branch = "{ if (i % 7 == 3) return; local.kernel(i, j); }"  # leaves the loop: nothing to vectorise
-    if stages and not fails(stages[0], stagec, source, cxx, branch):
+    if stages and not fails(stages[0], stagec, source, cxx, isa, branch):
         bad.append("control")
         print("FAIL control: a loop that is left in its middle passes")
-    print(f"{len(stages)} stages, {len(bad)} failed")
+    print(f"{machine}, set {isa}: {len(stages)} stages, {len(bad)} failed")
     return 1 if bad else 0
 
 
