@@ -1,5 +1,6 @@
 #include "backends/cpu/content.hpp"
 #include <bit>
+#include <cstring>
 #include <utility>
 
 namespace wadi::cpu {
@@ -178,9 +179,11 @@ ContentStage content_stage(const compute::StageInfo& stage, std::span<const comp
             if (only_read) continue;
             if (part.block != nullptr && binding.exists(left))
                 part.written.push_back(contents[n]);
-            else if (binding.access == compute::Access::out)
-                part.fills.push_back(
-                    {contents[n], static_cast<std::uint32_t*>(buffers[n]), std::bit_cast<std::uint32_t>(binding.empty)});
+            else if (binding.access == compute::Access::out) {
+                std::uint32_t word = 0; // std::bit_cast is not in LLVM's library before version 14
+                std::memcpy(&word, &binding.empty, sizeof word);
+                part.fills.push_back({contents[n], static_cast<std::uint32_t*>(buffers[n]), word});
+            }
         }
         if (part.fields.empty()) continue;
         for (std::size_t n = 0; n < contents.size(); ++n)

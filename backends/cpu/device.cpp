@@ -134,7 +134,7 @@ void CpuDevice::drain() {
 Status CpuDevice::write(compute::Buffer buffer, std::uint64_t offset, std::span<const std::byte> bytes) {
     drain();
     const auto& memory = at(buffer);
-    std::ranges::copy(bytes, memory.data + offset);
+    std::copy(bytes.begin(), bytes.end(), memory.data + offset);
     if (memory.content) memory.content->look_everywhere();
     return ok_status();
 }

@@ -1,11 +1,11 @@
 #include "engine/reads/describe_tables.hpp"
 #include "engine/compute/stage_table.hpp"
+#include "engine/image/number_text.hpp"
 #include "engine/settings/effects.hpp"
 #include "engine/settings/messages.hpp"
 #include "engine/settings/setting_table.hpp"
 #include "engine/step/step_plan.hpp"
 #include <algorithm>
-#include <charconv>
 #include <vector>
 
 namespace wadi {
@@ -176,10 +176,7 @@ std::string describe_stages() {
     return text;
 }
 
-std::string json(double value) {
-    char text[32];
-    return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
+std::string json(double value) { return number_text(value); }
 
 std::string json(std::string_view text) { return quoted(text, '"'); }
 

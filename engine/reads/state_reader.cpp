@@ -4,7 +4,6 @@
 #include "engine/step/world_params.hpp"
 #include "engine/threads/bands.hpp"
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -25,7 +24,11 @@ bool is_velocity(const FieldRow& field) { return field.place != FieldPlace::cell
 std::uint64_t hash_of_row(std::uint64_t n, int j, std::span<const float> row) {
     const std::uint64_t place = (n << 56) ^ (static_cast<std::uint64_t>(j) << 28);
     std::uint64_t hash = 0;
-    for (std::size_t i = 0; i < row.size(); ++i) hash += mix(mix(place ^ i) + std::bit_cast<std::uint32_t>(row[i]));
+    for (std::size_t i = 0; i < row.size(); ++i) {
+        std::uint32_t word = 0; // std::bit_cast is not in LLVM's library before version 14
+        std::memcpy(&word, &row[i], sizeof word);
+        hash += mix(mix(place ^ i) + word);
+    }
     return hash;
 }
 

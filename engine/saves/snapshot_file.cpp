@@ -49,7 +49,7 @@ Result<std::vector<std::byte>> read_snapshot_file(const std::string& path, std::
         return error(Code::bad_file, "'" + path + "': " + std::to_string(*size) + " bytes are more than the " +
                                          std::to_string(most) + " of the largest snapshot that this world can have");
     try {
-        std::vector<std::byte> bytes(*size);
+        std::vector<std::byte> bytes(static_cast<std::size_t>(*size));
         if (!file.read_all(bytes)) return error(Code::bad_file, "'" + path + "' cannot be read");
         return bytes;
     } catch (const std::bad_alloc&) {

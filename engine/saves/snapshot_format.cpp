@@ -20,7 +20,7 @@ std::uint64_t SnapshotHeader::begin_of(std::size_t field) const {
 }
 
 void write_header(const SnapshotHeader& header, std::span<std::byte> to) {
-    begin_sealed(to.first(header.bytes()), magic, snapshot_version);
+    begin_sealed(to.first(in_memory(header.bytes())), magic, snapshot_version);
     std::size_t at = fields_at;
     put(to, at, static_cast<std::uint32_t>(header.fields.size()));
     at = sealed_header_bytes;

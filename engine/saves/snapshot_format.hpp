@@ -26,6 +26,9 @@ namespace wadi {
 
 constexpr std::uint32_t snapshot_version = 3;
 
+/// Bytes of what lies in memory already: they fit, also where size_t has 32 bits.
+constexpr std::size_t in_memory(std::uint64_t bytes) { return static_cast<std::size_t>(bytes); }
+
 struct SnapshotHeader {
     int nx = 0, ny = 0;
     std::uint32_t effects = 0;

@@ -34,12 +34,14 @@ Status Snapshots::save(std::span<std::byte> to) {
         return error(Code::bad_argument, "save: size is " + std::to_string(to.size()) + ", the snapshot needs " +
                                              std::to_string(header.bytes()) + " bytes");
     }
-    to = to.first(header.bytes());
+    to = to.first(in_memory(header.bytes()));
     write_header(header, to);
     for (std::size_t n = 0; n < header.fields.size(); ++n) {
         const auto& field = header.fields[n];
         const auto from = state_.fields().buffer(field.name);
-        if (auto status = state_.device().read(from, 0, to.subspan(header.begin_of(n), field.bytes)); !status) return status;
+        if (auto status = state_.device().read(from, 0, to.subspan(in_memory(header.begin_of(n)), in_memory(field.bytes)));
+            !status)
+            return status;
     }
     seal(to);
     return ok_status();
@@ -82,7 +84,8 @@ Status Snapshots::write_fields(const SnapshotHeader& header, std::span<const std
     const auto find = [&](const std::string& name) {
         std::span<const std::byte> contents;
         for (std::size_t n = 0; n < header.fields.size(); ++n) {
-            if (header.fields[n].name == name) contents = from.subspan(header.begin_of(n), header.fields[n].bytes);
+            if (header.fields[n].name == name)
+                contents = from.subspan(in_memory(header.begin_of(n)), in_memory(header.fields[n].bytes));
         }
         return contents;
     };
@@ -93,13 +96,13 @@ Status Snapshots::write_fields(const SnapshotHeader& header, std::span<const std
     for (const auto& field : kept) {
         auto contents = find(field.name);
         if (contents.empty() && one_layer && field.name.starts_with("mixed_")) contents = find("water_" + field.name.substr(6));
-        if (contents.empty()) most_zeros = std::max<std::size_t>(most_zeros, field.bytes);
+        if (contents.empty()) most_zeros = std::max(most_zeros, in_memory(field.bytes));
         writes.emplace_back(state_.fields().buffer(field.name), contents);
     }
     const std::vector<std::byte> zeros(most_zeros);
     for (std::size_t n = 0; n < writes.size(); ++n) {
         const auto [buffer, contents] = writes[n];
-        const auto bytes = contents.empty() ? std::span(zeros).first(kept[n].bytes) : contents;
+        const auto bytes = contents.empty() ? std::span(zeros).first(in_memory(kept[n].bytes)) : contents;
         if (auto status = state_.device().write(buffer, 0, bytes); !status) return status;
     }
     return ok_status();
@@ -204,7 +207,7 @@ Status Snapshots::end_save(std::uint64_t ticket, std::span<std::byte> to) {
     if (waits_for_ != Waits::worker && !state_.lost()) return state_.lost();
     if (waits_for_ == Waits::device && state_.device().finished(copied_)) {
         if (auto status = state_.device().wait(copied_); !status) return status;
-        to_ = to.first(*bytes);
+        to_ = to.first(in_memory(*bytes));
         worker_.start([this] { assemble(); });
         waits_for_ = Waits::worker;
     } else if (waits_for_ == Waits::worker) {
@@ -222,7 +225,7 @@ void Snapshots::assemble() {
     write_header(saved_, to_);
     for (std::size_t n = 0; n < saved_.fields.size(); ++n) {
         const auto& field = saved_.fields[n];
-        std::memcpy(to_.data() + saved_.begin_of(n), memory_.at(field.name).data(), field.bytes);
+        std::memcpy(to_.data() + saved_.begin_of(n), memory_.at(field.name).data(), in_memory(field.bytes));
     }
     seal(to_);
 }

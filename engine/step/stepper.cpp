@@ -23,7 +23,8 @@ class Stepper::Change {
 
     /// Whether steps ran in parts: as they will go on to, their programs are recorded with the others.
     bool had_parts() const {
-        return std::ranges::any_of(programs_, [](const Programs& way) { return !way.parts[0].empty() || !way.parts[1].empty(); });
+        return std::any_of(programs_.begin(), programs_.end(),
+                           [](const Programs& way) { return !way.parts[0].empty() || !way.parts[1].empty(); });
     }
     void settle() noexcept {
         std::swap(stepper_.programs_, programs_);
