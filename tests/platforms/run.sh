@@ -19,7 +19,7 @@ static       pkg-config                         0, 0.3 GB        smallest host b
 
 Packages are Debian 12's, installed by samples/install_packages.sh; Emscripten's libraries come built, so that it needs no cache.
 Builds lie below build/platforms. WADI_NATIVE_BUILD: a build of this machine with Vulkan, whose programs lane swiftshader takes in
-place of its own; WADI_SUITES: those of conformance that it runs (contract step stage fused). WADI_JOBS: compilers at once.
+place of its own; WADI_SUITES: those of conformance that it runs (step). WADI_JOBS: compilers at once.
 EOF
 }
 
@@ -176,7 +176,7 @@ lane_swiftshader() {
     ln -sfn "$(realpath "$native")" "$work/swiftshader"
     run "x86-64 Linux" "g++ $(version c++ -dumpfullversion)" swiftshader "" env || failed=1 # beside it the CPU's, of the same build
     export VK_DRIVER_FILES=$driver WADI_BACKEND=vulkan
-    for suite in ${WADI_SUITES:-contract step stage fused}; do
+    for suite in ${WADI_SUITES:-step}; do
         "$native/bin/conformance" test --backend vulkan --suite "$suite" --max-masks 2 --max-steps 30 --max-cells 600 >"$work/swiftshader.$suite.log" 2>&1 || failed=1
         echo "swiftshader: $suite: $(tail -n 2 "$work/swiftshader.$suite.log" | tr '\n' ' ')"
     done
