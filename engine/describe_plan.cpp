@@ -64,7 +64,8 @@ std::string describe_plan(const WorldState& world) {
             partner_bytes += field.ping_pong ? field.element_bytes() : 0;
             state_names += (state_names.empty() ? "" : ", ") + field.name + (field.ping_pong ? " x2" : "");
         } else if (field.role == FieldRole::scratch) {
-            scratch_names += (scratch_names.empty() ? "" : ", ") + field.name + (field.memory < 0 ? "" : " @" + std::to_string(field.memory));
+            scratch_names +=
+                (scratch_names.empty() ? "" : ", ") + field.name + (field.memory < 0 ? "" : " @" + std::to_string(field.memory));
         }
     }
     out << "buffers: " << plan.field_buffers() << " fields = " << state << " state + " << partners << " ping-pong + "
