@@ -10,14 +10,14 @@ typedef void (*function)(void);
 
 /* The library's functions but one, if `lacks` names it. */
 typedef struct opened {
-    void* library;
+    void* handle;
     const char* lacks;
 } opened;
 
 static function find(void* user, const char* name) {
     const opened* const from = (const opened*)user;
     function found = NULL;
-    void* const address = from->lacks && strcmp(name, from->lacks) == 0 ? NULL : dlsym(from->library, name);
+    void* const address = from->lacks && strcmp(name, from->lacks) == 0 ? NULL : dlsym(from->handle, name);
     memcpy(&found, &address, sizeof found); /* POSIX lets a data pointer hold it, C has no cast */
     return found;
 }
@@ -34,7 +34,7 @@ static int fails(const char* what, const char* detail) {
 
 int main(int argc, char** argv) {
     opened from = {argc > 1 ? dlopen(argv[1], RTLD_NOW | RTLD_LOCAL) : NULL, NULL};
-    if (!from.library) return fails("the library opens", dlerror());
+    if (!from.handle) return fails("the library opens", dlerror());
     wadi_functions wadi;
     const char* missing = wadi_load_functions(&wadi, find, &from);
     if (missing) return fails("all functions are found", missing);
