@@ -5,7 +5,9 @@
 #if defined(_WIN32)
 #include <io.h>
 #include <process.h>
+#include <windows.h>
 #else
+#include <dlfcn.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -74,6 +76,26 @@ int run_program(const std::vector<std::string>& arguments) {
     int status = 0;
     if (waitpid(child, &status, 0) != child) return -1;
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+#endif
+}
+
+bool SharedLibrary::open(const std::vector<const char*>& names) {
+    for (const char* const name : names) {
+#if defined(_WIN32)
+        handle_ = LoadLibraryA(name);
+#else
+        handle_ = dlopen(name, RTLD_NOW | RTLD_LOCAL);
+#endif
+        if (handle_ != nullptr) return true;
+    }
+    return false;
+}
+
+void (*SharedLibrary::address(const char* name) const)() {
+#if defined(_WIN32)
+    return reinterpret_cast<void (*)()>(GetProcAddress(static_cast<HMODULE>(handle_), name));
+#else
+    return reinterpret_cast<void (*)()>(dlsym(handle_, name));
 #endif
 }
 

@@ -89,6 +89,10 @@ std::string format_table(const Report& report) {
     append(text, "beside it %.2f s loading before, %.2f s figures, %.2f s pictures\n", report.loading_seconds,
            report.figures_seconds, report.picture_seconds);
 
+    if (report.clock_readings > 0)
+        append(text, "clock     %u MHz while stepping, %u the slowest of %u readings\n", report.clock_last, report.clock_least,
+               report.clock_readings);
+
     if (!report.stages.empty()) {
         double sum = 0;
         for (const wadi_stage_timing& stage : report.stages) sum += stage.milliseconds;
@@ -141,6 +145,9 @@ std::string format_summary(const Report& report) {
     json["figures_seconds"] = report.figures_seconds;
     json["picture_seconds"] = report.picture_seconds;
     json["ms_per_step"] = report.ms_per_step();
+    if (report.clock_readings > 0)
+        json["gpu_clock"] = {
+            {"last_mhz", report.clock_last}, {"slowest_mhz", report.clock_least}, {"readings", report.clock_readings}};
     json["frames"] = report.frames;
     json["stages"] = nlohmann::ordered_json::array();
     for (const wadi_stage_timing& stage : report.stages) {

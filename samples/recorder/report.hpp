@@ -29,6 +29,7 @@ struct Report {
     double picture_seconds = 0;    // frames: read, drawn and written
     std::uint64_t timed_steps = 0; // steps that stepping_seconds covers
     int frames = 0;
+    unsigned clock_readings = 0, clock_last = 0, clock_least = 0; // of the GPU while it stepped [MHz]
 
     wadi_world_stats stats = {};                                                                 // of the last successful reading
     double largest_sand = 0, largest_water = 0, largest_water_speed = 0, largest_sand_speed = 0; // over all frames

@@ -1,6 +1,7 @@
 #include "run.hpp"
 #include "files.hpp"
 #include "frame.hpp"
+#include "gpu_clock.hpp"
 #include "platform.hpp"
 #include "png.hpp"
 #include "points.hpp"
@@ -22,7 +23,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr double MOST_FRAMES = 100000;
 constexpr const char* VIDEO = "recording.mp4";
-constexpr double CHUNK_SECONDS = 0.5; // wall time between two looks at the clock and the interrupt flag
+constexpr double CHUNK_SECONDS = 0.5;     // wall time between two looks at the time and the interrupt flag
+constexpr double GPU_CLOCK_SECONDS = 0.1; // between two readings of the GPU's clock
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -64,6 +66,8 @@ class Recording {
     std::optional<ContactSheet> sheet_;
     std::vector<PointTable> tables_; // gauges and sections, where asked for
     std::optional<Progress> progress_;
+    std::optional<GpuClock> gpu_clock_;
+    std::optional<Clock::time_point> gpu_clock_read_;
     Caption caption_;
     double metres_per_pixel_ = 0;
 };
@@ -134,6 +138,10 @@ Failure Recording::advance(std::uint64_t target) {
         const Clock::time_point start = Clock::now();
         const std::clock_t processor_start = std::clock();
         if (Failure failure = world_.step(count)) return failure;
+        if (!gpu_clock_read_ || seconds_since(*gpu_clock_read_) > GPU_CLOCK_SECONDS) {
+            gpu_clock_->read();
+            gpu_clock_read_ = Clock::now();
+        }
         if (Failure failure = world_.wait(time_)) return failure;
         const double own = seconds_since(start);
         report_.processor_seconds += static_cast<double>(std::clock() - processor_start) / CLOCKS_PER_SEC;
@@ -265,12 +273,16 @@ int Recording::run() {
 
     if (options_.frames) sheet_.emplace(frame_steps_.size());
     progress_.emplace(seconds_, steps_);
+    gpu_clock_.emplace(info.device_name);
     catch_interrupt();
     const Clock::time_point start = Clock::now();
     Failure failure = record();
     if (failure && failure.exit_code == EXIT_DEVICE_FAULT) report_.fault = failure.message;
     if (!failure && options_.profile) failure = world_.read_timings(report_.stages);
     report_.wall_seconds = seconds_since(start);
+    report_.clock_readings = gpu_clock_->readings();
+    report_.clock_last = gpu_clock_->last();
+    report_.clock_least = gpu_clock_->least();
     progress_->finish();
     const Failure unwritten = finish();
 

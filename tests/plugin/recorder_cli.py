@@ -355,10 +355,27 @@ def test_interrupt(recorder):
     assert not list((recorder.folder / "cut").glob("*.part"))
 
 
+def test_gpu_clock(recorder, nvml):
+    """The clock of the GPU that steps, told by a stand-in for the driver's library."""
+    def summary(names):
+        recorder.environment.update(LD_LIBRARY_PATH=str(Path(nvml).resolve().parent), FAKE_GPUS=names)
+        said = recorder.record("--seconds", "0.5", "--no-frames", "--summary", "summary.json").stdout
+        told = json.loads((recorder.folder / "summary.json").read_text(encoding="utf-8"))
+        assert ("MHz while stepping" in said) == ("gpu_clock" in told), said
+        return told
+
+    name = summary("another")["device"]["name"]
+    clock = summary("another|" + name)["gpu_clock"]
+    assert clock["readings"] > 0 and clock["last_mhz"] == clock["slowest_mhz"] == 1990 - 10 * clock["readings"], clock
+    for others in ("another", name + "|" + name):  # not there; which of two is not known
+        assert "gpu_clock" not in summary(others), others
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("recorder")
     parser.add_argument("--backend", default="cpu")
+    parser.add_argument("--nvml", help="libnvidia-ml.so.1 of fake_nvml.c")
     options = parser.parse_args()
     tests = [test_frames, test_dumps, test_points, test_summary]
     if options.backend == "cpu":  # what meets no device
@@ -369,6 +386,10 @@ def main():
         with tempfile.TemporaryDirectory(prefix="wadi_recorder_") as folder:
             skipped = test(Recorder(options.recorder, options.backend, Path(folder)))
         print(f"{test.__name__}: {skipped or 'OK'}")
+    if options.nvml:
+        with tempfile.TemporaryDirectory(prefix="wadi_recorder_") as folder:
+            test_gpu_clock(Recorder(options.recorder, options.backend, Path(folder)), options.nvml)
+        print("test_gpu_clock: OK")
     return 0
 
 
