@@ -36,6 +36,11 @@ def fields(body):
     return found
 
 
+def enumerators(body):
+    """(name, number, comment behind it) of each value of an enum."""
+    return re.findall(r"(WADI_\w+) = (-?\d+),?[ \t]*(/\*.*?\*/)?", body, re.DOTALL)
+
+
 def read(header):
     """What a header declares."""
     api = {"abi_version": int(re.search(r"#define WADI_ABI_VERSION (\d+)u", header)[1])}
@@ -44,7 +49,7 @@ def read(header):
     comment = r"(/\*\*(?:(?!\*/).)*\*/\n)?"
     api["typedefs"] = {name: kind for kind, name in re.findall(r"^typedef (u?int32_t) (wadi_\w+);", header, re.MULTILINE)}
     api["enums"] = [
-        {"name": name, "text": plain(text), "values": {key: int(value) for key, value in re.findall(r"(WADI_\w+) = (-?\d+)", body)}}
+        {"name": name, "text": plain(text), "values": {key: int(value) for key, value, _ in enumerators(body)}, "texts": {key: plain(note) for key, _, note in enumerators(body) if note}}
         for text, body, name in re.findall(comment + r"typedef enum \w+(?: WADI_ENUM)? \{(.*?)\} (\w+);", header, re.DOTALL)
     ]
     defaults = {
@@ -58,7 +63,7 @@ def read(header):
     ]
     api["callbacks"] = [
         {"name": name, "returns": returns, "arguments": arguments(given), "text": plain(text)}
-        for text, returns, name, given in re.findall(comment + r"typedef (\w+) \(\*(\w+)\)\(([^)]*)\);", header, re.DOTALL)
+        for text, returns, name, given in re.findall(comment + r"typedef (\w+\**) \(\*(\w+)\)\(([^)]*)\);", header, re.DOTALL)
     ]
     api["functions"] = [
         {"name": name, "returns": returns.strip(), "arguments": arguments(given), "text": plain(text)}
@@ -127,8 +132,9 @@ def main():
     declared = set(re.findall(r"^WADI_API[^;(]*?(wadi_\w+)\(", header, re.MULTILINE))
     if declared != {f["name"] for f in api["functions"]}:
         sys.exit(f"functions that were not read: {declared ^ {f['name'] for f in api['functions']}}")
-    if header.count("typedef struct") != len(api["structs"]) or header.count("typedef enum") != len(api["enums"]):
-        sys.exit("a struct or an enum was not read")
+    counted = (header.count("typedef struct"), header.count("typedef enum"), len(re.findall(r"^typedef [^;(]*\(\*", header, re.MULTILINE)))
+    if counted != tuple(len(api[part]) for part in ("structs", "enums", "callbacks")):
+        sys.exit("a struct, an enum or a callback was not read")
     flags = [f"{s['name']}.{f['name']}" for s in api["structs"] for f in s["fields"] if f["type"] in ("int32_t", "uint32_t") and re.search(r"(?<![-\d])1 = ", f["text"])]
     flags += [f"{c['name']}({a['name']})" for c in api["functions"] + api["callbacks"] for a in c["arguments"] if a["type"] == "int" or ["on", "int32_t"] == [a["name"], a["type"]]]
     if flags:
