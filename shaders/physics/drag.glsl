@@ -33,7 +33,9 @@ FN float stick_or_slip(float along, float across, float slip, float kappa, float
 // How freely water moves through sand, 0 up to the share W/hs that pores hold back and 1 where they are full or there is no sand
 // (NUMERICS 2.19).
 FN float relative_permeability(float water, float sand, float retained, float inv_drainable) {
-    float drainable = wclamp((lean_divide_or_zero(water, sand) - retained) * inv_drainable, 0.0f, 1.0f);
+    bool partly = both(water > 0.0f, water < sand);
+    float drainable = 0.0f;
+    if (UNIFORM(partly)) drainable = partly ? wclamp((lean_divide_or_zero(water, sand) - retained) * inv_drainable, 0.0f, 1.0f) : 0.0f;
     return water < sand ? drainable * drainable * drainable : 1.0f;
 }
 

@@ -64,8 +64,13 @@ FN float passive_coefficient(float friction) { return square(friction + lean_roo
 // piles up. speed2: square of the old velocity; friction: b times what friction takes from a velocity in the substep.
 FN float left_within(float growth, float least_height, float speed2, float wave_speed2, float friction) {
     float thinning = least_height * wmax(growth, 0.0f);
-    float speed = lean_root(wmax(speed2 + 0.0025f * wave_speed2, 1.0e-20f)); // no less than a twentieth of that of waves
-    return wmax(0.0f, 1.0f - lean_divide_or_zero(friction * thinning, (speed + thinning) * speed));
+    float left = 1.0f;
+    if (UNIFORM(thinning > 0.0f)) {
+        float speed = lean_root(wmax(speed2 + 0.0025f * wave_speed2, 1.0e-20f)); // no less than a twentieth of that of waves
+        float kept = wmax(0.0f, 1.0f - lean_divide_or_zero(friction * thinning, (speed + thinning) * speed));
+        left = thinning > 0.0f ? kept : 1.0f;
+    }
+    return left;
 }
 
 #endif

@@ -221,19 +221,18 @@ FN void project_stretch(REF(Stretch) v, REF(Stress) stress, float c, float cap, 
 
     elastic = both(both(both(elastic, within), !tip), both(!broken, !beyond));
 
-    float hh = square(dd) + square(dxy);
     float em = exp_minus_one(0.5f * tr);
     float e = 1.0f + em;
-    float ch = cosh_minus_one(hh);
-    float sh = e * sinh_over(hh);
-    v.xx = (em + e * ch) + sh * dd;
-    v.yy = (em + e * ch) - sh * dd;
-    v.xy = sh * dxy;
     // Where nothing yields V stays as it is: the way through log and exp would move it by rounding for ever, and a strained
     // pile at rest would not be a fixed point.
-    v.xx = elastic ? before.xx : v.xx;
-    v.xy = elastic ? before.xy : v.xy;
-    v.yy = elastic ? before.yy : v.yy;
+    if (UNIFORM(!elastic)) {
+        float hh = square(dd) + square(dxy);
+        float ch = cosh_minus_one(hh);
+        float sh = e * sinh_over(hh);
+        v.xx = elastic ? before.xx : (em + e * ch) + sh * dd;
+        v.yy = elastic ? before.yy : (em + e * ch) - sh * dd;
+        v.xy = elastic ? before.xy : sh * dxy;
+    }
     float inv_j = lean_quotient(1.0f, e * e);
     float mean = bulk * tr;
     stress.xx = (mean + two_shear * dd) * inv_j;

@@ -87,8 +87,12 @@ FN float faster_flux(float u_low, float u_high, float flux_low, float flux_high)
 // that runs into a lake at speed brings it next to nothing.
 FN float shock_flux(Compression at, float height, float carried, float viscosity, float k) {
     float rest = wmax(at.own - wmax(3.0f * wmin(at.low, at.high), 0.0f), 0.0f);
-    float number = wmin(wmin(viscosity * wsqrt(wmax(height, 0.0f)), 12.0f * k * rest), 0.12f);
-    return -wmin(number * height, 4.0f * carried) * rest;
+    float flux = 0.0f;
+    if (UNIFORM(rest > 0.0f)) {
+        float number = wmin(wmin(viscosity * wsqrt(wmax(height, 0.0f)), 12.0f * k * rest), 0.12f);
+        flux = -wmin(number * height, 4.0f * carried) * rest;
+    }
+    return flux;
 }
 
 // Momentum exchange between pure and mixed water when the boundary between them moves (paper 3.4.2; convex form,

@@ -49,8 +49,7 @@ std::string marking(const Stage& s, const std::string& member) {
                   << (is_float ? "float_bits(" + value + ") != float_bits(" + old + ")" : value + " != " + old) << ";\n";
         }
     }
-    return before.str() + "    " + member + "kernel(i, j);\n    if (look) {\n        bool changed = false;\n" + after.str() +
-           "        if (changed) activity[tile] = uint(S.step);\n    }\n";
+    return before.str() + "    " + member + "kernel(i, j);\n    if (look) {\n" + after.str() + "    }\n";
 }
 
 std::string shared_macros() {

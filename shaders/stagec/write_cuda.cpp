@@ -23,21 +23,22 @@ std::string cuda_active(const Stage& s) {
     for (const auto& b : s.bindings)
         o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << element_type(b, "EFFECTS") << "*>(b.at[" << b.slot
           << "])";
-    const std::string look = "    const bool look = activity[tile] != uint(S.step);\n";
+    const std::string look = "    const bool look = activity[tile] != uint(S.step);\n    bool changed = false;\n";
     o << "};\n    volatile uint* const activity = tiles.activity;\n";
     if (s.extent == "RIM") {
         o << "    const int i = static_cast<int>(blockIdx.x * blockDim.x + threadIdx.x);\n    const int j = 0;\n    if (!("
           << guard(s.extent) << ")) return;\n"
-          << rim_place(s) << look << marking(s, "stage.") << "}\n";
+          << rim_place(s) << look << marking(s, "stage.") << marked << "}\n";
         return o.str();
     }
     o << "    const uint count = *tiles.count;\n"
       << "    for (uint n = blockIdx.x; n < count; n += gridDim.x) {\n    const int tile = static_cast<int>(tiles.list[n]);\n"
+      << look // ahead of the rows, so that none of them waits for it
       << "    const int i = (tile % P.tile_columns) * P.tile_size + static_cast<int>(threadIdx.x);\n"
       << "    for (int row = static_cast<int>(threadIdx.y); row < P.tile_size; row += static_cast<int>(blockDim.y)) {\n"
       << "    const int j = (tile / P.tile_columns) * P.tile_size + row;\n    if (!(" << guard(s.extent)
       << ")) continue;\n    const int at = IDX(i, j);\n"
-      << look << marking(s, "stage.") << "    }\n    }\n}\n";
+      << marking(s, "stage.") << "    }\n" << marked << "    }\n}\n";
     return o.str();
 }
 

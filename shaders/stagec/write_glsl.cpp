@@ -92,8 +92,8 @@ std::string write_glsl(const Stage& s) {
           << "        j = (tile / P.tile_columns) * P.tile_size + row;\n    }\n"
           << "    if (!(" << guard(s.extent) << ")) return;\n    int at = IDX(i, j);\n";
     }
-    o << "    bool look = false;\n    if (ACTIVE_TILES != 0u) look = activity[tile] != uint(S.step);\n"
-      << marking(s, "") << "}\n";
+    o << "    bool look = false;\n    if (ACTIVE_TILES != 0u) look = activity[tile] != uint(S.step);\n    bool changed = false;\n"
+      << marking(s, "") << marked << "}\n";
     return o.str();
 }
 

@@ -12,9 +12,11 @@ std::string guard(const std::string& extent);
 std::string length(const std::string& extent);
 /// Stages that run over a list of active tiles, and stages of the rim, which run whole but tell what they changed.
 bool marks(const Stage& stage);
-/// Runs the kernel and stamps its tile with the step if a bit of what it writes is another than before. Once a tile has its stamp
-/// nobody looks any more. Threads of one tile store the same value, so that their order does not matter.
+/// Runs the kernel and, where `look`, notes in `changed` whether a bit of what it writes is another than before.
 std::string marking(const Stage& stage, const std::string& member);
+/// Stamps the tile with the step. Once a tile has its stamp nobody looks any more. Threads of one tile store the same value, so that
+/// their order does not matter.
+inline constexpr const char* marked = "    if (changed) activity[tile] = uint(S.step);\n";
 /// The place of a rim kernel: its face, the cell outside it where that is written, the tile that holds the face.
 std::string rim_place(const Stage& stage);
 /// KEEP_STORED of a fused stage: stores, and notes whether that changed a bit where somebody looks.
