@@ -1,0 +1,170 @@
+#include "engine.h"
+#include "level.h"
+#include "results.h"
+#include "terrain.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_STEPS_PER_UPDATE = 1024 };
+
+/* Comes from any thread; the engine's log takes lines from all. */
+static void log_line(void* user, wadi_log_level level, const char* message) {
+    (void)user;
+    if (level == WADI_LOG_ERROR)
+        log_error("%s", message);
+    else if (level == WADI_LOG_WARNING)
+        log_warning("%s", message);
+}
+
+static void lose(Terrain* terrain) {
+    if (terrain->lost) return;
+    terrain->lost = true;
+    String text = string_of(terrain->message);
+    Variant argument = variant_of(GDEXTENSION_VARIANT_TYPE_STRING, &text);
+    value_free(GDEXTENSION_VARIANT_TYPE_STRING, &text);
+    emit(terrain->object, "device_lost", &argument, 1);
+}
+
+int64_t world_failed(Terrain* terrain, const char* call, wadi_result result) {
+    snprintf(terrain->message, sizeof terrain->message, "%s: %s", call, wadi_get_last_error());
+    if (!terrain->lost) log_error("%s", terrain->message); /* a lost device fails every tick */
+    if (result == WADI_ERROR_DEVICE_LOST) lose(terrain);
+    return error_of(result);
+}
+
+int64_t world_refused(Terrain* terrain, int64_t error, const char* format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(terrain->message, sizeof terrain->message, format, arguments);
+    va_end(arguments);
+    log_error("%s", terrain->message);
+    return error;
+}
+
+bool world_needed(Terrain* terrain, const char* call) {
+    if (terrain->started) return true;
+    world_refused(terrain, ERROR_UNCONFIGURED, "%s: there is no world yet; start() makes it", call);
+    return false;
+}
+
+double world_x(const Terrain* terrain, double x) { return x + terrain->info.nx * terrain->info.dx / 2; }
+double world_y(const Terrain* terrain, double z) { return terrain->info.ny * terrain->info.dx / 2 - z; }
+
+wadi_result world_set_outputs(Terrain* terrain) {
+    const wadi_output_mask mask = (wadi_output_mask)terrain->outputs;
+    const wadi_output_mask heights = terrain->heights_asked ? WADI_OUTPUT_BIT(WADI_OUTPUT_SAND_SURFACE) : 0;
+    const wadi_output_mask on_device = terrain->textures.shared ? mask : 0, on_host = terrain->textures.shared ? 0 : mask;
+    terrain->updates_due = 2;
+    wadi_result result = wadi_world_set_outputs(terrain->world, on_device | WADI_OUTPUT_TILES_BIT);
+    if (result == WADI_OK) result = wadi_world_set_host_outputs(terrain->world, on_host | heights);
+    return result;
+}
+
+static wadi_result set_pace(const Terrain* terrain) {
+    wadi_update_settings settings = wadi_default_update_settings();
+    settings.max_steps_per_update = (uint32_t)terrain->max_steps_per_frame;
+    if (terrain->wait_for_device) settings.max_steps_in_flight = 0;
+    return wadi_world_set_update_settings(terrain->world, &settings);
+}
+
+/* A property that has no good value: the message names it and its range. */
+static bool properties_good(Terrain* terrain) {
+    if (terrain->max_steps_per_frame < 1 || terrain->max_steps_per_frame > MOST_STEPS_PER_UPDATE) {
+        world_refused(terrain, 0, "max_steps_per_frame: %lld; 1 ... %d", (long long)terrain->max_steps_per_frame,
+                      MOST_STEPS_PER_UPDATE);
+        return false;
+    }
+    if (!(terrain->time_scale >= 0 && terrain->time_scale <= 1000)) {
+        world_refused(terrain, 0, "time_scale: %g; 0 ... 1000", terrain->time_scale);
+        return false;
+    }
+    if (terrain->threads < 0 || terrain->threads > INT32_MAX) {
+        world_refused(terrain, 0, "threads: %lld; 0 (all cores) or more", (long long)terrain->threads);
+        return false;
+    }
+    if (terrain->outputs < 0 || terrain->outputs >= WADI_OUTPUT_BIT(WADI_OUTPUT_COUNT)) {
+        world_refused(terrain, 0, "outputs: %lld; bits of OUTPUT_TERRAIN ... OUTPUT_PACKED_HALF", (long long)terrain->outputs);
+        return false;
+    }
+    return true;
+}
+
+static wadi_result make(Terrain* terrain, const Level* level, char* message, size_t size) {
+    char* backend = string_text(&terrain->backend);
+    wadi_device_options options = wadi_default_device_options();
+    options.backend = backend && *backend ? backend : "auto";
+    options.threads = (int32_t)terrain->threads;
+    options.log = log_line;
+    const wadi_result result = level_create_world(level, &options, &terrain->world, message, size);
+    free(backend);
+    return result;
+}
+
+int64_t world_start(Terrain* terrain) {
+    if (terrain->started) return world_refused(terrain, ERROR_ALREADY_IN_USE, "start: there is a world already; stop() ends it");
+    const Level* level = instance_of(&level_class, terrain->level);
+    if (!level) return world_refused(terrain, ERROR_UNCONFIGURED, "start: level: is not set to a WadiLevel");
+    if (!properties_good(terrain)) return ERROR_INVALID_PARAMETER;
+    char message[sizeof terrain->message - 16];
+    wadi_result result = make(terrain, level, message, sizeof message);
+    if (result != WADI_OK) {
+        world_refused(terrain, 0, "start: %s", message);
+        return error_of(result);
+    }
+    terrain->info = wadi_default_world_info();
+    result = wadi_world_get_info(terrain->world, &terrain->info);
+    terrain->started = true;
+    terrain->lost = false;
+    terrain->nanoseconds_left = 0;
+    terrain->told_step = terrain->dirty_step = 0;
+    if (result == WADI_OK) result = set_pace(terrain);
+    if (result == WADI_OK) result = world_set_outputs(terrain);
+    if (result == WADI_OK) result = frame_sync(terrain);
+    if (result != WADI_OK) {
+        const int64_t error = world_failed(terrain, "start", result);
+        world_stop(terrain);
+        return error;
+    }
+    emit(terrain->object, "started", NULL, 0);
+    return ERROR_OK;
+}
+
+void world_stop(Terrain* terrain) {
+    if (!terrain->started) return;
+    terrain->started = false;
+    wadi_destroy_world(terrain->world); /* ahead of the memory that its worker may be filling */
+    textures_clear(&terrain->textures);
+    free(terrain->save_data);
+    terrain->save_data = NULL;
+    terrain->save_ticket = 0;
+    terrain->body_asked = false;
+    terrain->heights_asked = false;
+}
+
+void world_settings_changed(void* self) {
+    Terrain* terrain = self;
+    if (!terrain->started || !properties_good(terrain)) return;
+    const wadi_result result = set_pace(terrain);
+    if (result != WADI_OK) world_failed(terrain, "max_steps_per_frame", result);
+}
+
+void world_outputs_changed(void* self) {
+    Terrain* terrain = self;
+    if (!terrain->started || !properties_good(terrain)) return;
+    const wadi_result result = world_set_outputs(terrain);
+    if (result != WADI_OK) world_failed(terrain, "outputs", result);
+}
+
+void terrain_start(void* self, const GDExtensionConstTypePtr* arguments, void* result) {
+    (void)arguments;
+    *(int64_t*)result = world_start(self);
+}
+
+void terrain_stop(void* self, const GDExtensionConstTypePtr* arguments, void* result) {
+    (void)arguments;
+    (void)result;
+    world_stop(self);
+}
