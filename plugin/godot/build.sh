@@ -57,7 +57,7 @@ for source in "$here"/source/*.c "$output"/interface/*.c; do
     objects+=("$object")
 done
 rm -f "$output/addons/wadi/libwadi_godot.so"
-gcc -shared -o "$output/addons/wadi/libwadi_godot.so" "${objects[@]}" "$library" -Wl,-rpath,'$ORIGIN' -Wl,--no-undefined -lm
+gcc -shared -o "$output/addons/wadi/libwadi_godot.so" "${objects[@]}" "$library" -Wl,-rpath,'$ORIGIN' -Wl,--no-undefined -lm -ldl
 
 # A new file each time: an engine that runs keeps those that it has open.
 cp --remove-destination "$library" "$output/addons/wadi/libwadi.so.1"

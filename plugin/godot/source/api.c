@@ -9,7 +9,7 @@ bool load_api(GDExtensionInterfaceGetProcAddress get_proc_address, GDExtensionCl
     api.get_proc_address = get_proc_address;
     api.library = library;
 #define API_LOAD(name, type)                                                                                                     \
-    api.name = (GDExtensionInterface##type)(void (*)(void))get_proc_address(#name);                                                              \
+    api.name = (GDExtensionInterface##type)(void (*)(void))get_proc_address(#name);                                              \
     if (!api.name) {                                                                                                             \
         fprintf(stderr, "Wadi: this engine has no function " #name "; Godot 4.4 or later is needed\n");                          \
         return false;                                                                                                            \

@@ -1,5 +1,5 @@
-/* Calls of the engine's own classes and types. The names ENGINE_(class)_(method) and BUILTIN_(type)_(method) that the sources use are
- * found by generate.py, which takes their hashes from the engine's extension_api.json. */
+/* Calls of the engine's own classes and types. The names ENGINE_(class)_(method) and BUILTIN_(type)_(method) that the sources use
+ * are found by generate.py, which takes their hashes from the engine's extension_api.json. */
 #ifndef WADI_GODOT_ENGINE_H
 #define WADI_GODOT_ENGINE_H
 

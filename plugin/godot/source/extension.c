@@ -1,11 +1,12 @@
 /* The extension's entry, named in wadi.gdextension. */
 #include "engine.h"
+#include "float.h"
 #include "level.h"
 #include "terrain.h"
 
 #include <wadi/wadi.h>
 
-static const Class* const classes[] = {&level_class, &terrain_class};
+static const Class* const classes[] = {&level_class, &terrain_class, &float_class};
 enum { CLASS_COUNT = sizeof classes / sizeof *classes };
 
 static void initialize(void* data, GDExtensionInitializationLevel level) {

@@ -1,12 +1,16 @@
 #include "engine.h"
+#include "float.h"
 #include "results.h"
+#include "shared_device.h"
 #include "terrain.h"
 
 static wadi_output_mask mask_of(const Terrain* terrain) { return (wadi_output_mask)terrain->outputs; }
 
 /* Brings the newest publish into the textures. */
 static bool show(Terrain* terrain, uint64_t step) {
-    return textures_update_host(&terrain->textures, terrain->world, &terrain->info, mask_of(terrain), step);
+    Textures* textures = &terrain->textures;
+    if (textures->shared) return textures_update_shared(textures, terrain->world, mask_of(terrain), step);
+    return textures_update_host(textures, terrain->world, &terrain->info, mask_of(terrain), step);
 }
 
 static void tell_dropped(Terrain* terrain, uint64_t nanoseconds) {
@@ -51,6 +55,7 @@ void frame_tick(Terrain* terrain) {
         if (terrain->updates_due > 1 || (terrain->updates_due == 1 && shown)) --terrain->updates_due;
         if (frame.steps > 0) terrain->updates_due = 2;
     }
+    floats_tick(terrain);
     /* What listens may end the world, so it comes last. */
     const GDObjectInstanceID id = api.object_get_instance_id(terrain->object);
     tell_dropped(terrain, frame.dropped_nanoseconds);

@@ -1,6 +1,7 @@
 #include "terrain.h"
 
 #include "engine.h"
+#include "float.h"
 #include "level.h"
 
 static void update_warnings(void* self) {
@@ -99,7 +100,10 @@ static void create(void* self) {
     terrain->outputs = WADI_OUTPUT_BIT(WADI_OUTPUT_PACKED) | WADI_OUTPUT_BIT(WADI_OUTPUT_FLOW);
 }
 
-static void destroy(void* self) { world_stop(self); }
+static void destroy(void* self) {
+    floats_leave(self);
+    world_stop(self);
+}
 
 static void notify(void* self, int32_t what, uint8_t reversed) {
     (void)reversed;

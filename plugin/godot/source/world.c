@@ -1,6 +1,8 @@
 #include "engine.h"
+#include "float.h"
 #include "level.h"
 #include "results.h"
+#include "shared_device.h"
 #include "terrain.h"
 
 #include <stdarg.h>
@@ -92,14 +94,37 @@ static bool properties_good(Terrain* terrain) {
     return true;
 }
 
-static wadi_result make(Terrain* terrain, const Level* level, char* message, size_t size) {
-    char* backend = string_text(&terrain->backend);
+static wadi_result make_on(Terrain* terrain, const Level* level, const char* backend, char* message, size_t size) {
     wadi_device_options options = wadi_default_device_options();
-    options.backend = backend && *backend ? backend : "auto";
+    options.backend = backend;
     options.threads = (int32_t)terrain->threads;
     options.log = log_line;
-    const wadi_result result = level_create_world(level, &options, &terrain->world, message, size);
-    free(backend);
+    options.vulkan_host = terrain->textures.shared ? shared_host(terrain->textures.shared) : NULL;
+    return level_create_world(level, &options, &terrain->world, message, size);
+}
+
+/* On the renderer's device where that was asked for and can be; where not, the log says why and textures go through host memory.
+ */
+static wadi_result make(Terrain* terrain, const Level* level, char* message, size_t size) {
+    static const char instead[] = "share_device: %s; textures go through host memory";
+    char why[sizeof terrain->message] = "the backend is neither \"auto\" nor \"vulkan\"";
+    char* text = string_text(&terrain->backend);
+    const char* backend = text && *text ? text : "auto";
+    const bool on_vulkan = strcmp(backend, "auto") == 0 || strcmp(backend, "vulkan") == 0;
+    if (terrain->share_device && on_vulkan) terrain->textures.shared = shared_open(why, sizeof why);
+    if (terrain->share_device && !terrain->textures.shared) log_warning(instead, why);
+    wadi_result result = make_on(terrain, level, backend, message, size);
+    if (result == WADI_ERROR_NOT_SUPPORTED && terrain->textures.shared) {
+        log_warning(instead, message);
+        shared_close(terrain->textures.shared, NULL);
+        terrain->textures.shared = NULL;
+        result = make_on(terrain, level, backend, message, size);
+    }
+    if (result != WADI_OK && terrain->textures.shared) {
+        shared_close(terrain->textures.shared, NULL);
+        terrain->textures.shared = NULL;
+    }
+    free(text);
     return result;
 }
 
@@ -135,12 +160,14 @@ int64_t world_start(Terrain* terrain) {
 void world_stop(Terrain* terrain) {
     if (!terrain->started) return;
     terrain->started = false;
+    if (terrain->textures.shared) shared_close(terrain->textures.shared, &terrain->textures);
+    terrain->textures.shared = NULL;
     wadi_destroy_world(terrain->world); /* ahead of the memory that its worker may be filling */
     textures_clear(&terrain->textures);
     free(terrain->save_data);
     terrain->save_data = NULL;
     terrain->save_ticket = 0;
-    terrain->body_asked = false;
+    floats_forget(terrain);
     terrain->heights_asked = false;
 }
 
