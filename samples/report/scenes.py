@@ -12,6 +12,7 @@ import water_scenes
 from recordings import measures
 from scene import Scene, base
 
+QUIET = 8  # [s]: until then nothing that came in at the tank's side has reached Monai's gauges
 REFERENCES = pathlib.Path(__file__).resolve().parent / "references"
 
 
@@ -108,8 +109,10 @@ def monai():
             lab = [measured[min(measured, key=lambda m, t=t: abs(m - t))][g] for t in times]
             rmse = math.sqrt(math.fsum((a - b) ** 2 for a, b in zip(ours, lab)) / len(times))
             worst.append(100 * rmse / (max(lab) - min(lab)))
+            before = [v for t, v in zip(times, lab) if t <= QUIET]
+            still = 1000 * math.sqrt(math.fsum(v * v for v in before) / len(before))
             arrival = [next((t for t, v in zip(times, side) if v > 0.01), math.nan) for side in (ours, lab)]
-            result += [(f"{name}: RMSE", "mm", 1000 * rmse, 0), (f"{name}: peak", "mm", 1000 * max(ours), 1000 * max(lab)),
+            result += [(f"{name}: RMSE", "mm", 1000 * rmse, 0), (f"{name}: RMS of the laboratory's before the wave comes", "mm", still, None), (f"{name}: peak", "mm", 1000 * max(ours), 1000 * max(lab)),
                        (f"{name}: first above 1 cm", "s", arrival[0], arrival[1])]
         return [("RMSE of the gauges, of their range", "%", math.fsum(worst) / 3, 0), *result]
 
