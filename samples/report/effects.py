@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Effect by effect, and choice by choice that levels have on by themselves, what leaving it out changes: the level that shows it best, with it
-and without, as a pair of pictures and in numbers. Writes samples/report/effects.
+and without, in three dimensions and in numbers, and what it costs. Writes samples/report/effects.
 
-usage: samples/report/effects.py BIN_FOLDER [--backend cpu] [--processor-time] [--only EFFECT ...] [--out DIR | --check]
+usage: samples/report/effects.py BIN_FOLDER [--backend cpu] [--processor-time] [--rounds 7] [--only EFFECT ...] [--out DIR | --check]
 --check: half the cells along x and y and half the time, no files; fails where a pair does not differ, where the same run twice does, or where an effect, or a
 choice that is on by itself, has no pair.
 """
@@ -11,10 +11,13 @@ import json
 import math
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
+import tempfile
 
 import pairs
+import prices
 import recordings
 import stamps
 
@@ -45,6 +48,8 @@ NEEDED_BY = {"water": ("mixture", "diffusion", "drag", "cohesion", "rain", "bed_
              "mixture": ("diffusion", "bed_shear", "retention"), "drag": ("retention",), "bed_friction": ("roughness",), "elastoplastic": ("cohesion",)}
 OFF = {"shock_viscosity": {"method": {"shock_viscosity": 0}}}  # choices of method are no `effects`
 LEAST_PIXELS, LEAST_ERROR = 1.0, 0.2  # [%]: a pair differs from here on, to the eye and in its fields
+FINER, PICTURE = 2, "440x300"  # pictures: cells along x and y over those of the numbers; pixels
+CAMERA = {}  # effect: where it is seen best, else "overview"
 
 
 def known(recorder):
@@ -65,50 +70,89 @@ def left_out(with_it, without, seconds):
     return result
 
 
-def run(recorder, effect, off, cells, seconds):
+def level_of(effect, off):
     level, _, _, changes, _ = SHOWN[effect]
     level = recordings.merged(recordings.read_level(level), changes)
     if off:
         level = recordings.merged(level, OFF.get(effect) or {"effects": {name: "off" for name in (effect, *NEEDED_BY.get(effect, ()))}})
-    recording, summary = recorder.record(level, size=cells, seconds=seconds, times=(0, seconds), pictures=2)
-    return recording, summary, summary["ms_per_step"], pairs.map_of(recording.folder / "frame_00001.png", recording.nx, recording.ny)
+    return level
+
+
+def run(recorder, effect, off, cells, seconds):
+    recording, summary = recorder.record(level_of(effect, off), size=cells, seconds=seconds, times=(0, seconds), pictures=2)
+    return recording, summary, pairs.map_of(recording.folder / "frame_00001.png", recording.nx, recording.ny)
 
 
 def number(value):
     return f"{value:.3g}"
 
 
-def pair(recorder, effect, cells, seconds, repeats=1):
-    # By turns, so that what else the machine does falls on both; the shortest time of each counts.
-    rounds = [[run(recorder, effect, off, cells, seconds) for off in (False, True)] for _ in range(repeats)]
-    with_it, without = ((*side[0][:2], min(one[2] for one in side), side[0][3]) for side in zip(*rounds))
+def pair(recorder, effect, cells, seconds):
+    with_it, without = (run(recorder, effect, off, cells, seconds) for off in (False, True))
     errors = left_out(with_it[0], without[0], seconds)
-    pixels = pairs.differing(with_it[3], without[3])
+    pixels = pairs.differing(with_it[2], without[2])
     print(f"{effect}: " + ", ".join(f"{what} {number(error)} %" for what, error in errors) + f", {number(pixels)} % of the pixels", flush=True)
     return with_it, without, errors, pixels
 
 
-def write_page(recorder, only, out):
+def view(programs, effect, off, picture):
+    """The end of a run as the viewer draws it, simulated on the CPU."""
+    _, cells, seconds, _, _ = SHOWN[effect]
+    level = level_of(effect, off)
+    with tempfile.TemporaryDirectory() as scratch:
+        scratch = pathlib.Path(scratch)
+
+        def beside(value):  # a level names files of its own folder alone
+            if isinstance(value, dict):
+                for name in [value["file"]] if isinstance(value.get("file"), str) else []:
+                    shutil.copy(name, scratch)
+                return {key: pathlib.Path(inner).name if key == "file" else beside(inner) for key, inner in value.items()}
+            return [beside(inner) for inner in value] if isinstance(value, list) else value
+
+        (scratch / "level.json").write_text(json.dumps(beside(level)))
+        command = [str(programs / "wadi-viewer"), str(scratch / "level.json"), "--backend", "cpu", "--threads", "1", "--grid", f"{FINER * cells[0]}x{FINER * cells[1]}", "--offscreen",
+                   "--start", f"{seconds:g}", "--size", PICTURE, "--camera", CAMERA.get(effect, "overview"), "--quality", "high", "--out", str(scratch / "out")]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        if done.returncode != 0:
+            raise recordings.Failed(f"{' '.join(command)}\n{done.stdout}{done.stderr}")
+        pairs.write(picture, pairs.whole(next((scratch / "out").glob("*.png"))))
+
+
+def priced(recorder, effect, rounds):
+    """What the effect adds to a step [% of the step with it]: text with the quartiles, or that the scatter hides it."""
+    _, cells, seconds, _, _ = SHOWN[effect]
+    step = lambda off: recorder.record(level_of(effect, off), size=cells, seconds=seconds)[1]
+    price = prices.paired(lambda: step(False), {"off": lambda: step(True)}, rounds)["off"]
+    low, middle, high = (100 * (1 - ratio) for ratio in (price.high, price.ratio, price.low))
+    told = low > 0 or high < 0
+    print(f"{effect}: {middle:.1f} % ({low:.1f} to {high:.1f}) of {price.base_ms:.3g} ms", flush=True)
+    return number(price.base_ms), f"{middle:.0f} ({low:.0f} to {high:.0f})" if told else f"lost in the scatter ({low:.0f} to {high:.0f})"
+
+
+def write_page(recorder, programs, only, rounds, out):
     out.mkdir(parents=True, exist_ok=True)
     numbers, shown = [], []
     for effect, (level, cells, seconds, changes, look) in SHOWN.items():
         if only and effect not in only:
             continue
-        with_it, without, errors, pixels = pair(recorder, effect, cells, seconds, 3)
-        pairs.write(out / f"{effect}.png", with_it[3], without[3])
+        with_it, without, errors, pixels = pair(recorder, effect, cells, seconds)
+        for off in (False, True):
+            view(programs, effect, off, out / f"{effect}_{'off' if off else 'on'}.png")
         by_field = dict(errors)
         both = lambda pick: f"{pick(with_it)} / {pick(without)}"
         numbers.append([f"[{effect}](#{effect})", level, *(number(by_field[what]) if what in by_field else "" for what in ("sand", "water surface")), number(pixels),
-                        both(lambda side: number(side[2])), both(lambda side: f"{side[1]['passes']['per_step']}"), both(lambda side: f"{side[1]['bytes_per_cell']:.0f}")])
+                        *priced(recorder, effect, rounds), both(lambda side: f"{side[1]['passes']['per_step']}"), both(lambda side: f"{side[1]['bytes_per_cell']:.0f}")])
         extra = "".join(f", `{key}` {json.dumps(value)}" for key, value in changes.items())
-        shown += [f"## {effect}", f"`{level}`, {cells[0]} x {cells[1]} cells, {seconds} s{extra}. {look}", "", f"![{effect}: with it, without it]({effect}.png)", ""]
+        shown += [f"## {effect}", f"`{level}`, {cells[0]} x {cells[1]} cells (pictures: {FINER} times as many along x and y), {seconds} s{extra}. {look}", "",
+                  f"| with `{effect}` | without |", "| --- | --- |", f"| ![with {effect}]({effect}_on.png) | ![without {effect}]({effect}_off.png) |", ""]
     if only:
         return
-    head = ["without", "level", "sand [%]", "water surface [%]", "pixels [%]", "ms per step, with / without", "passes", "bytes per cell"]
+    head = ["without", "level", "sand [%]", "water surface [%]", "pixels [%]", "ms per step", "of that the effect's [%]", "passes", "bytes per cell"]
     device = with_it[1]["device"]
-    lines = ["# Effect by effect", "", "What leaving one effect out of a level changes (`\"effects\": { NAME: \"off\" }`, what needs it off as well; `shock_viscosity`, a choice of method: 0); left with it, right without. Sand and water "
-             "surface: mean absolute difference in percent of the range over which they moved with the effect on. Pixels: of the picture, different by a tenth or more. "
-             f"Made by `samples/report/effects.py BIN` on {device['backend']}: {device['name']}{'; processor time' if recorder.processor_time else ''}, least of three.", "",
+    lines = ["# Effect by effect", "", "What leaving one effect out of a level changes (`\"effects\": { NAME: \"off\" }`, what needs it off as well; `shock_viscosity`, a choice of method: 0). Sand and water "
+             "surface: mean absolute difference in percent of the range over which they moved with the effect on. Pixels: of the recorder's map, different by a tenth or more. Its share of a step: "
+             f"median and quartiles of {rounds} pairs of runs by turns; negative where a step without it takes longer, since the scene is another then. Passes and bytes: with it / without. "
+             f"Made by `samples/report/effects.py BIN` on {device['backend']}: {device['name']}{'; processor time' if recorder.processor_time else ''}.", "",
              "| " + " | ".join(head) + " |", "| --- | --- " + "| ---: " * (len(head) - 2) + "|", *("| " + " | ".join(row) + " |" for row in numbers), "", *shown, stamps.stamp("effects"), ""]
     (out / "README.md").write_text("\n".join(lines))
 
@@ -123,7 +167,7 @@ def check(recorder):
         good &= fine
         print(f"{'OK  ' if fine else 'FAIL'} {effect} shows: {number(pixels)} % of the pixels (above {LEAST_PIXELS:g})")
     again = run(recorder, effect, False, tuple(n // 2 for n in cells), seconds / 2)
-    same = pairs.differing(with_it[3], again[3])
+    same = pairs.differing(with_it[2], again[2])
     good &= same == 0
     print(f"{'OK  ' if same == 0 else 'FAIL'} control: the same run twice differs in {number(same)} % of the pixels")
     return good
@@ -134,6 +178,7 @@ def main():
     parser.add_argument("programs", type=pathlib.Path)
     parser.add_argument("--backend", default="cpu")
     parser.add_argument("--processor-time", action="store_true", help="times are processor time of one thread: for a busy machine, CPU backend alone")
+    parser.add_argument("--rounds", type=int, default=7, metavar="N", help="pairs of runs that price an effect (default %(default)s)")
     parser.add_argument("--only", nargs="*", default=[], choices=SHOWN, metavar="EFFECT")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent / "effects")
     parser.add_argument("--check", action="store_true")
@@ -141,7 +186,7 @@ def main():
     with recordings.Recorder(options.programs / "wadi-recorder", options.backend, int(options.processor_time), options.processor_time) as recorder:
         if options.check:
             return 0 if check(recorder) else 1
-        write_page(recorder, options.only, options.out)
+        write_page(recorder, options.programs, options.only, options.rounds, options.out)
     return 0
 
 

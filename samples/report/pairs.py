@@ -1,4 +1,4 @@
-"""Two of the recorder's frames beside each other, small, as one PNG; and how much of them differs. No packages."""
+"""Frames of recorder and viewer as small PNG files, two beside each other or one; and how much of two differs. No packages."""
 import math
 import struct
 import sys
@@ -36,11 +36,17 @@ def differing(one, other, least=24):
     return 100 * count / (one[0] * one[1])
 
 
-def write(path, one, other):
-    width, step, before = one[0] + GAP + other[0], 256 // LEVELS, None
+def whole(picture):
+    """A picture as it is: (width, height, rows of RGB bytes)."""
+    return pictures.read_png(picture)
+
+
+def write(path, *parts):
+    """Parts from left to right, as high as each other."""
+    width, step, before = sum(part[0] for part in parts) + GAP * (len(parts) - 1), 256 // LEVELS, None
     packed = bytearray()
-    for a, b in zip(one[2], other[2]):
-        line = bytes(value // step * step + step // 2 for value in a) + b"\xff" * (3 * GAP) + bytes(value // step * step + step // 2 for value in b)
+    for row in zip(*(part[2] for part in parts)):
+        line = (b"\xff" * (3 * GAP)).join(bytes(value // step * step + step // 2 for value in pixels) for pixels in row)
         above = before or bytes(len(line))
         packed += b"\x02" + bytes((value - up) & 255 for value, up in zip(line, above))  # filter: up
         before = line
@@ -48,5 +54,5 @@ def write(path, one, other):
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
 
-    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, one[1], 8, 2, 0, 0, 0)) + chunk(b"IDAT", zlib.compress(bytes(packed), 9))
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, parts[0][1], 8, 2, 0, 0, 0)) + chunk(b"IDAT", zlib.compress(bytes(packed), 9))
                      + chunk(b"IEND", b""))
