@@ -1,0 +1,184 @@
+#!/usr/bin/env python3
+"""What accuracy costs on grids of real sizes: error against milliseconds a frame, Wadi's settings beside the paper's own method, on cases whose
+right answer comes from outside (frontier_cases.py). Writes README.md (between its two marks), results.csv and a chart per case. Needs numpy,
+exit status 77 without.
+
+usage: samples/report/frontier.py BIN_FOLDER [--backend cpu] [--sizes 64 128 256 512] [--processor-time] [--only CASE ...] [--out DIR]
+A run that was broken off goes on: rows lie in OUT/rows.jsonl until the sources or the program change.
+"""
+import argparse
+import csv
+import hashlib
+import json
+import math
+import pathlib
+import sys
+
+import charts
+import recordings
+import stamps
+import sweep
+
+try:
+    import frontier_cases
+except ImportError as missing:
+    print(f"skipped: {missing} (Debian's package python3-numpy has it)")
+    sys.exit(77)
+from frontier_cases import CASES, np  # noqa: E402
+
+FRAMES = 60  # a second
+# (method preset, sand steps per water step, part of the case's time step); the paper's explicit drag wants shorter steps than ours.
+METHODS = {"order 1": ("robust", 2, 1), "order 2": ("robust", 2, 1), "published": ("published", 3, 1), "published, dt/4": ("published", 3, 4)}
+BUDGETS = {"cpu": (0.25, 1, 4, 16), "gpu": (0.1, 0.5, 2, 8)}  # [ms] of a frame
+BEGIN_MARK, END_MARK = "<!-- frontier.py writes from here -->\n", "<!-- to here -->\n"
+HERE = pathlib.Path(__file__).resolve().parent
+
+
+def level_of(case, n, method):
+    preset, substeps, part = METHODS[method]
+    level = {**case.level(n), "dt": case.step * case.length / n / part}
+    return recordings.choose(level, name=preset, substeps=substeps, **(case.order if method == "order 2" else {}))
+
+
+def measure(recorder, key, n, method):
+    """A row. error None: the state is no number any more, or was refused, `why` says it."""
+    case = CASES[key]
+    level = level_of(case, n, method)
+    files = {name: (n, n, np.ascontiguousarray(values, "f4").ravel()) for name, values in case.files(n).items()}
+    row = {"case": key, "n": n, "method": method, "dt": level["dt"], "error": None}
+    try:
+        run, summary = recorder.record(level, seconds=case.seconds, times=(case.seconds,), fields=(case.field,), files=files)
+    except recordings.Failed as failure:
+        return {**row, "why": str(failure).strip().splitlines()[-1]}
+    now = np.asarray(run.field(case.field, case.seconds)).reshape(n, n)
+    steps = summary["steps"]
+    row |= {"device": summary["device"]["name"], "steps": steps, "ms_per_step": summary["ms_per_step"],
+            "ms_per_frame": 1000 * summary["stepping_seconds"] / summary["simulated_seconds"] / FRAMES}
+    if summary["counts"]["not_finite"]["largest"] or not np.isfinite(now).all():
+        return {**row, "why": "ends in values that are no numbers"}
+    error = case.error(now, run.dx, summary["simulated_seconds"])
+    return {**row, "error": error} if math.isfinite(error) else {**row, "why": "its error is no number"}
+
+
+def name_of(row, middle):
+    """What the settings of a row are called: the preset of a level of `middle` cells a side, if they are one's."""
+    preset = {(middle // 2, "order 1"): "draft", (middle, "order 1"): "balanced", (2 * middle, "order 2"): "accurate"}.get((row["n"], row["method"]))
+    return f"{row['n']}², {row['method']}" + (f" (`{preset}` of {middle}²)" if preset else "")
+
+
+def percent(value):
+    return f"{value:.2g} %" if value < 10 else f"{value:.0f} %"
+
+
+def best_within(rows, budget, preset):
+    """The row of least error that fits a budget, of one method preset."""
+    fit = [row for row in rows if row["error"] is not None and row["ms_per_frame"] <= budget and METHODS[row["method"]][0] == preset]
+    return min(fit, key=lambda row: row["error"], default=None)
+
+
+def answer(rows, budgets):
+    """The table at the top: per case and budget the settings of least error, and below them the paper's own method for the same time."""
+    lines = ["| what moves | " + " | ".join(f"{budget:g} ms a frame" for budget in budgets) + " |", "| --- " + "| --- " * len(budgets) + "|"]
+    for key, case_rows in rows.items():
+        for preset, name in (("robust", CASES[key].of), ("published", "the paper's own method")):
+            found = [best_within(case_rows, budget, preset) for budget in budgets]
+            lines.append(f"| {name} | " + " | ".join("-" if row is None else f"{percent(row['error'])}: {row['n']}², {row['method']}" for row in found) + " |")
+    return lines
+
+
+def conclusion(rows, middle):
+    """One sentence per case, from the numbers: what twice the cells and order 2 buy, and where the paper's own method ends."""
+    lines = []
+    for key, case_rows in rows.items():
+        at = {(row["n"], row["method"]): row for row in case_rows if row["error"] is not None}
+        base, finer, second = (at.get(place) for place in ((middle, "order 1"), (2 * middle, "order 1"), (middle, "order 2")))
+        paper = min((row for row in case_rows if row["n"] == 2 * middle and METHODS[row["method"]][0] == "published" and row["error"] is not None), key=lambda row: row["error"], default=None)
+        if not (base and finer and second):
+            continue
+        text = (f"- **{CASES[key].of}** (`{key}`): {percent(base['error'])} on {middle}² cells; twice the cells along x and y leave {finer['error'] / base['error']:.2f} of it for "
+                f"{finer['ms_per_frame'] / base['ms_per_frame']:.1f} times the time, order 2 leaves {second['error'] / base['error']:.2f} for {second['ms_per_frame'] / base['ms_per_frame']:.2g} times. ")
+        text += (f"The paper's own method errs by {percent(paper['error'])} on {2 * middle}² cells for {paper['ms_per_frame'] / finer['ms_per_frame']:.2g} times order 1's time." if paper else f"The paper's own method does not last on {2 * middle}² cells.")
+        lines.append(text)
+    return lines
+
+
+def section(out, key, rows, middle):
+    case = CASES[key]
+    good = [row for row in rows if row["error"] is not None]
+    best = sweep.frontier([{**row, "ms_per_second": row["ms_per_frame"]} for row in good])
+    on = {(row["n"], row["method"]) for row in best}
+    series = [(method, sorted((row["ms_per_frame"], row["error"]) for row in good if row["method"] == method), "line" if METHODS[method][0] == "robust" else "dash") for method in METHODS]
+    presets = [(row["ms_per_frame"], row["error"]) for row in good if "`" in name_of(row, middle)]
+    series = [one for one in [*series, (f"presets of {middle}²", presets, "points")] if one[1]]
+    (out / f"{key}.svg").write_text(charts.line_chart(f"{case.title}: error against time", f"ms a frame of 1/{FRAMES} s", "error [%]", series, x_log=True, y_log=True))
+    lines = [f"## {case.of.capitalize()}: {case.title[0].lower()}{case.title[1:]}", "", f"Truth: {case.truth}. `{key}`, {case.length:g} m a side, {case.seconds:.3g} s.", "", f"![{key}]({key}.svg)", "",
+             "| settings | error [%] | ms a frame | ms a step | on the frontier |", "| --- | ---: | ---: | ---: | --- |"]
+    for row in rows:
+        if row["error"] is None:
+            lines.append(f"| {name_of(row, middle)} | {row['why']} | | | |")
+        else:
+            lines.append(f"| {name_of(row, middle)} | {row['error']:.3g} | {row['ms_per_frame']:.3g} | {row['ms_per_step']:.3g} | {'yes' if (row['n'], row['method']) in on else ''} |")
+    return [*lines, ""]
+
+
+def write(out, rows, options, device):
+    budgets = BUDGETS["cpu" if options.backend == "cpu" else "gpu"]
+    middle = sorted(options.sizes)[(len(options.sizes) - 1) // 2]
+    times = "processor time of one thread" if options.processor_time else "time of stepping alone"
+    lines = [f"On {options.backend}: {device}; {times}, frames of 1/{FRAMES} s.", "", *answer(rows, budgets), "", *conclusion(rows, middle), ""]
+    for key in rows:
+        if any(row["error"] is not None for row in rows[key]):
+            lines += section(out, key, rows[key], middle)
+    with (out / "results.csv").open("w", newline="") as file:
+        writer = csv.DictWriter(file, ["case", "n", "method", "dt", "steps", "ms_per_step", "ms_per_frame", "error", "device", "why"], extrasaction="ignore")
+        writer.writeheader()
+        for case_rows in rows.values():
+            writer.writerows(case_rows)
+    page = out / "README.md"
+    head, tail = (page if page.exists() else HERE / "frontier" / "README.md").read_text().split(BEGIN_MARK)
+    tail = tail.split(END_MARK)[1]
+    tail = stamps.STAMP.sub("", tail).strip()
+    page.write_text(head + BEGIN_MARK + "\n".join(lines) + END_MARK + (tail + "\n" if tail else "") + "\n" + stamps.stamp("frontier") + "\n")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("programs", type=pathlib.Path)
+    parser.add_argument("--backend", default="cpu")
+    parser.add_argument("--sizes", nargs="+", type=int, metavar="N", help="cells a side (default 64 128 256 512 on the CPU, 256 512 1024 2048 4096 elsewhere)")
+    parser.add_argument("--threads", type=int, default=0, metavar="N", help="of the CPU backend (default 0: all cores)")
+    parser.add_argument("--processor-time", action="store_true", help="times are processor time of one thread: for a busy machine, CPU backend alone")
+    parser.add_argument("--only", nargs="+", choices=CASES, default=list(CASES), metavar="CASE", help=f"of {', '.join(CASES)}")
+    parser.add_argument("--out", type=pathlib.Path, default=HERE / "frontier")
+    options = parser.parse_args()
+    options.sizes = options.sizes or ([64, 128, 256, 512] if options.backend == "cpu" else [256, 512, 1024, 2048, 4096])
+    if options.processor_time and options.backend != "cpu":
+        parser.error("--processor-time: of the CPU backend alone")
+    if min(options.sizes) < 16 or len(options.sizes) < 2:
+        parser.error(f"--sizes: want two or more, each 16 or more, got {' '.join(map(str, options.sizes))}")
+    options.out.mkdir(parents=True, exist_ok=True)
+    recorder_file = options.programs / "wadi-recorder"
+    version = hashlib.sha256(recorder_file.read_bytes() + pathlib.Path(frontier_cases.__file__).read_bytes() + stamps.stamp("frontier").encode()).hexdigest()[:16]
+    store = sweep.Store(options.out / "rows.jsonl", f"{options.backend} {options.threads} {options.processor_time} {version}")
+    rows, device = {}, ""
+    with recordings.Recorder(recorder_file, options.backend, 1 if options.processor_time else options.threads, options.processor_time) as recorder:
+        for key in options.only:
+            rows[key] = []
+            for n in sorted(options.sizes):
+                for method in METHODS:
+                    point = f"{key}@{n},{method}"
+                    if point not in store.rows:
+                        store.add({**measure(recorder, key, n, method), "point": point})
+                    row = store.rows[point]
+                    device = row.get("device", device)
+                    rows[key].append(row)
+                    print(f"{point}: " + (row["why"] if row["error"] is None else f"{row['error']:.3g} %, {row['ms_per_frame']:.3g} ms a frame"), flush=True)
+    if not any(row["error"] is not None for case_rows in rows.values() for row in case_rows):
+        print("FAILED: no run came to an end")
+        return 1
+    write(options.out, rows, options, device)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
