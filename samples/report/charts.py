@@ -29,9 +29,9 @@ class Axis:
         return self.start + self.length * (self.position(value) - self.low) / ((self.high - self.low) or 1)
 
 
-def line_chart(title, x_label, y_label, series, *, x_log=False, y_log=False, x_marks=None):
+def line_chart(title, x_label, y_label, series, *, x_log=False, y_log=False, x_marks=None, named=()):
     """series: [(name, [(x, y), ...], style)], style "line", "dash" or "points"; logarithmic axes want values above 0. A fourth member of a
-    series is the number of its colour: series that belong together share one."""
+    series is the number of its colour: series that belong together share one. named: [(x, y, text)] of points that get a ring and their name."""
     xs = [x for _, points, *_ in series for x, _ in points]
     ys = [y for _, points, *_ in series for _, y in points]
     across = Axis(xs, x_log, LEFT, WIDTH, x_marks)
@@ -63,4 +63,7 @@ def line_chart(title, x_label, y_label, series, *, x_log=False, y_log=False, x_m
         key = ' stroke-dasharray="4 3"' if style == "dash" else ""
         out.append(f'<line x1="{LEFT + WIDTH + 10}" x2="{LEFT + WIDTH + 27}" y1="{line - 7}" y2="{line - 7}" stroke="{colour}" stroke-width="4"{key}/>'
                    f'<text x="{LEFT + WIDTH + 32}" y="{line - 3}">{escape(name)}</text>')
+    for x, y, text in named:
+        out.append(f'<circle cx="{across.at(x):.1f}" cy="{up.at(y):.1f}" r="6" fill="none" stroke="#222222" stroke-width="1.5"/>'
+                   f'<text x="{across.at(x) + 9:.1f}" y="{up.at(y) - 6:.1f}" font-size="11">{escape(text)}</text>')
     return "\n".join([*out, "</svg>", ""])

@@ -60,9 +60,13 @@ def measure(recorder, key, n, method):
     return {**row, "error": error} if math.isfinite(error) else {**row, "why": "its error is no number"}
 
 
+def preset_of(row, middle):
+    """The preset by which a level of `middle` cells a side has the settings of this row, or None."""
+    return {(middle // 2, "order 1"): "draft", (middle, "order 1"): "balanced", (2 * middle, "order 2"): "accurate"}.get((row["n"], row["method"]))
+
+
 def name_of(row, middle):
-    """What the settings of a row are called: the preset of a level of `middle` cells a side, if they are one's."""
-    preset = {(middle // 2, "order 1"): "draft", (middle, "order 1"): "balanced", (2 * middle, "order 2"): "accurate"}.get((row["n"], row["method"]))
+    preset = preset_of(row, middle)
     return f"{row['n']}², {row['method']}" + (f" (`{preset}` of {middle}²)" if preset else "")
 
 
@@ -108,9 +112,9 @@ def section(out, key, rows, middle):
     best = sweep.frontier([{**row, "ms_per_second": row["ms_per_frame"]} for row in good])
     on = {(row["n"], row["method"]) for row in best}
     series = [(method, sorted((row["ms_per_frame"], row["error"]) for row in good if row["method"] == method), "line" if METHODS[method][0] == "robust" else "dash") for method in METHODS]
-    presets = [(row["ms_per_frame"], row["error"]) for row in good if "`" in name_of(row, middle)]
-    series = [one for one in [*series, (f"presets of {middle}²", presets, "points")] if one[1]]
-    (out / f"{key}.svg").write_text(charts.line_chart(f"{case.title}: error against time", f"ms a frame of 1/{FRAMES} s", "error [%]", series, x_log=True, y_log=True))
+    named = [(row["ms_per_frame"], row["error"], f"{preset_of(row, middle)} of {middle}²") for row in good if preset_of(row, middle)]
+    series = [one for one in series if one[1]]
+    (out / f"{key}.svg").write_text(charts.line_chart(f"{case.title}: error against time", f"ms a frame of 1/{FRAMES} s", "error [%]", series, x_log=True, y_log=True, named=named))
     lines = [f"## {case.of.capitalize()}: {case.title[0].lower()}{case.title[1:]}", "", f"Truth: {case.truth}. `{key}`, {case.length:g} m a side, {case.seconds:.3g} s.", "", f"![{key}]({key}.svg)", "",
              "| settings | error [%] | ms a frame | ms a step | on the frontier |", "| --- | ---: | ---: | ---: | --- |"]
     for row in rows:

@@ -1,6 +1,7 @@
 """A report's pages: README.md with charts beside it, and the same as one self-contained HTML file."""
 import html
 import math
+import re
 
 import charts
 import scenes
@@ -16,6 +17,11 @@ def number(value):
     return "0" if value == 0 else f"{value:.0f}" if abs(value) >= 1000 else f"{value:.3g}"
 
 
+def as_html(text):
+    """Of Markdown what the pages use: `code`."""
+    return re.sub(r"`([^`]*)`", r"<code>\1</code>", html.escape(text, quote=False))
+
+
 class Page:
     """Collects headings, paragraphs, tables and charts; writes Markdown and HTML."""
 
@@ -24,15 +30,15 @@ class Page:
 
     def heading(self, text, level=2):
         self.markdown += ["#" * level + " " + text, ""]
-        self.html.append(f"<h{level}>{html.escape(text)}</h{level}>")
+        self.html.append(f"<h{level}>{as_html(text)}</h{level}>")
 
     def text(self, text):
         self.markdown += [text, ""]
-        self.html.append(f"<p>{html.escape(text)}</p>")
+        self.html.append(f"<p>{as_html(text)}</p>")
 
     def table(self, head, rows):
         self.markdown += ["| " + " | ".join(head) + " |", "| --- " + "| ---: " * (len(head) - 1) + "|", *("| " + " | ".join(row) + " |" for row in rows), ""]
-        cells = lambda row, tag: "<tr>" + "".join(f"<{tag}>{html.escape(cell)}</{tag}>" for cell in row) + "</tr>"
+        cells = lambda row, tag: "<tr>" + "".join(f"<{tag}>{as_html(cell)}</{tag}>" for cell in row) + "</tr>"
         self.html.append("<table>" + cells(head, "th") + "".join(cells(row, "td") for row in rows) + "</table>")
 
     def chart(self, name, svg):
@@ -52,16 +58,31 @@ def unguarded(rows, scene):
     return [row for row in rows if row["scene"] == scene.key and row.get("error") is not None and not row["off"] and row["choice"] not in sweep.GUARDS]
 
 
+# (name, factor on the cells, choice, whether Wadi has a preset of that name)
+PRESETS = (("draft", 0.5, "robust", True), ("balanced", 1, "robust", True), ("balanced with order 2", 1, "second_order", False),
+           ("twice the cells, order 1", 2, "robust", False), ("accurate", 2, "second_order", True))
+
+
+def preset_rows(scene, rows, only_presets=True):
+    """The rows of PRESETS at a scene's size, None where one is lacking. Sand alone has no order of water: its rows are those of order 1."""
+    found = {(r["n"], r["T"], r["choice"]): r for r in rows if r["scene"] == scene.key and r["dt_factor"] == 1 and not r["off"]}
+    n, ratio = scene.n // 2, 3 if scene.kind == "water" else 2
+    return [found.get((round(n * factor), ratio, choice if scene.kind != "dry sand" else "robust")) for _, factor, choice, preset in PRESETS if preset or not only_presets]
+
+
 def pareto(page, scene, rows):
     good = unguarded(rows, scene)
     best = sweep.frontier(good)
-    by_size = {}
-    for row in good:
-        by_size.setdefault((row["choice"], row["n"] if row["choice"] in ("robust", "second_order") else 0), []).append((row["ms_per_second"], max(row["error"], 1e-3)))
-    series = [("frontier", [(row["ms_per_second"], max(row["error"], 1e-3)) for row in best], "dash")]
-    series += [(f"{choice} {n} cells" if n else choice, sorted(points), "points") for (choice, n), points in sorted(by_size.items())]
+    place = lambda row: (row["ms_per_second"], max(row["error"], 1e-3))
+    groups = {"order 1": ("robust",), "order 2": ("second_order", "second_order_sand"), "paper_like": ("paper_like",)}
+    named = {choice for choices_of_group in groups.values() for choice in choices_of_group}
+    groups["other choices"] = tuple({row["choice"] for row in good} - named)
+    series = [("frontier", [place(row) for row in best], "dash")]
+    series += [(name, sorted(place(row) for row in good if row["choice"] in members), "points") for name, members in groups.items()]
+    presets_of = [(*place(row), name) for (name, *_), row in zip((preset for preset in PRESETS if preset[3]), preset_rows(scene, good)) if row]
+    series = [one for one in series if one[1]]
     page.heading(f"{scene.kind}: {scene.title}", 3)
-    page.chart(f"pareto_{scene.key}", charts.line_chart(f"{scene.title}: error against time", "ms per simulated second", "error [%]", series, x_log=True, y_log=True))
+    page.chart(f"pareto_{scene.key}", charts.line_chart(f"{scene.title}: error against time", "ms per simulated second", "error [%]", series, x_log=True, y_log=True, named=presets_of))
     page.table(["on the frontier", "error [%]", "ms per simulated second", "ms per step"],
                [[f"`{row['point']}`", number(row["error"]), number(row["ms_per_second"]), number(row["ms_per_step"])] for row in best])
 
@@ -166,17 +187,10 @@ def ratios(page, all_scenes, rows):
                     for step in steps])
 
 
-PRESETS = (("draft", 0.5, "robust"), ("balanced", 1, "robust"), ("balanced with order 2", 1, "second_order"), ("twice the cells, order 1", 2, "robust"),
-           ("accurate", 2, "second_order"))
-
-
 def presets(page, all_scenes, rows):
-    found = {(r["scene"], r["n"], r["T"], r["choice"]): r for r in rows if r["dt_factor"] == 1 and not r["off"]}
     body, factors, frontiers = [], {}, []
     for scene in all_scenes:
-        n, ratio = scene.n // 2, 3 if scene.kind == "water" else 2
-        # Sand alone has no order of water: its rows are those of order 1.
-        line = [found.get((scene.key, round(n * factor), ratio, choice if scene.kind != "dry sand" else "robust")) for _, factor, choice in PRESETS]
+        line = preset_rows(scene, rows, only_presets=False)
         if not scene.sweep or any(row is None for row in line):
             continue
         base = line[1]
