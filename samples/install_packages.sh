@@ -11,6 +11,8 @@ packages=(
     libegl1 libglvnd0 libgl1 libopengl0 libglx0 libgles2
     # the viewer; xvfb, twm and xdotool for its tests in a window, ffmpeg for its videos
     libglfw3-dev libimgui-dev xvfb twm xdotool ffmpeg
+    # tests of the C# binding
+    mono-mcs mono-runtime
     # pictures
     libdeflate-dev
     # header libraries

@@ -1,0 +1,620 @@
+// Written by plugin/csharp/write_csharp.py from plugin/wadi_api.json.
+using System;
+using System.Runtime.InteropServices;
+#pragma warning disable 169, 649 // fields that only the library fills
+
+namespace Wadi
+{
+    [StructLayout(LayoutKind.Sequential)]
+    public struct DeviceInfo
+    {
+        uint structSize;
+        unsafe fixed byte backend[16];
+        public unsafe string Backend { get { fixed (byte* text = backend) return Text.Of(text, 16); } }
+        /// <summary>within its backend</summary>
+        public int Index;
+        unsafe fixed byte name[256];
+        public unsafe string Name { get { fixed (byte* text = name) return Text.Of(text, 256); } }
+        int isSoftware;
+        /// <summary>1 for the CPU and for software Vulkan devices</summary>
+        public bool IsSoftware { get { return isSoftware != 0; } set { isSoftware = value ? 1 : 0; } }
+        /// <summary>0 = unknown</summary>
+        public ulong MemoryBytes;
+        /// <summary>A struct with the size that the library asks for and the header's defaults.</summary>
+        public static unsafe DeviceInfo Default
+        {
+            get
+            {
+                var value = new DeviceInfo();
+                value.structSize = (uint)sizeof(DeviceInfo);
+                return value;
+            }
+        }
+    }
+
+    /// <summary>Where and how a world runs.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct RawDeviceOptions
+    {
+        uint structSize;
+        /// <summary>"auto" (a real GPU first, else the CPU), or one that wadi_list_devices names: "cpu", "vulkan" ...</summary>
+        public IntPtr Backend;
+        /// <summary>index from wadi_list_devices, -1 = the backend's best</summary>
+        public int Device;
+        /// <summary>of the CPU backend, and for any to load levels and to count and hash states; 0 = all cores</summary>
+        public int Threads;
+        int validate;
+        /// <summary>1 = Vulkan validation layers; messages go to the log callback</summary>
+        public bool Validate { get { return validate != 0; } set { validate = value ? 1 : 0; } }
+        /// <summary>may be NULL</summary>
+        public IntPtr Log;
+        public IntPtr LogUser;
+        /// <summary>
+        /// NULL, or the host's own Vulkan device (wadi_vulkan.h): "auto" and "vulkan" run on it, "cuda" beside it
+        /// </summary>
+        public IntPtr VulkanHost;
+        /// <summary>
+        /// NULL, or: the CPU backend has no threads of its own but the one that takes steps in order; a pass has `threads` parts.
+        /// Every bit stays, whatever the number
+        /// </summary>
+        public IntPtr RunJobs;
+        public IntPtr JobsUser;
+        /// <summary>
+        /// both NULL, or with the CPU backend all that wadi_world_get_memory lists comes from here, and goes back until
+        /// wadi_destroy_world returns: fields, outputs, copies for the host, snapshots under way, kept states, queries. A refusal is
+        /// OUT_OF_MEMORY of the call, and the world as it was, but that kept states go where a promotion finds no room for theirs.
+        /// Not from here: what a call needs while it lasts (level files, statistics), edits that wait, the command log, programs,
+        /// threads; and GPU backends, whose memory is the driver's
+        /// </summary>
+        public IntPtr AllocateMemory;
+        public IntPtr FreeMemory;
+        public IntPtr MemoryUser;
+        /// <summary>A struct with the size that the library asks for and the header's defaults; texts stay null.</summary>
+        public static unsafe RawDeviceOptions Default
+        {
+            get
+            {
+                var value = new RawDeviceOptions();
+                value.structSize = (uint)sizeof(RawDeviceOptions);
+                value.Device = -1;
+                return value;
+            }
+        }
+    }
+
+    /// <summary>
+    /// A world by index and generation; all zero is null. Copy it freely; a destroyed one is recognised and refused.
+    /// </summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct WorldId
+    {
+        public uint Index;
+        public uint Generation;
+    }
+
+    /// <summary>Overrides for a level file; a value of 0 or NULL keeps the file's.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct RawLevelOverrides
+    {
+        uint structSize;
+        /// <summary>keeps the x extent and square cells, stretches maps in y, scales dt with dx</summary>
+        public int Nx;
+        /// <summary>keeps the x extent and square cells, stretches maps in y, scales dt with dx</summary>
+        public int Ny;
+        /// <summary>[s]</summary>
+        public double Dt;
+        /// <summary>"robust", "paper_like" or "published"</summary>
+        public IntPtr Method;
+        /// <summary>one of the level's variants; NULL = the level as it is. Not for terrain maps</summary>
+        public IntPtr Variant;
+        /// <summary>
+        /// "draft", "balanced" or "accurate": half, all or twice the level's cells along x and y (nx, ny win) and two sand steps per
+        /// water step, "accurate" also second order for water; NULL = what the level says. samples/report has errors and costs
+        /// </summary>
+        public IntPtr Accuracy;
+        public ActiveTiles ActiveTiles;
+        /// <summary>ON = several stages in one pass wherever the effects allow, OFF = one by one. Every bit stays</summary>
+        public Choice FusedStages;
+        int anyFiles;
+        /// <summary>
+        /// 1 = maps and series may lie anywhere that the process can read; 0 = in the level's folder and below it alone, links
+        /// followed: no "..", no path from the root on. For levels of one's own
+        /// </summary>
+        public bool AnyFiles { get { return anyFiles != 0; } set { anyFiles = value ? 1 : 0; } }
+        /// <summary>A struct with the size that the library asks for and the header's defaults; texts stay null.</summary>
+        public static unsafe RawLevelOverrides Default
+        {
+            get
+            {
+                var value = new RawLevelOverrides();
+                value.structSize = (uint)sizeof(RawLevelOverrides);
+                return value;
+            }
+        }
+    }
+
+    /// <summary>An accuracy preset, with what it was measured to err and to cost against "balanced" (samples/report).</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct RawAccuracyPreset
+    {
+        public IntPtr Name;
+        /// <summary>factor on the level's cells along x and y</summary>
+        public double Cells;
+        /// <summary>sand steps per water step</summary>
+        public int Substeps;
+        /// <summary>method.water_transport_order; 0 = the level's</summary>
+        public int WaterOrder;
+        /// <summary>mean absolute error, factor</summary>
+        public double Error;
+        /// <summary>time per simulated second, factor: one H100, 16 CPU threads</summary>
+        public double GpuCost;
+        /// <summary>time per simulated second, factor: one H100, 16 CPU threads</summary>
+        public double CpuCost;
+    }
+
+    /// <summary>
+    /// A world from arrays: settings as the text of a level file without its "terrain", "sand", "water", "velocities" and "roughness"
+    /// entries, which may name no files, and fields of nx * ny floats. NULL = zero everywhere.
+    /// </summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct RawWorldArrays
+    {
+        uint structSize;
+        /// <summary>must not be NULL</summary>
+        public IntPtr SettingsJson;
+        /// <summary>of the arrays; must equal the settings' grid</summary>
+        public int Nx;
+        /// <summary>of the arrays; must equal the settings' grid</summary>
+        public int Ny;
+        /// <summary>elevation of the ground [m]</summary>
+        public IntPtr Terrain;
+        /// <summary>depth hs [m]</summary>
+        public IntPtr Sand;
+        /// <summary>depth of all water, W [m]</summary>
+        public IntPtr Water;
+        /// <summary>water, at cell centres [m/s]</summary>
+        public IntPtr VelocityX;
+        public IntPtr VelocityY;
+        /// <summary>what cells add to material.manning, 0 ... 1 [s/m^(1/3)]</summary>
+        public IntPtr Roughness;
+        /// <summary>A struct with the size that the library asks for and the header's defaults; texts stay null.</summary>
+        public static unsafe RawWorldArrays Default
+        {
+            get
+            {
+                var value = new RawWorldArrays();
+                value.structSize = (uint)sizeof(RawWorldArrays);
+                return value;
+            }
+        }
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    public struct WorldInfo
+    {
+        uint structSize;
+        unsafe fixed byte name[64];
+        public unsafe string Name { get { fixed (byte* text = name) return Text.Of(text, 64); } }
+        public int Nx;
+        public int Ny;
+        /// <summary>[m]</summary>
+        public double Dx;
+        /// <summary>water time step [s]</summary>
+        public double Dt;
+        /// <summary>T: sand substeps per water step</summary>
+        public int Substeps;
+        /// <summary>the level's own length [s]</summary>
+        public double Duration;
+        /// <summary>dispatches outside the sand substeps</summary>
+        public uint PassesPerWaterStep;
+        public uint PassesPerSandSubstep;
+        /// <summary>state, ping-pong and scratch</summary>
+        public double BytesPerCell;
+        /// <summary>everything the world holds on the device</summary>
+        public ulong DeviceBytes;
+        unsafe fixed byte backend[16];
+        public unsafe string Backend { get { fixed (byte* text = backend) return Text.Of(text, 16); } }
+        unsafe fixed byte deviceName[256];
+        public unsafe string DeviceName { get { fixed (byte* text = deviceName) return Text.Of(text, 256); } }
+        int exactFloat;
+        /// <summary>1 = the device passed the exact-float self-test</summary>
+        public bool ExactFloat { get { return exactFloat != 0; } set { exactFloat = value ? 1 : 0; } }
+        public uint WarningCount;
+        /// <summary>A struct with the size that the library asks for and the header's defaults.</summary>
+        public static unsafe WorldInfo Default
+        {
+            get
+            {
+                var value = new WorldInfo();
+                value.structSize = (uint)sizeof(WorldInfo);
+                return value;
+            }
+        }
+    }
+
+    /// <summary>How wadi_world_update turns host time into water steps.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct UpdateSettings
+    {
+        uint structSize;
+        /// <summary>1 ... 1024, default 8: time beyond it is dropped</summary>
+        public uint MaxStepsPerUpdate;
+        /// <summary>
+        /// 0 ... 64, default 8: once the device has this many unfinished water steps (or its queue of submissions is full), time is
+        /// dropped; 0 = drop nothing for that reason, the call may wait
+        /// </summary>
+        public uint MaxStepsInFlight;
+        int spread;
+        /// <summary>
+        /// 1 = a water step is submitted as 1 water part and T sand parts, evenly over its dt; the bits are the same, the load has no
+        /// peak every dt; default 0
+        /// </summary>
+        public bool Spread { get { return spread != 0; } set { spread = value ? 1 : 0; } }
+        int interpolateOutputs;
+        /// <summary>1 = every update also writes the interpolated set of the outputs; default 0</summary>
+        public bool InterpolateOutputs { get { return interpolateOutputs != 0; } set { interpolateOutputs = value ? 1 : 0; } }
+        /// <summary>A struct with the size that the library asks for and the header's defaults.</summary>
+        public static unsafe UpdateSettings Default
+        {
+            get
+            {
+                var value = new UpdateSettings();
+                value.structSize = (uint)sizeof(UpdateSettings);
+                value.MaxStepsPerUpdate = 8;
+                value.MaxStepsInFlight = 8;
+                return value;
+            }
+        }
+    }
+
+    /// <summary>What one update did.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct Frame
+    {
+        uint structSize;
+        /// <summary>water steps that became whole in this update</summary>
+        public uint Steps;
+        /// <summary>whole water steps since creation</summary>
+        public ulong TotalSteps;
+        /// <summary>simulated: total_steps * dt [s]</summary>
+        public double Time;
+        /// <summary>
+        /// in [0, 1): how far the host's clock is from the last whole step to the one to come. A renderer shows (1 - f) * last but
+        /// one + f * last, one dt late, and moves evenly
+        /// </summary>
+        public double Interpolation;
+        /// <summary>of the outputs' current set; UINT64_MAX = none yet</summary>
+        public ulong PublishedStep;
+        /// <summary>host time that became no step in this update; steps is then less than it asks for</summary>
+        public ulong DroppedNanoseconds;
+        /// <summary>and since the world was created</summary>
+        public ulong DroppedNanosecondsTotal;
+        /// <summary>A struct with the size that the library asks for and the header's defaults.</summary>
+        public static unsafe Frame Default
+        {
+            get
+            {
+                var value = new Frame();
+                value.structSize = (uint)sizeof(Frame);
+                return value;
+            }
+        }
+    }
+
+    /// <summary>Where a published field lies on the device. Read only.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct OutputView
+    {
+        uint structSize;
+        public HandleKind HandleKind;
+        /// <summary>the same for a buffer until wadi_world_set_outputs changes the mask</summary>
+        public ulong Handle;
+        /// <summary>of cell (0, 0), past the ghost cells [bytes]; VkBufferImageCopy.bufferOffset</summary>
+        public ulong Offset;
+        /// <summary>[bytes]; over the size of a cell it is VkBufferImageCopy.bufferRowLength</summary>
+        public ulong RowPitch;
+        public ulong BufferBytes;
+        public int Nx;
+        public int Ny;
+        public Format Format;
+        /// <summary>water steps done in the state it shows; INTERPOLATED: in the current set</summary>
+        public ulong Step;
+        int finished;
+        /// <summary>
+        /// 1 = the device has written it. 0 = it will have, ahead of anything that is submitted behind it; a host that reads
+        /// elsewhere (the CPU backend's address) must wait for 1
+        /// </summary>
+        public bool Finished { get { return finished != 0; } set { finished = value ? 1 : 0; } }
+        /// <summary>A struct with the size that the library asks for and the header's defaults.</summary>
+        public static unsafe OutputView Default
+        {
+            get
+            {
+                var value = new OutputView();
+                value.structSize = (uint)sizeof(OutputView);
+                return value;
+            }
+        }
+    }
+
+    /// <summary>The cells (i, j) with i0 &lt;= i &lt; i0 + nx and j0 &lt;= j &lt; j0 + ny.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct Region
+    {
+        public int I0;
+        public int J0;
+        public int Nx;
+        public int Ny;
+    }
+
+    /// <summary>A tile of 32 x 32 cells (less at the east and north rim): cells i ... i + nx - 1, j ... j + ny - 1.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct Tile
+    {
+        public int I;
+        public int J;
+        public int Nx;
+        public int Ny;
+        /// <summary>elevation of the solid surface H + hs [m]</summary>
+        public float SolidMin;
+        /// <summary>elevation of the solid surface H + hs [m]</summary>
+        public float SolidMax;
+        /// <summary>elevation of the visible surface H + max(W, hs) [m]</summary>
+        public float FreeMin;
+        /// <summary>elevation of the visible surface H + max(W, hs) [m]</summary>
+        public float FreeMax;
+        /// <summary>
+        /// step of the newest publish in which a cell's surface, solid or visible, was another than in the publish before; at first
+        /// that of the first publish
+        /// </summary>
+        public long ChangedStep;
+    }
+
+    /// <summary>State now: extremes, limits at work, and the ledger.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct WorldStats
+    {
+        uint structSize;
+        /// <summary>[s]</summary>
+        public double Time;
+        public ulong Steps;
+        /// <summary>[m3] now</summary>
+        public double SandVolume;
+        public double WaterVolume;
+        /// <summary>[m3] at creation</summary>
+        public double SandInitial;
+        public double WaterInitial;
+        /// <summary>[m3] by sources, sinks, rain, evaporation and sides since creation</summary>
+        public double SandIn;
+        /// <summary>[m3] by sources, sinks, rain, evaporation and sides since creation</summary>
+        public double SandOut;
+        public double WaterIn;
+        public double WaterOut;
+        /// <summary>[m3] of sources and rain that found no room below method.largest_height, the highest elevation</summary>
+        public double Refused;
+        /// <summary>now - (initial + in - out) in quanta of depth x cell area; 0 = exact; sums stop at 2^60</summary>
+        public long SandDriftQuanta;
+        public long WaterDriftQuanta;
+        /// <summary>[m]</summary>
+        public double Quantum;
+        /// <summary>hs [m]</summary>
+        public double LargestSandDepth;
+        /// <summary>W [m]</summary>
+        public double LargestTotalWaterDepth;
+        /// <summary>largest face velocity of pure and mixed water [m/s]</summary>
+        public double LargestWaterSpeed;
+        /// <summary>[m/s]</summary>
+        public double LargestSandSpeed;
+        /// <summary>least hs or W [m]: never negative</summary>
+        public double SmallestDepth;
+        /// <summary>values that are NaN or infinite: never any</summary>
+        public ulong NotFinite;
+        /// <summary>faces at the velocity clamp</summary>
+        public ulong ClampedFaces;
+        /// <summary>faces whose gravity the next step caps</summary>
+        public ulong CappedFaces;
+        /// <summary>cells whose outflow the next step limits</summary>
+        public ulong LimitedCells;
+        /// <summary>
+        /// of the world, and of those the ones that the newest step ran over, in the longer of its two lists where water and sand
+        /// have one each; 0 without active tiles
+        /// </summary>
+        public ulong Tiles;
+        /// <summary>
+        /// of the world, and of those the ones that the newest step ran over, in the longer of its two lists where water and sand
+        /// have one each; 0 without active tiles
+        /// </summary>
+        public ulong ActiveTiles;
+        /// <summary>64-bit state hash, ghosts excluded</summary>
+        public ulong Hash;
+        /// <summary>A struct with the size that the library asks for and the header's defaults.</summary>
+        public static unsafe WorldStats Default
+        {
+            get
+            {
+                var value = new WorldStats();
+                value.structSize = (uint)sizeof(WorldStats);
+                return value;
+            }
+        }
+    }
+
+    /// <summary>The state at one point.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct QueryResult
+    {
+        /// <summary>elevation of the ground [m]; elevations and depths are bilinear between cell centres</summary>
+        public float Terrain;
+        /// <summary>[m]</summary>
+        public float SandDepth;
+        /// <summary>pure water above the sand [m]; 0 where all four cells around are dry</summary>
+        public float WaterDepth;
+        /// <summary>
+        /// elevation of the visible surface, H + max(W, hs) [m]. At the water's edge it leads from the water's surface in the last
+        /// wet cell to the ground of the dry one, as a mesh through the cell centres does
+        /// </summary>
+        public float Surface;
+        /// <summary>of the pure water, between faces [m/s]; 0 on dry faces</summary>
+        public float VelocityX, VelocityY;
+        /// <summary>of the visible surface, unit length, up; slopes bilinear between cell centres</summary>
+        public float NormalX, NormalY, NormalZ;
+        /// <summary>W/(W + hs) of the sand, 0 without sand</summary>
+        public float Saturation;
+        int inside;
+        /// <summary>0: the point is outside the grid, all else is 0</summary>
+        public bool Inside { get { return inside != 0; } set { inside = value ? 1 : 0; } }
+    }
+
+    /// <summary>A body in the water. World axes: x east, y north, z up.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct Body
+    {
+        uint structSize;
+        public BodyShape Shape;
+        /// <summary>of its middle [m]</summary>
+        public float PositionX, PositionY, PositionZ;
+        /// <summary>unit quaternion x, y, z, w from the body's axes to the world's; spheres ignore it</summary>
+        public float OrientationX, OrientationY, OrientationZ, OrientationW;
+        /// <summary>box: half edges along its own axes [m], above 0</summary>
+        public float HalfSizeX, HalfSizeY, HalfSizeZ;
+        /// <summary>sphere [m], above 0</summary>
+        public float Radius;
+        /// <summary>[m/s]</summary>
+        public float VelocityX, VelocityY, VelocityZ;
+        /// <summary>about the world's axes [rad/s]</summary>
+        public float AngularVelocityX, AngularVelocityY, AngularVelocityZ;
+        /// <summary>[kg/m3], 0 or more; default 1000</summary>
+        public float WaterDensity;
+        /// <summary>[m/s2], 0 or more; default 9.81</summary>
+        public float Gravity;
+        /// <summary>of the whole body [kg/s], 0 or more; default 0</summary>
+        public float LinearDrag;
+        /// <summary>drag coefficient, dimensionless, 0 or more; default 1</summary>
+        public float QuadraticDrag;
+        /// <summary>columns per side, 1 ... 16; default 4</summary>
+        public int Samples;
+        /// <summary>A struct with the size that the library asks for and the header's defaults.</summary>
+        public static unsafe Body Default
+        {
+            get
+            {
+                var value = new Body();
+                value.structSize = (uint)sizeof(Body);
+                value.OrientationW = 1f;
+                value.HalfSizeX = 0.5f;
+                value.HalfSizeY = 0.5f;
+                value.HalfSizeZ = 0.5f;
+                value.Radius = 0.5f;
+                value.WaterDensity = 1000f;
+                value.Gravity = 9.81f;
+                value.QuadraticDrag = 1f;
+                value.Samples = 4;
+                return value;
+            }
+        }
+    }
+
+    /// <summary>
+    /// One edit. A cell at a hard rim counts by the share that lies inside. The shape may lie outside the grid in part or as a whole.
+    /// Positions are kept to 1/256 of a cell.
+    /// </summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct Edit
+    {
+        uint structSize;
+        public EditKind Kind;
+        /// <summary>of brush and stamp</summary>
+        public Layer Layer;
+        int capsule;
+        /// <summary>brush and push: 0 = disc round (x0, y0), 1 = all within radius of the line from (x0, y0) to (x1, y1)</summary>
+        public bool Capsule { get { return capsule != 0; } set { capsule = value ? 1 : 0; } }
+        /// <summary>the water step ahead of which it acts, as wadi_world_get_time counts; 0 = the next one</summary>
+        public ulong Step;
+        /// <summary>[m], -1e9 ... 1e9; of a stamp the low corner</summary>
+        public double X0;
+        /// <summary>[m], -1e9 ... 1e9; of a stamp the low corner</summary>
+        public double Y0;
+        /// <summary>[m], capsule and stamp only; of a stamp the high corner, greater than the low one</summary>
+        public double X1;
+        /// <summary>[m], capsule and stamp only; of a stamp the high corner, greater than the low one</summary>
+        public double Y1;
+        /// <summary>[m], 1e-9 ... 1e9, brush and push</summary>
+        public double Radius;
+        /// <summary>0 ... 1, brush and push: share of the radius over which the effect falls to 0 (3 s^2 - 2 s^3)</summary>
+        public double Softness;
+        /// <summary>
+        /// brush: change at the centre [m], of the terrain's elevation or of a layer's depth, water's being W; stamp: the same per
+        /// unit of the image. At most twice method.largest_height up or down
+        /// </summary>
+        public double Amount;
+        /// <summary>0 ... 1, push: how far velocities are drawn to the body's at the centre</summary>
+        public double Strength;
+        /// <summary>[m/s], -1e4 ... 1e4, push: the body's velocity</summary>
+        public double VelocityX;
+        public double VelocityY;
+        /// <summary>stamp: its number, from wadi_world_create_stamp</summary>
+        public uint Stamp;
+        /// <summary>A struct with the size that the library asks for and the header's defaults.</summary>
+        public static unsafe Edit Default
+        {
+            get
+            {
+                var value = new Edit();
+                value.structSize = (uint)sizeof(Edit);
+                value.Radius = 1;
+                value.Softness = 0.5;
+                value.Strength = 1;
+                return value;
+            }
+        }
+    }
+
+    /// <summary>One number of the material.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct MaterialInfo
+    {
+        unsafe fixed byte name[32];
+        /// <summary>as level files write it: "friction", "cohesion_wet", "saturation[0]"</summary>
+        public unsafe string Name { get { fixed (byte* text = name) return Text.Of(text, 32); } }
+        /// <summary>now; units as in level files</summary>
+        public double Value;
+        /// <summary>what wadi_world_set_material takes</summary>
+        public double Least;
+        /// <summary>what wadi_world_set_material takes</summary>
+        public double Most;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    public struct EffectInfo
+    {
+        unsafe fixed byte name[32];
+        /// <summary>as level files write it</summary>
+        public unsafe string Name { get { fixed (byte* text = name) return Text.Of(text, 32); } }
+        int on;
+        /// <summary>1 = its passes run and its fields exist</summary>
+        public bool On { get { return on != 0; } set { on = value ? 1 : 0; } }
+        unsafe fixed byte why[160];
+        /// <summary>one sentence: why it is on or off</summary>
+        public unsafe string Why { get { fixed (byte* text = why) return Text.Of(text, 160); } }
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    public struct MemoryItem
+    {
+        unsafe fixed byte label[64];
+        /// <summary>the field, or what the buffer is for</summary>
+        public unsafe string Label { get { fixed (byte* text = label) return Text.Of(text, 64); } }
+        public ulong Bytes;
+    }
+
+    [StructLayout(LayoutKind.Sequential)]
+    public struct StageTiming
+    {
+        unsafe fixed byte name[64];
+        public unsafe string Name { get { fixed (byte* text = name) return Text.Of(text, 64); } }
+        /// <summary>mean per water step, all its sand substeps together</summary>
+        public double Milliseconds;
+        /// <summary>dispatches per water step</summary>
+        public uint Passes;
+    }
+}
