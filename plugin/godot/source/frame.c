@@ -46,14 +46,20 @@ void frame_tick(Terrain* terrain) {
     }
     wadi_frame frame = wadi_default_frame();
     if (nanoseconds > 0 || terrain->updates_due > 0) {
-        const wadi_result result = wadi_world_update(terrain->world, nanoseconds, &frame);
+        wadi_result result = wadi_world_update(terrain->world, nanoseconds, &frame);
+        if (result == WADI_OK && terrain->wait_for_device) {
+            result = frame_sync(terrain); /* textures, regions, heights and answers are those of this tick's step, in every run */
+        } else if (result == WADI_OK) {
+            const bool shown = show(terrain, frame.total_steps);
+            if (frame.steps > 0)
+                terrain->updates_due = 2;
+            else if (terrain->updates_due > 1 || (terrain->updates_due == 1 && shown))
+                --terrain->updates_due;
+        }
         if (result != WADI_OK) {
             world_failed(terrain, "physics tick", result);
             return;
         }
-        const bool shown = show(terrain, frame.total_steps);
-        if (terrain->updates_due > 1 || (terrain->updates_due == 1 && shown)) --terrain->updates_due;
-        if (frame.steps > 0) terrain->updates_due = 2;
     }
     floats_tick(terrain);
     /* What listens may end the world, so it comes last. */

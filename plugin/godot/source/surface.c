@@ -158,6 +158,31 @@ void terrain_get_dirty_regions(void* self, const GDExtensionConstTypePtr* argume
         world_failed(terrain, "get_dirty_regions", outcome);
 }
 
+static bool touches(const wadi_tile* tile, const Rect2i* region) {
+    return tile->i < (int64_t)region->x + region->width && tile->i + tile->nx > region->x &&
+           tile->j < (int64_t)region->y + region->height && tile->j + tile->ny > region->y;
+}
+
+void terrain_get_bounds(void* self, const GDExtensionConstTypePtr* arguments, void* result) {
+    Terrain* terrain = self;
+    Vector2* bounds = result;
+    *bounds = (Vector2){0, 0};
+    if (!world_needed(terrain, "get_bounds")) return;
+    uint32_t count = 0;
+    wadi_result outcome = wadi_world_get_tiles(terrain->world, NULL, &count, NULL);
+    wadi_tile* tiles = outcome == WADI_OK ? malloc(count * sizeof *tiles) : NULL;
+    if (tiles) outcome = wadi_world_get_tiles(terrain->world, tiles, &count, NULL);
+    if (outcome != WADI_OK && outcome != WADI_NOT_READY) world_failed(terrain, "get_bounds", outcome);
+    bool any = false;
+    for (uint32_t n = 0; tiles && outcome == WADI_OK && n < count; ++n) {
+        if (!touches(&tiles[n], arguments[0])) continue;
+        bounds->x = any ? fminf(bounds->x, tiles[n].solid_min) : tiles[n].solid_min;
+        bounds->y = any ? fmaxf(bounds->y, tiles[n].free_max) : tiles[n].free_max;
+        any = true;
+    }
+    free(tiles);
+}
+
 void terrain_get_dirty_step(void* self, const GDExtensionConstTypePtr* arguments, void* result) {
     (void)arguments;
     *(int64_t*)result = (int64_t)((const Terrain*)self)->dirty_step;

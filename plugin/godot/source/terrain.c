@@ -50,6 +50,7 @@ static const Method methods[] = {
     {"int query(PackedVector2Array points)", terrain_query},
     {"Dictionary[] get_query(int ticket)", terrain_get_query},
     {"PackedFloat32Array get_heights(Rect2i region)", terrain_get_heights},
+    {"Vector2 get_bounds(Rect2i region)", terrain_get_bounds},
     {"Rect2i[] get_dirty_regions(int since_step)", terrain_get_dirty_regions},
     {"int get_dirty_step()", terrain_get_dirty_step},
     {"PackedByteArray save_state()", terrain_save_state},

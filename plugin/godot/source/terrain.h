@@ -88,6 +88,7 @@ void terrain_get_stats(void* self, const GDExtensionConstTypePtr* arguments, voi
 void terrain_query(void* self, const GDExtensionConstTypePtr* arguments, void* result);
 void terrain_get_query(void* self, const GDExtensionConstTypePtr* arguments, void* result);
 void terrain_get_heights(void* self, const GDExtensionConstTypePtr* arguments, void* result);
+void terrain_get_bounds(void* self, const GDExtensionConstTypePtr* arguments, void* result);
 void terrain_get_dirty_regions(void* self, const GDExtensionConstTypePtr* arguments, void* result);
 void terrain_get_dirty_step(void* self, const GDExtensionConstTypePtr* arguments, void* result);
 /** The rectangles that changed after step `since` (-1 = ever) as Array[Rect2i], and the step that they are of. */

@@ -1,6 +1,7 @@
 #include "engine.h"
 #include "textures.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 TexelFormat texel_format(wadi_output output) {
@@ -43,6 +44,20 @@ static Object image_of(const void* data, uint64_t row_pitch, const wadi_world_in
     return image;
 }
 
+/* The engine's renderer without a display keeps what a texture was made of and drops what it is updated with: no use to copy. */
+static bool updates_are_kept(void) {
+    static int kept = -1;
+    if (kept < 0) {
+        String name = string_of("");
+        engine_call(ENGINE_DisplayServer_get_name, singleton("DisplayServer"), NULL, &name);
+        char* text = string_text(&name);
+        kept = text && strcmp(text, "headless") == 0 ? 0 : 1;
+        free(text);
+        value_free(GDEXTENSION_VARIANT_TYPE_STRING, &name);
+    }
+    return kept;
+}
+
 static void show(Object* texture, Object image) {
     const GDExtensionConstTypePtr arguments[] = {&image};
     if (*texture)
@@ -62,11 +77,12 @@ bool textures_update_host(Textures* textures, wadi_world_id world, const wadi_wo
             all = false;
             continue;
         }
+        textures->steps[output] = shown;
+        all = all && shown == step;
+        if (textures->objects[output] && !updates_are_kept()) continue;
         Object image = image_of(data, row_pitch, info, texel_format((wadi_output)output));
         if (image) show(&textures->objects[output], image);
         value_free(GDEXTENSION_VARIANT_TYPE_OBJECT, &image);
-        textures->steps[output] = shown;
-        all = all && shown == step;
     }
     return all;
 }

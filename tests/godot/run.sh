@@ -1,0 +1,59 @@
+#!/usr/bin/env bash
+# Tests of the Godot extension: builds it, and a C host beside it from the installed library, and runs the scripts of project/ in Godot,
+# headless and on a software Vulkan device. Usage: run.sh [BUILD] [SCRIPT ...]; BUILD (build/ci) has the library. Exit status 77 where
+# there is no Godot (godot.sh says why).
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(cd "$here/../.." && pwd)
+build=$(realpath "${1:-$root/build/ci}")
+shift || true
+work=$build/godot
+wanted=("$@")
+
+"$here/godot.sh" --version >/dev/null || exit 77
+mkdir -p "$work"
+cmake --install "$build" --component plugin --prefix "$work/installed" >"$work/install.log"
+library=$work/installed/lib/libwadi.so.1
+"$root/plugin/godot/build.sh" --godot "$here/godot.sh" --library "$library" --output "$work"
+gcc -std=c99 -O1 -Wall -Wextra -Werror -D_DEFAULT_SOURCE "$here/host.c" -I"$work/installed/include" "$library" -o "$work/host"
+
+# A project as a user has it: the add-on's folder, levels, and a list of extensions as the editor's import would write it.
+project=$work/project
+rm -rf "$project"
+mkdir -p "$project/.godot" "$work/castle"
+cp -r "$here/project/." "$here/scene.txt" "$project/"
+cp -r "$work/addons" "$project/"
+cp -r "$root/samples/levels" "$project/levels"
+echo "res://addons/wadi/wadi.gdextension" >"$project/.godot/extension_list.cfg"
+"$here/godot.sh" --headless --path "$project" --import >"$work/import.log" 2>&1 || { tail -n 20 "$work/import.log"; exit 1; }
+
+LD_LIBRARY_PATH=$work/installed/lib "$work/host" "$root/samples/levels/castle/level.json" "$here/scene.txt" "$work/castle" \
+    >"$work/castle/hashes.txt"
+
+failed=
+script() { # NAME SCRIPT ENGINE_OPTION ... -- ARGUMENT ...
+    local name=$1 file=$2 log=$work/$1.log
+    shift 2
+    [ ${#wanted[@]} -eq 0 ] || [[ " ${wanted[*]} " == *" $name "* ]] || return 0
+    local start=$SECONDS
+    timeout 120 "$here/godot.sh" "$@" >"$log" 2>&1 && good=yes || good=
+    grep -q "^[1-9][0-9]* checks passed, 0 failed$" "$log" || good=
+    ! grep -q "SCRIPT ERROR\|leaked at exit\|RIDs of type\|handle_crash" "$log" || good=
+    echo "$name: ${good:-FAILED, see $log} ($((SECONDS - start)) s)"
+    [ -n "$good" ] || { failed=yes && grep "FAIL\|SCRIPT ERROR\|leaked\|RIDs of\|checks passed" "$log" | head -n 20; }
+}
+headless() { script "$1" "$2" --headless --path "$project" --script "$2" "${@:3}"; }
+window() {
+    script "$1" "$2" --screen --rendering-driver vulkan --rendering-method mobile --audio-driver Dummy --path "$project" --script "$2" "${@:3}"
+}
+headless hash_cpu hash.gd -- "$work/castle" cpu
+headless hash_vulkan hash.gd -- "$work/castle" vulkan
+headless frames frames.gd --fixed-fps 60
+headless saves saves.gd
+headless floats floats.gd --fixed-fps 60
+headless bad bad.gd
+headless leaks leaks.gd -- "$work/castle" cpu 100 4000
+window textures_host hash.gd -- "$work/castle" cpu
+window shared shared.gd -- "$work/castle"
+window leaks_shared leaks.gd -- "$work/castle" vulkan 30 400 share
+[ -z "$failed" ] || exit 1
