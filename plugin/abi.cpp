@@ -8,14 +8,14 @@ namespace {
 // Fixed room without a destructor: hosts keep the pointer, and call from destructors that run after those of the thread's
 // variables.
 constexpr std::size_t most = 1024;
-thread_local char text[most] = "";
+thread_local char newest[most] = "";
 
 // A file may have a word of megabytes: of a long text its begin and its end.
 void keep(std::string_view head, std::string_view message) {
     constexpr std::string_view between = " ... ";
     auto add = [used = std::size_t{0}](std::string_view part) mutable {
-        std::memcpy(text + used, part.data(), part.size());
-        text[used += part.size()] = 0;
+        std::memcpy(newest + used, part.data(), part.size());
+        newest[used += part.size()] = 0;
     };
     const std::size_t room = most - 1 - head.size();
     add(head);
@@ -28,7 +28,7 @@ void keep(std::string_view head, std::string_view message) {
 
 } // namespace
 
-const char* last_error() { return text; }
+const char* last_error() { return newest; }
 
 wadi_result report_out_of_memory(const char* function) noexcept {
     keep(function, ": out of memory");

@@ -1,5 +1,6 @@
 // Saving, loading, roll-back and the hash.
 #include "engine/saves/snapshot_file.hpp"
+#include "engine/saves/snapshot_format.hpp"
 #include "plugin/abi.hpp"
 
 using namespace wadi;
@@ -23,7 +24,7 @@ wadi_result wadi_world_save(wadi_world_id id, void* data, size_t* size) {
     return with_world(__func__, id, [&](HostedWorld& hosted) {
         if (size == nullptr) return bad_argument("wadi_world_save: size is NULL");
         const size_t capacity = *size;
-        *size = hosted.world->snapshots().bytes();
+        *size = in_memory(hosted.world->snapshots().bytes());
         return report(data == nullptr ? ok_status() : hosted.world->snapshots().save(bytes_at(data, capacity)));
     });
 }
@@ -40,7 +41,7 @@ wadi_result wadi_world_load(wadi_world_id id, const void* data, size_t size) {
 wadi_result wadi_world_save_file(wadi_world_id id, const char* path) {
     return with_world(__func__, id, [&](HostedWorld& hosted) {
         if (path == nullptr) return bad_argument("wadi_world_save_file: path is NULL");
-        std::vector<std::byte> bytes(hosted.world->snapshots().bytes());
+        std::vector<std::byte> bytes(in_memory(hosted.world->snapshots().bytes()));
         if (auto status = hosted.world->snapshots().save(bytes); !status) return report(status);
         return report(write_snapshot_file(path, bytes));
     });
@@ -71,7 +72,7 @@ wadi_result wadi_world_end_save(wadi_world_id id, uint64_t ticket, void* data, s
         const size_t capacity = *size;
         auto needed = hosted.world->snapshots().saved_bytes(ticket);
         if (!needed) return report(needed.status());
-        *size = *needed;
+        *size = in_memory(*needed);
         return report(data == nullptr ? ok_status() : hosted.world->snapshots().end_save(ticket, bytes_at(data, capacity)));
     });
 }

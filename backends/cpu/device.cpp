@@ -88,14 +88,15 @@ Result<compute::Buffer> CpuDevice::create_buffer(const compute::BufferDesc& desc
     buffers_.reserve();
     auto owner = std::make_unique<Memory>();
     auto& memory = *owner;
+    const auto bytes = static_cast<std::size_t>(desc.bytes);
     // The host's first touch of a large page would clear all of it, in a call of a frame.
     const bool small = desc.host != compute::HostAccess::none && desc.bytes <= most_in_small_pages;
-    memory.block =
-        allocator_ ? take_from(allocator_, desc.bytes, stagger) : (small ? small_pages_ : pages_).take(desc.bytes, stagger);
+    if (bytes == desc.bytes) // or more than a system of 32 bits has addresses for
+        memory.block = allocator_ ? take_from(allocator_, bytes, stagger) : (small ? small_pages_ : pages_).take(bytes, stagger);
     if (!memory.block)
         return error(Code::out_of_memory, "buffer '" + desc.label + "': no memory for " + std::to_string(desc.bytes) + " bytes");
     memory.data = memory.block.get();
-    memory.bytes = desc.bytes;
+    memory.bytes = bytes;
     memory.share = std::move(share);
     ++counters_.allocations;
     return compute::Buffer{buffers_.add(std::move(owner))};
@@ -185,7 +186,7 @@ Result<compute::Program> CpuDevice::compile(const compute::ProgramBuilder& build
         } else if (const auto* copy = std::get_if<compute::Copy>(&op)) {
             step.from = at(copy->from).data + copy->from_offset;
             step.to = at(copy->to).data + copy->to_offset;
-            step.bytes = copy->bytes;
+            step.bytes = static_cast<std::size_t>(copy->bytes); // within two buffers
             step.written.push_back(&at(copy->to));
         } else if (const auto* fill = std::get_if<compute::Fill>(&op)) {
             auto& to = at(fill->buffer);
@@ -375,7 +376,7 @@ void CpuDevice::run_rows(Step& step, const WorldParams& params, const StepInput&
     } else if (step.from != nullptr) {
         std::memcpy(step.to, step.from, step.bytes);
     } else if (step.to != nullptr) {
-        for (std::uint64_t at = 0; at < step.bytes; at += 4) std::memcpy(step.to + at, &step.word, 4);
+        for (std::size_t at = 0; at < step.bytes; at += 4) std::memcpy(step.to + at, &step.word, 4);
     }
 }
 

@@ -48,7 +48,7 @@ class CpuDevice final : public compute::Device {
         BudgetShare share;
         std::shared_ptr<std::byte> block;
         std::byte* data = nullptr;
-        std::uint64_t bytes = 0;
+        std::size_t bytes = 0;
         std::unique_ptr<BlockContent> content; // of a field that some stage can be empty without
         bool exposed = false;                  // its address was given away
     };
@@ -68,7 +68,7 @@ class CpuDevice final : public compute::Device {
         int rows_per_grab = 1;
         std::byte* from = nullptr; // copy
         std::byte* to = nullptr;   // copy and fill
-        std::uint64_t bytes = 0;
+        std::size_t bytes = 0;
         std::uint32_t word = 0;
         bool barrier_before = false;
         int timestamp = -1;

@@ -136,7 +136,7 @@ std::uint64_t hash_of(World& world) {
 }
 
 std::vector<std::byte> save(World& world) {
-    std::vector<std::byte> bytes(world.snapshots().bytes());
+    std::vector<std::byte> bytes(static_cast<std::size_t>(world.snapshots().bytes()));
     const auto status = world.snapshots().save(bytes);
     REQUIRE_MESSAGE(status, status.message);
     return bytes;
