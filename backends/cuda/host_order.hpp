@@ -1,0 +1,34 @@
+// The order between the host's work and the world's: CUDA events, and beside a host's Vulkan device its timeline semaphores.
+#pragma once
+#include "backends/cuda/context.hpp"
+#include <map>
+#include <span>
+
+namespace wadi::cuda {
+
+/// Semaphores are imported when first used and kept until the device closes; without a lender they are refused.
+class HostOrder final : public compute::HostSync {
+  public:
+    explicit HostOrder(Context& context) : c_(context) {}
+    ~HostOrder();
+    HostOrder(const HostOrder&) = delete;
+    HostOrder& operator=(const HostOrder&) = delete;
+    Status wait_before(std::span<const compute::SyncPoint> points) override;
+    Status signal_after(const compute::SyncPoint& point) override;
+    Status wait_event(void* event) override;
+    Status record_event(void* event) override;
+    /// Refused: CUDA neither copies into Vulkan's images nor records into Vulkan's command buffers.
+    Result<compute::Ticket> copy_to_image(const compute::BufferRows& from, const compute::HostImage& to) override;
+    Status begin_recording(void* commands, const compute::SyncPoint& promise) override;
+    Status end_recording() override;
+
+  private:
+    Status check_lender() const;
+    Status check_event(cudaError_t result, const char* what);
+    Result<cudaExternalSemaphore_t> find(std::uint64_t semaphore);
+
+    Context& c_;
+    std::map<std::uint64_t, cudaExternalSemaphore_t> imported_; // by VkSemaphore
+};
+
+} // namespace wadi::cuda
