@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <vector>
-#include <wadi/wadi.h>
+#include <wadi/wadi_cuda.h>
 
 namespace {
 
@@ -33,7 +33,7 @@ const char* const LEVEL = R"({ "format_version": 1, "name": "calls", "grid": { "
 
 void call(Input& in, wadi_world_id& world, std::vector<unsigned char>& snapshot, std::vector<unsigned char>& log) {
     float cells[20];
-    switch (in.byte() % 18) {
+    switch (in.byte() % 19) {
     case 0:
         wadi_world_step(world, in.whole() % 5);
         break;
@@ -122,6 +122,9 @@ void call(Input& in, wadi_world_id& world, std::vector<unsigned char>& snapshot,
                                 cells, &stamp);
         break;
     }
+    case 17: // no world here takes events: nobody looks into it
+        (in.byte() % 2 == 0 ? wadi_cuda_wait : wadi_cuda_signal)(world, in.byte() % 2 == 0 ? nullptr : cells);
+        break;
     default:
         if (in.byte() > 100) break;
         wadi_destroy_world(world); // calls go on with a dead id
