@@ -24,6 +24,7 @@ template <class Row, class Node> void keep(std::map<std::uint32_t, Row>& rows, N
 constexpr const char* semaphores = "timeline semaphores";
 constexpr const char* events = "CUDA events";
 constexpr const char* images = "images";
+constexpr const char* memory = "device memory";
 constexpr const char* command_buffers = "command buffers";
 
 Status check_given(bool given, const char* call, const char* what) {
@@ -238,6 +239,22 @@ Result<compute::Ticket> FrontEnd::copy_to_image(const compute::BufferRows& from,
         const std::uint64_t bytes = (from.height - 1) * from.row_pitch + row;
         if (auto status = check_range(objects_, from.buffer, from.offset, bytes, call); !status) return status;
         auto ticket = with_host_sync(images, [&](compute::HostSync& sync) { return sync.copy_to_image(from, to); });
+        if (ticket) newest_ = *ticket;
+        return ticket;
+    });
+}
+
+Result<compute::Ticket> FrontEnd::copy_from(const compute::HostRows& from, compute::Buffer to) {
+    return unless_lost([&]() -> Result<compute::Ticket> {
+        constexpr const char* call = "copy_from";
+        if (auto status = check_given(from.handle != 0, call, "handle"); !status) return status;
+        const std::uint64_t row = std::uint64_t{from.width} * 4;
+        if (from.offset % 4 != 0 || from.row_pitch % 4 != 0 || row == 0 || from.height == 0 || row > from.row_pitch)
+            return error(Code::bad_argument, std::string(call) + ": rows of " + std::to_string(from.width) + " numbers, " +
+                                                 std::to_string(from.height) + " of them " + std::to_string(from.row_pitch) +
+                                                 " bytes apart from byte " + std::to_string(from.offset) + " on, are none");
+        if (auto status = check_range(objects_, to, 0, row * from.height, call); !status) return status;
+        auto ticket = with_host_sync(memory, [&](compute::HostSync& sync) { return sync.copy_from(from, to); });
         if (ticket) newest_ = *ticket;
         return ticket;
     });

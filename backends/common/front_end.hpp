@@ -46,6 +46,7 @@ class FrontEnd final : public compute::Device, private compute::HostSync {
     Status wait_event(void* event) override;
     Status record_event(void* event) override;
     Result<compute::Ticket> copy_to_image(const compute::BufferRows& from, const compute::HostImage& to) override;
+    Result<compute::Ticket> copy_from(const compute::HostRows& from, compute::Buffer to) override;
     Status begin_recording(void* commands, const compute::SyncPoint& promise) override;
     Status end_recording() override;
     template <class Call> auto with_host_sync(const char* what, Call call) -> decltype(call(std::declval<compute::HostSync&>()));

@@ -103,10 +103,10 @@ class CudaDevice final : public compute::Device {
   private:
     // Destroyed from the last to the first.
     std::unique_ptr<Context> context_;
-    HostOrder host_order_{*context_};
     Buffers buffers_{*context_};
     Pipelines pipelines_{*context_};
     Submissions submissions_{*context_};
+    HostOrder host_order_{*context_, buffers_, submissions_};
     backends::HandleTable<CompiledProgram> programs_;
 };
 

@@ -71,6 +71,22 @@ Status HostOrder::record_event(void* event) {
     return check_event(cudaEventRecord(static_cast<cudaEvent_t>(event), c_.stream), "cudaEventRecord");
 }
 
+Result<compute::Ticket> HostOrder::copy_from(const compute::HostRows& from, compute::Buffer to) {
+    const CurrentContext current(c_);
+    auto slot = submissions_.acquire();
+    if (!slot) return slot.status();
+    const void* rows = reinterpret_cast<const void*>(static_cast<std::uintptr_t>(from.handle + from.offset));
+    const std::size_t row = std::size_t{from.width} * 4;
+    const cudaError_t r =
+        cudaMemcpy2DAsync(buffers_.find(to)->data, row, rows, from.row_pitch, row, from.height, cudaMemcpyDefault, c_.stream);
+    if (r == cudaErrorInvalidValue) {
+        static_cast<void>(cudaGetLastError()); // else the runtime would report it again from a later call
+        return error(Code::bad_argument, "cudaMemcpy2DAsync: the address is none of " + c_.capabilities.name);
+    }
+    if (Status s = c_.check(r, "cudaMemcpy2DAsync"); !s) return s;
+    return submissions_.finish(*slot, {});
+}
+
 Result<compute::Ticket> HostOrder::copy_to_image(const compute::BufferRows&, const compute::HostImage&) {
     return compute::no_host_sync(c_.capabilities.backend, "images");
 }

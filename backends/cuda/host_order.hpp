@@ -1,6 +1,6 @@
-// The order between the host's work and the world's: CUDA events, and beside a host's Vulkan device its timeline semaphores.
+// Where the world meets a host: CUDA events, device memory of the host's, and beside its Vulkan device its timeline semaphores.
 #pragma once
-#include "backends/cuda/context.hpp"
+#include "backends/cuda/submissions.hpp"
 #include <map>
 #include <span>
 
@@ -9,7 +9,8 @@ namespace wadi::cuda {
 /// Semaphores are imported when first used and kept until the device closes; without a lender they are refused.
 class HostOrder final : public compute::HostSync {
   public:
-    explicit HostOrder(Context& context) : c_(context) {}
+    HostOrder(Context& context, const Buffers& buffers, Submissions& submissions)
+        : c_(context), buffers_(buffers), submissions_(submissions) {}
     ~HostOrder();
     HostOrder(const HostOrder&) = delete;
     HostOrder& operator=(const HostOrder&) = delete;
@@ -17,6 +18,7 @@ class HostOrder final : public compute::HostSync {
     Status signal_after(const compute::SyncPoint& point) override;
     Status wait_event(void* event) override;
     Status record_event(void* event) override;
+    Result<compute::Ticket> copy_from(const compute::HostRows& from, compute::Buffer to) override;
     /// Refused: CUDA neither copies into Vulkan's images nor records into Vulkan's command buffers.
     Result<compute::Ticket> copy_to_image(const compute::BufferRows& from, const compute::HostImage& to) override;
     Status begin_recording(void* commands, const compute::SyncPoint& promise) override;
@@ -28,6 +30,8 @@ class HostOrder final : public compute::HostSync {
     Result<cudaExternalSemaphore_t> find(std::uint64_t semaphore);
 
     Context& c_;
+    const Buffers& buffers_;
+    Submissions& submissions_;
     std::map<std::uint64_t, cudaExternalSemaphore_t> imported_; // by VkSemaphore
 };
 

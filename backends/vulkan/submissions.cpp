@@ -1,5 +1,5 @@
 #include "backends/vulkan/submissions.hpp"
-#include "backends/vulkan/image_copy.hpp"
+#include "backends/vulkan/host_copies.hpp"
 #include <algorithm>
 
 namespace wadi::vulkan {
@@ -106,23 +106,32 @@ compute::Ticket Submissions::give_out(Slot& slot, compute::Program program) {
     return {last_};
 }
 
-Result<compute::Ticket> Submissions::copy_to_image(const compute::BufferRows& from, const compute::HostImage& to) {
+template <class Record> Result<compute::Ticket> Submissions::submit_once(Record record) {
     if (Status s = recording() ? ok_status() : check_order(); !s) return s;
     auto index = acquire();
     if (!index) return index.status();
     Slot& slot = slots_[*index];
-    const VkBuffer buffer = buffers_.find(from.buffer)->buffer;
     if (recording()) {
-        record_image_copy(c_, host_commands_, buffer, from, to);
+        record(host_commands_);
     } else {
         auto info = vk_struct<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
         info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
         if (Status s = c_.check(c_.vk.vkBeginCommandBuffer(slot.own, &info), "vkBeginCommandBuffer"); !s) return s;
-        record_image_copy(c_, slot.own, buffer, from, to);
+        record(slot.own);
         if (Status s = c_.check(c_.vk.vkEndCommandBuffer(slot.own), "vkEndCommandBuffer"); !s) return s;
         if (Status s = send(slot, {&slot.own, 1}); !s) return s;
     }
     return give_out(slot, {});
+}
+
+Result<compute::Ticket> Submissions::copy_to_image(const compute::BufferRows& from, const compute::HostImage& to) {
+    const VkBuffer buffer = buffers_.find(from.buffer)->buffer;
+    return submit_once([&](VkCommandBuffer commands) { record_image_copy(c_, commands, buffer, from, to); });
+}
+
+Result<compute::Ticket> Submissions::copy_from(const compute::HostRows& from, compute::Buffer to) {
+    const VkBuffer buffer = buffers_.find(to)->buffer;
+    return submit_once([&](VkCommandBuffer commands) { record_rows_copy(c_, commands, from, buffer); });
 }
 
 Status Submissions::send(const Slot& slot, std::span<const VkCommandBuffer> commands) {

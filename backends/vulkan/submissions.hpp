@@ -40,6 +40,7 @@ class Submissions final : public compute::HostSync {
     Status wait_event(void* event) override;
     Status record_event(void* event) override;
     Result<compute::Ticket> copy_to_image(const compute::BufferRows& from, const compute::HostImage& to) override;
+    Result<compute::Ticket> copy_from(const compute::HostRows& from, compute::Buffer to) override;
     /// Until end_recording() submit() records into `commands`; its programs' command buffers must then be secondary ones.
     Status begin_recording(void* commands, const compute::SyncPoint& promise) override;
     Status end_recording() override;
@@ -72,6 +73,8 @@ class Submissions final : public compute::HostSync {
         compute::SyncPoint promise; // of recorded work; semaphore 0 = went to the queue
     };
     Status record_inputs(const Slot& slot, std::span<const StepInput> inputs, const Update& update);
+    /// Submits, or records, commands that run once: record(commands).
+    template <class Record> Result<compute::Ticket> submit_once(Record record);
     /// Submits to the queue as the next ticket.
     Status send(const Slot& slot, std::span<const VkCommandBuffer> commands);
     /// Gives out the next ticket, for what was sent or recorded with this slot.

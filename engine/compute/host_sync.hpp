@@ -30,6 +30,13 @@ struct HostImage {
     std::int32_t x = 0, y = 0; // of the first texel
 };
 
+/// Rows of 4-byte numbers in memory that the host has of the device's API: a VkBuffer, or a device address; offset and row_pitch
+/// [bytes] are whole numbers.
+struct HostRows {
+    std::uint64_t handle = 0, offset = 0, row_pitch = 0;
+    std::uint32_t width = 0, height = 0;
+};
+
 /// What Device::host_sync() gives; lives as long as the device. Errors of all: not_supported (another API's device, or the host's
 /// device cannot), bad_argument (a null handle).
 class HostSync {
@@ -44,6 +51,9 @@ class HostSync {
     /// Fills a part of one mip level and array layer of a colour image that matches the texels, as a submission: after everything
     /// submitted before, seen by everything that the host submits behind it. Recording, it goes into the host's command buffer.
     virtual Result<Ticket> copy_to_image(const BufferRows& from, const HostImage& to) = 0;
+    /// Brings rows to the begin of a buffer, one behind the other, as a submission: after everything that was submitted before,
+    /// by the host too. The host may write them anew in what it submits behind it.
+    virtual Result<Ticket> copy_from(const HostRows& from, Buffer to) = 0;
     /// From here to end_recording() every submit() goes into the host's command buffer (VkCommandBuffer, recording, of the
     /// device's queue family, outside a render pass) instead of the queue. The host promises to submit it, in the order of
     /// recording, with a signal of `promise`; tickets finish when that is reached. Until then calls that would reach the queue

@@ -252,7 +252,6 @@ Result<OutputView> Outputs::view(Output output, OutputSet set) const {
 Status Outputs::copy_to_image(Output output, OutputSet set, const Region& cells, const compute::HostImage& to) {
     auto found = view(output, set);
     if (!found) return found.status();
-    if (auto status = check_region("copy_to_image", cells, state_.settings().grid, cells.cells()); !status) return status;
     const std::uint64_t bytes = found->format.bytes();
     const compute::BufferRows from{.buffer = found->buffer,
                                    .offset = found->offset + static_cast<std::uint64_t>(cells.j0) * found->row_pitch +

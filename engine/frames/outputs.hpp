@@ -72,9 +72,9 @@ class Outputs {
 
     /// Errors: bad_argument (not asked for), not_ready (not published yet).
     Result<OutputView> view(Output output, OutputSet set) const;
-    /// Copies cells of an output into an image of the host's, on the device and behind everything submitted; `to` must have room.
-    /// Errors: those of view(), bad_argument (check_region), not_supported (a device without the host's images), not_ready (it
-    /// would overtake recorded work).
+    /// Copies cells within the grid of an output into an image of the host's, on the device and behind everything submitted; `to`
+    /// must have room. Errors: those of view(), not_supported (a device without the host's images), not_ready (it would overtake
+    /// recorded work).
     Status copy_to_image(Output output, OutputSet set, const Region& cells, const compute::HostImage& to);
     /// The newest copy in host memory; its rows are row_pitch bytes apart. Errors: bad_argument (not asked for), not_ready.
     struct HostView {

@@ -44,6 +44,7 @@
     X(wadi_result, world_edit, (wadi_world_id world, const wadi_edit* edits, uint32_t count)) \
     X(wadi_result, world_create_stamp, (wadi_world_id world, int32_t nx, int32_t ny, const float* values, uint32_t* stamp)) \
     X(wadi_result, world_write_region, (wadi_world_id world, wadi_field field, const wadi_region* region, const float* values, size_t count)) \
+    X(wadi_result, world_write_region_from, (wadi_world_id world, wadi_field field, const wadi_region* region, const wadi_device_values* values)) \
     X(wadi_result, world_prepare_effects, (wadi_world_id world)) \
     X(wadi_result, world_trim, (wadi_world_id world)) \
     X(wadi_result, world_get_material, (wadi_world_id world, wadi_material_info* infos, uint32_t* count)) \

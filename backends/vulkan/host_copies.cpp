@@ -1,5 +1,6 @@
-#include "backends/vulkan/image_copy.hpp"
+#include "backends/vulkan/host_copies.hpp"
 #include "backends/vulkan/memory.hpp"
+#include <vector>
 
 namespace wadi::vulkan {
 
@@ -33,6 +34,24 @@ void record_image_copy(const Context& c, VkCommandBuffer commands, VkBuffer buff
     barrier.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
     barrier.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
     c.vk.vkCmdPipelineBarrier(commands, copies, all, 0, 0, nullptr, 0, nullptr, 1, &barrier);
+}
+
+void record_rows_copy(const Context& c, VkCommandBuffer commands, const compute::HostRows& from, VkBuffer to) {
+    constexpr VkPipelineStageFlags all = VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, copies = VK_PIPELINE_STAGE_TRANSFER_BIT;
+    auto barrier = vk_struct<VkMemoryBarrier>(VK_STRUCTURE_TYPE_MEMORY_BARRIER);
+    barrier.srcAccessMask = VK_ACCESS_MEMORY_WRITE_BIT;
+    barrier.dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
+    c.vk.vkCmdPipelineBarrier(commands, all, copies, 0, 1, &barrier, 0, nullptr, 0, nullptr);
+    const VkDeviceSize row = VkDeviceSize{from.width} * 4;
+    std::vector<VkBufferCopy> rows;
+    if (row == from.row_pitch) {
+        rows.push_back({from.offset, 0, row * from.height});
+    } else {
+        for (std::uint32_t n = 0; n < from.height; ++n) rows.push_back({from.offset + n * from.row_pitch, n * row, row});
+    }
+    c.vk.vkCmdCopyBuffer(commands, reinterpret_cast<VkBuffer>(static_cast<std::uintptr_t>(from.handle)), to,
+                         static_cast<std::uint32_t>(rows.size()), rows.data());
+    c.vk.vkCmdPipelineBarrier(commands, copies, all, 0, 0, nullptr, 0, nullptr, 0, nullptr);
 }
 
 } // namespace wadi::vulkan

@@ -1,5 +1,5 @@
-// CUDA events of a host: worlds elsewhere refuse them; on a GPU the world waits for the host's stream and the host's for the
-// world.
+// CUDA events and memory of a host: worlds elsewhere refuse events; on a GPU the world waits for the host's stream and the host's
+// for the world, and regions are written from device memory.
 #include "tests/plugin/abi_worlds.hpp"
 #include <algorithm>
 #include <atomic>
@@ -60,6 +60,10 @@ struct Driver {
     int (*event_wait)(Handle) = find<int(Handle)>("cuEventSynchronize");
     int (*allocate_host)(void**, std::size_t, unsigned) = find<int(void**, std::size_t, unsigned)>("cuMemHostAlloc");
     int (*free_host)(void*) = find<int(void*)>("cuMemFreeHost");
+    int (*allocate)(std::uint64_t*, std::size_t) = find<int(std::uint64_t*, std::size_t)>("cuMemAlloc_v2");
+    int (*free)(std::uint64_t) = find<int(std::uint64_t)>("cuMemFree_v2");
+    int (*copy_in)(std::uint64_t, const void*, std::size_t,
+                   Handle) = find<int(std::uint64_t, const void*, std::size_t, Handle)>("cuMemcpyHtoDAsync_v2");
     int (*copy_out)(void*, std::uint64_t, std::size_t,
                     Handle) = find<int(void*, std::uint64_t, std::size_t, Handle)>("cuMemcpyDtoHAsync_v2");
 
@@ -114,6 +118,16 @@ struct CudaHost {
         driver.pop(&context);
         driver.release(device);
     }
+    /// Whether the world is on this host's device.
+    bool runs(const AbiWorld& world) const {
+        char name[256] = "";
+        auto info = wadi_default_world_info();
+        REQUIRE(driver.device_name(name, sizeof name, device) == 0);
+        REQUIRE(wadi_world_get_info(world.id, &info) == WADI_OK);
+        if (std::string(name) == info.device_name) return true;
+        MESSAGE("SKIPPED: CUDA's device 0 is " << name << ", the world runs on " << info.device_name);
+        return false;
+    }
     /// Work on the host's stream that ends when the gate opens; `done` is behind it.
     void begin_work() {
         gate.open = false;
@@ -143,19 +157,53 @@ bool has_cuda() {
 
 } // namespace
 
+TEST_CASE("a region is written from a CUDA host's memory, behind the host's event") {
+    if (!has_cuda()) return;
+    constexpr int n = 48;
+    constexpr std::size_t pitch = 40, first = 3; // [numbers]
+    const wadi_region region{9, 5, 31, 27};
+    const AbiWorld world = mixed_world("cuda", n), twin = mixed_world("cpu", n);
+    CudaHost host;
+    if (!host.runs(world)) return;
+    std::vector<float> memory(first + pitch * 27, -77.0F), dense;
+    for (int k = 0; k < region.nx * region.ny; ++k) dense.push_back(static_cast<float>(k * 7 % 41) / 40);
+    for (std::size_t j = 0; j < 27; ++j)
+        std::memcpy(memory.data() + first + j * pitch, dense.data() + j * 31, 31 * sizeof(float));
+    auto values = wadi_default_device_values();
+    values.handle_kind = WADI_HANDLE_CUDA_POINTER;
+    values.offset = first * 4;
+    values.row_pitch = pitch * 4;
+    REQUIRE(host.driver.allocate(&values.handle, memory.size() * 4) == 0);
+    REQUIRE(host.driver.copy_in(values.handle, memory.data(), memory.size() * 4, host.reader) == 0);
+    REQUIRE(host.driver.synchronize(host.reader) == 0);
+    step(world, 1);
+    step(twin, 1);
+    for (const bool gated : {false, true}) { // not at first, when the driver loads and allocates, which may wait for streams
+        for (const auto field : {WADI_FIELD_TOTAL_WATER_DEPTH, WADI_FIELD_SAND_DEPTH, WADI_FIELD_TERRAIN}) {
+            host.begin_work();
+            if (!gated) host.gate.open = true;
+            REQUIRE(wadi_cuda_wait(world.id, host.done) == WADI_OK);
+            REQUIRE_MESSAGE(wadi_world_write_region_from(world.id, field, &region, &values) == WADI_OK,
+                            std::string(wadi_get_last_error()));
+            REQUIRE(wadi_cuda_signal(world.id, host.written) == WADI_OK);
+            if (gated) CHECK(host.driver.event_query(host.written) == not_ready);
+            host.gate.open = true;
+            CHECK(host.driver.event_wait(host.written) == 0);
+            REQUIRE(wadi_world_write_region(twin.id, field, &region, dense.data(), dense.size()) == WADI_OK);
+            step(world, 2);
+            step(twin, 2);
+            CHECK(hash_of(world) == hash_of(twin));
+        }
+    }
+    CHECK(host.driver.free(values.handle) == 0);
+}
+
 TEST_CASE("a world waits for a host's CUDA stream and the host's stream for the world") {
     if (!has_cuda()) return;
     constexpr int n = 48;
     const AbiWorld world = mixed_world("cuda", n), twin = mixed_world("cpu", n);
     CudaHost host;
-    char name[256] = "";
-    auto info = wadi_default_world_info();
-    REQUIRE(host.driver.device_name(name, sizeof name, host.device) == 0);
-    REQUIRE(wadi_world_get_info(world.id, &info) == WADI_OK);
-    if (std::string(name) != info.device_name) {
-        MESSAGE("SKIPPED: CUDA's device 0 is " << name << ", the world runs on " << info.device_name);
-        return;
-    }
+    if (!host.runs(world)) return;
     for (const AbiWorld* each : {&world, &twin}) {
         REQUIRE(wadi_world_set_outputs(each->id, WADI_OUTPUT_BIT(WADI_OUTPUT_WATER_DEPTH)) == WADI_OK);
         update(*each);

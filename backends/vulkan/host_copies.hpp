@@ -1,4 +1,4 @@
-// Copies rows of a buffer into an image of the host's.
+// Copies from our buffers into images of the host's, and from the host's buffers into ours.
 #pragma once
 #include "backends/vulkan/context.hpp"
 
@@ -8,5 +8,8 @@ namespace wadi::vulkan {
 /// layout, without a barrier of its own.
 void record_image_copy(const Context& context, VkCommandBuffer commands, VkBuffer buffer, const compute::BufferRows& from,
                        const compute::HostImage& to);
+
+/// Behind all work on the queue, the host's too, and ahead of what the host puts behind it.
+void record_rows_copy(const Context& context, VkCommandBuffer commands, const compute::HostRows& from, VkBuffer to);
 
 } // namespace wadi::vulkan
