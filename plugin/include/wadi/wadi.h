@@ -801,7 +801,7 @@ WADI_API wadi_result wadi_world_roll_back(wadi_world_id world, uint64_t step, ui
 
 /** 1 = from now on remember every edit, written region, trim and change of the material with its step, in host memory that grows;
  *  0 = stop and drop the log.
- *  Off at first. Going back in time drops what was remembered for later steps. */
+ *  Off at first. Going back in time drops what was remembered for later steps. While it is on wadi_world_write_region_from is refused. */
 WADI_API wadi_result wadi_world_set_command_log(wadi_world_id world, wadi_bool on);
 /** The log as bytes, with all stamps of the world: a few dozen bytes per edit, versioned and checksummed.
  *  *size: bytes at `data` in, bytes of the log out; data may be NULL to ask the number.
