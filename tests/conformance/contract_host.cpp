@@ -145,6 +145,16 @@ void host_sync_refusals(Session&, Device& device, Expect& expect) {
     expect.refused(copied([](auto& r) { r.height = 2; }), "copy_to_image", "a row beyond the buffer");
     expect.refused(copied([](auto& r) { r.buffer = {4'000'000'000u}; }), "copy_to_image", "no buffer");
     expect.that(copied([](auto&) {}).code == Code::not_supported, "a device of its own copies into a host's image");
+    const compute::HostRows rows{.handle = 1, .row_pitch = 4, .width = 1, .height = 1};
+    auto wrong = rows;
+    wrong.handle = 0;
+    expect.refused(sync->copy_from(wrong, buffer).status(), "copy_from: the handle is null", "copy_from");
+    wrong = rows;
+    wrong.offset = 2;
+    expect.refused(sync->copy_from(wrong, buffer).status(), "copy_from: rows of 1 numbers", "an offset");
+    wrong = rows;
+    wrong.height = 2;
+    expect.refused(sync->copy_from(wrong, buffer).status(), "copy_from", "rows beyond the buffer");
     expect.that(words_of(device, buffer, 1) == std::vector<std::uint32_t>{9}, "a refused recording stops the queue");
     device.destroy_buffer(buffer);
 }
