@@ -71,7 +71,8 @@ class World {
     Snapshots snapshots_{state_, stepper_, roll_back_};
     Edits edits_{state_, stepper_};
     Queries queries_{state_, stepper_};
-    CommandLog commands_{state_, stepper_, edits_};
+    ValueWrites values_{state_, stepper_};
+    CommandLog commands_{state_, stepper_, edits_, values_};
 };
 
 /// The plan as text: effects and reasons, passes, buffers, bytes per cell.

@@ -20,6 +20,12 @@ const char* last_error();
 /// WADI_ERROR_OUT_OF_MEMORY, with a text where there is memory for one.
 wadi_result report_out_of_memory(const char* function) noexcept;
 
+/// Puts the function's name ahead of an engine's message.
+inline Status named(const char* function, Status status) {
+    if (!status) status.message = std::string(function) + ": " + status.message;
+    return status;
+}
+
 inline wadi_result bad_argument(const std::string& message) { return report(error(Code::bad_argument, message)); }
 
 #if defined(__GLIBCXX__)

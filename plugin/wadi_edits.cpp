@@ -43,6 +43,33 @@ Result<Edit> to_edit(const wadi_edit* edits, uint32_t index) {
 
 Region to_region(const wadi_region& r) { return {r.i0, r.j0, r.nx, r.ny}; }
 
+Result<EditLayer> layer_of(const char* function, wadi_field field) {
+    switch (field) {
+    case WADI_FIELD_TERRAIN:
+        return EditLayer::terrain;
+    case WADI_FIELD_SAND_DEPTH:
+        return EditLayer::sand;
+    case WADI_FIELD_TOTAL_WATER_DEPTH:
+        return EditLayer::water;
+    default:
+        return error(Code::bad_argument, std::string(function) + ": field " + std::to_string(static_cast<int>(field)) +
+                                             " is not TERRAIN, SAND_DEPTH or TOTAL_WATER_DEPTH");
+    }
+}
+
+Result<ValueSource> source_of(const wadi_device_values& values, const Region& region) {
+    const auto refuse = [](const std::string& text) { return error(Code::bad_argument, "values." + text); };
+    const int kind = static_cast<int>(values.handle_kind);
+    if (kind < 0 || kind > WADI_HANDLE_CUDA_POINTER)
+        return refuse("handle_kind: " + std::to_string(kind) + " is outside 0 ... 2");
+    if (values.handle == 0) return refuse("handle is 0");
+    if (values.offset % 4 != 0) return refuse("offset: " + std::to_string(values.offset) + " is no multiple of 4");
+    const std::uint64_t row = static_cast<std::uint64_t>(region.nx) * 4, pitch = values.row_pitch != 0 ? values.row_pitch : row;
+    if (pitch % 4 != 0 || pitch < row || pitch > std::uint64_t{1} << 40)
+        return refuse("row_pitch: " + std::to_string(pitch) + " is no multiple of 4 from " + std::to_string(row) + " to 2^40");
+    return ValueSource{static_cast<compute::NativeBuffer::Kind>(kind), values.handle, values.offset, pitch};
+}
+
 } // namespace
 
 extern "C" {
@@ -87,21 +114,26 @@ wadi_result wadi_world_write_region(wadi_world_id id, wadi_field field, const wa
     return with_world(__func__, id, [&](HostedWorld& hosted) {
         if (region == nullptr) return bad_argument("wadi_world_write_region: region is NULL");
         if (values == nullptr) return bad_argument("wadi_world_write_region: values is NULL");
-        EditLayer layer = EditLayer::terrain;
-        switch (field) {
-        case WADI_FIELD_TERRAIN:
-            break;
-        case WADI_FIELD_SAND_DEPTH:
-            layer = EditLayer::sand;
-            break;
-        case WADI_FIELD_TOTAL_WATER_DEPTH:
-            layer = EditLayer::water;
-            break;
-        default:
-            return bad_argument("wadi_world_write_region: field " + std::to_string(static_cast<int>(field)) +
-                                " is not TERRAIN, SAND_DEPTH or TOTAL_WATER_DEPTH");
-        }
-        return report(hosted.world->commands().write_region(layer, to_region(*region), {values, count}));
+        const auto layer = layer_of("wadi_world_write_region", field);
+        if (!layer) return report(layer.status());
+        return report(hosted.world->commands().write_region(*layer, to_region(*region), {values, count}));
+    });
+}
+
+wadi_result wadi_world_write_region_from(wadi_world_id id, wadi_field field, const wadi_region* region,
+                                         const wadi_device_values* values) {
+    constexpr const char* function = "wadi_world_write_region_from";
+    return with_world(function, id, [&](HostedWorld& hosted) {
+        if (region == nullptr) return bad_argument(std::string(function) + ": region is NULL");
+        if (auto status = understood(std::string(function) + ": values", values); !status) return report(status);
+        const auto layer = layer_of(function, field);
+        if (!layer) return report(layer.status());
+        const Region cells = to_region(*region);
+        if (auto status = check_region(function, cells, hosted.world->settings().grid, cells.cells()); !status)
+            return report(status);
+        auto from = source_of(taken(values, wadi_default_device_values()), cells);
+        if (!from) return report(named(function, from.status()));
+        return report(named(function, hosted.world->commands().write_values(*layer, cells, *from)));
     });
 }
 

@@ -1,5 +1,5 @@
 // Published fields: views on the device, copies in host memory, tiles.
-#include "plugin/abi.hpp"
+#include "plugin/output_arguments.hpp"
 
 using namespace wadi;
 using namespace wadi::plugin;
@@ -16,21 +16,8 @@ Status check_mask(const char* function, uint32_t mask, uint32_t allowed) {
                                          " are no outputs; allowed are those of " + std::to_string(allowed));
 }
 
-Status check_output(const char* function, wadi_output output) {
-    const int n = static_cast<int>(output);
-    if (n >= 0 && n < WADI_OUTPUT_COUNT) return ok_status();
-    return error(Code::bad_argument, std::string(function) + ": output: " + std::to_string(n) + " is outside 0 ... " +
-                                         std::to_string(WADI_OUTPUT_COUNT - 1));
-}
-
 wadi_format to_format(const OutputFormat& format) {
     return format.component_bytes == 2 ? WADI_FORMAT_R16G16B16A16_FLOAT : static_cast<wadi_format>(format.components);
-}
-
-// Puts the function's name ahead of an engine's message.
-Status named(const char* function, Status status) {
-    if (!status) status.message = std::string(function) + ": " + status.message;
-    return status;
 }
 
 } // namespace
@@ -55,18 +42,14 @@ wadi_result wadi_world_get_view(wadi_world_id id, wadi_output output, wadi_outpu
     constexpr const char* function = "wadi_world_get_view";
     return with_world(function, id, [&](HostedWorld& hosted) {
         if (auto status = understood(std::string(function) + ": view", view); !status) return report(status);
-        if (auto status = check_output(function, output); !status) return report(status);
-        const int which = static_cast<int>(set);
-        if (which < 0 || which > WADI_OUTPUT_INTERPOLATED)
-            return bad_argument(std::string(function) + ": set: " + std::to_string(which) + " is outside 0 ... 2");
-        auto found = hosted.world->outputs().view(static_cast<Output>(output), static_cast<OutputSet>(which));
-        if (!found) return report(named(function, found.status()));
+        const auto found = view_of(function, hosted, output, set);
+        if (!found) return report(found.status());
         wadi_output_view own = wadi_default_output_view();
-        own.handle_kind = static_cast<wadi_handle_kind>(found->buffer.kind);
-        own.handle = found->buffer.handle;
+        own.handle_kind = static_cast<wadi_handle_kind>(found->native.kind);
+        own.handle = found->native.handle;
         own.offset = found->offset;
         own.row_pitch = found->row_pitch;
-        own.buffer_bytes = found->buffer.bytes;
+        own.buffer_bytes = found->native.bytes;
         own.nx = found->nx;
         own.ny = found->ny;
         own.format = to_format(found->format);

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes from the headers what bindings and hosts without a linker want: wadi_api.json (types, fields, enums, functions, texts) and
+"""Writes from wadi.h and wadi_cuda.h what bindings and hosts without a linker want: wadi_api.json (types, fields, enums, functions, texts) and
 wadi_loader.h (the library opened at run time). Usage: write_api.py [--check]; --check changes nothing and exits with 1 where a file is old."""
 import json
 import pathlib
@@ -78,7 +78,7 @@ def loader(api):
     for function in api["functions"]:
         given = ", ".join(a["type"].removesuffix("*") + f" {a['name']}[{a['count']}]" if "count" in a else f"{a['type']} {a['name']}" for a in function["arguments"])
         lines.append(f"    X({function['returns']}, {function['name'].removeprefix('wadi_')}, ({given or 'void'}))")
-    return f'''/* Written by plugin/write_api.py from wadi.h. For hosts that open the library at run time and run on without it; C99.
+    return f'''/* Written by plugin/write_api.py from wadi.h and wadi_cuda.h. For hosts that open the library at run time and run on without it; C99.
  *
  * Define WADI_LOADER_IMPLEMENTATION in one file ahead of including this. The functions are members of a table:
  *   wadi_functions wadi;
@@ -88,7 +88,7 @@ def loader(api):
 #ifndef WADI_LOADER_H
 #define WADI_LOADER_H
 
-#include <wadi/wadi.h>
+#include <wadi/wadi_cuda.h>
 
 #define WADI_FUNCTIONS(X) \\
 {(" " + chr(92) + chr(10)).join(lines)}
@@ -127,7 +127,7 @@ const char* wadi_load_functions(wadi_functions* functions, wadi_find_function fi
 
 
 def main():
-    header = (folder / "include/wadi/wadi.h").read_text(encoding="utf-8")
+    header = "".join((folder / f"include/wadi/{name}").read_text(encoding="utf-8") for name in ("wadi.h", "wadi_cuda.h"))
     api = read(header)
     declared = set(re.findall(r"^WADI_API[^;(]*?(wadi_\w+)\(", header, re.MULTILINE))
     if declared != {f["name"] for f in api["functions"]}:

@@ -21,8 +21,17 @@ template <class Row, class Node> void keep(std::map<std::uint32_t, Row>& rows, N
     rows.insert(std::move(node));
 }
 
+constexpr const char* semaphores = "timeline semaphores";
+constexpr const char* events = "CUDA events";
+constexpr const char* images = "images";
+constexpr const char* memory = "device memory";
+constexpr const char* command_buffers = "command buffers";
+
+Status check_given(bool given, const char* call, const char* what) {
+    return given ? ok_status() : error(Code::bad_argument, std::string(call) + ": the " + what + " is null");
+}
 Status check_semaphore(const compute::SyncPoint& point, const char* call) {
-    return point.semaphore != 0 ? ok_status() : error(Code::bad_argument, std::string(call) + ": the semaphore is null");
+    return check_given(point.semaphore != 0, call, "semaphore");
 }
 
 } // namespace
@@ -178,9 +187,11 @@ Result<compute::NativeBuffer> FrontEnd::native(compute::Buffer buffer) {
     });
 }
 
-template <class Call> Status FrontEnd::with_host_sync(Call call) {
+template <class Call>
+auto FrontEnd::with_host_sync(const char* what, Call call) -> decltype(call(std::declval<compute::HostSync&>())) {
     compute::HostSync* sync = device_->host_sync();
-    return sync != nullptr ? call(*sync) : compute::no_host_sync(capabilities().backend);
+    if (sync == nullptr) return compute::no_host_sync(capabilities().backend, what);
+    return call(*sync);
 }
 
 Status FrontEnd::wait_before(std::span<const compute::SyncPoint> points) {
@@ -189,23 +200,73 @@ Status FrontEnd::wait_before(std::span<const compute::SyncPoint> points) {
             if (auto status = check_semaphore(point, "wait_before"); !status) return status;
         }
         if (points.empty()) return ok_status();
-        return with_host_sync([&](compute::HostSync& sync) { return sync.wait_before(points); });
+        return with_host_sync(semaphores, [&](compute::HostSync& sync) { return sync.wait_before(points); });
     });
 }
 
 Status FrontEnd::signal_after(const compute::SyncPoint& point) {
     return unless_lost([&] {
         if (auto status = check_semaphore(point, "signal_after"); !status) return status;
-        return with_host_sync([&](compute::HostSync& sync) { return sync.signal_after(point); });
+        return with_host_sync(semaphores, [&](compute::HostSync& sync) { return sync.signal_after(point); });
+    });
+}
+
+Status FrontEnd::wait_event(void* event) {
+    return unless_lost([&] {
+        if (auto status = check_given(event != nullptr, "wait_event", "event"); !status) return status;
+        return with_host_sync(events, [&](compute::HostSync& sync) { return sync.wait_event(event); });
+    });
+}
+
+Status FrontEnd::record_event(void* event) {
+    return unless_lost([&] {
+        if (auto status = check_given(event != nullptr, "record_event", "event"); !status) return status;
+        return with_host_sync(events, [&](compute::HostSync& sync) { return sync.record_event(event); });
+    });
+}
+
+Result<compute::Ticket> FrontEnd::copy_to_image(const compute::BufferRows& from, const compute::HostImage& to) {
+    return unless_lost([&]() -> Result<compute::Ticket> {
+        constexpr const char* call = "copy_to_image";
+        if (auto status = check_given(to.image != 0, call, "image"); !status) return status;
+        const bool whole = from.texel_bytes != 0 && from.offset % from.texel_bytes == 0 && from.row_pitch % from.texel_bytes == 0;
+        const std::uint64_t row = std::uint64_t{from.width} * from.texel_bytes;
+        if (!whole || row == 0 || from.height == 0 || row > from.row_pitch)
+            return error(Code::bad_argument, std::string(call) + ": rows of " + std::to_string(from.width) + " texels of " +
+                                                 std::to_string(from.texel_bytes) + " bytes, " + std::to_string(from.height) +
+                                                 " of them " + std::to_string(from.row_pitch) + " bytes apart from byte " +
+                                                 std::to_string(from.offset) + " on, are none");
+        const std::uint64_t bytes = (from.height - 1) * from.row_pitch + row;
+        if (auto status = check_range(objects_, from.buffer, from.offset, bytes, call); !status) return status;
+        auto ticket = with_host_sync(images, [&](compute::HostSync& sync) { return sync.copy_to_image(from, to); });
+        if (ticket) newest_ = *ticket;
+        return ticket;
+    });
+}
+
+Result<compute::Ticket> FrontEnd::copy_from(const compute::HostRows& from, compute::Buffer to) {
+    return unless_lost([&]() -> Result<compute::Ticket> {
+        constexpr const char* call = "copy_from";
+        if (auto status = check_given(from.handle != 0, call, "handle"); !status) return status;
+        const std::uint64_t row = std::uint64_t{from.width} * 4;
+        if (from.offset % 4 != 0 || from.row_pitch % 4 != 0 || row == 0 || from.height == 0 || row > from.row_pitch)
+            return error(Code::bad_argument, std::string(call) + ": rows of " + std::to_string(from.width) + " numbers, " +
+                                                 std::to_string(from.height) + " of them " + std::to_string(from.row_pitch) +
+                                                 " bytes apart from byte " + std::to_string(from.offset) + " on, are none");
+        if (auto status = check_range(objects_, to, 0, row * from.height, call); !status) return status;
+        auto ticket = with_host_sync(memory, [&](compute::HostSync& sync) { return sync.copy_from(from, to); });
+        if (ticket) newest_ = *ticket;
+        return ticket;
     });
 }
 
 Status FrontEnd::begin_recording(void* commands, const compute::SyncPoint& promise) {
     return unless_lost([&] {
         if (auto status = check_semaphore(promise, "begin_recording"); !status) return status;
-        if (commands == nullptr) return error(Code::bad_argument, "begin_recording: the command buffer is null");
+        if (auto status = check_given(commands != nullptr, "begin_recording", "command buffer"); !status) return status;
         if (recording_) return error(Code::bad_argument, "begin_recording: a recording is under way; end it first");
-        Status status = with_host_sync([&](compute::HostSync& sync) { return sync.begin_recording(commands, promise); });
+        Status status =
+            with_host_sync(command_buffers, [&](compute::HostSync& sync) { return sync.begin_recording(commands, promise); });
         recording_ = bool(status);
         return status;
     });
@@ -215,7 +276,7 @@ Status FrontEnd::end_recording() {
     return unless_lost([&] {
         if (!recording_) return error(Code::bad_argument, "end_recording: no recording is under way");
         recording_ = false;
-        return with_host_sync([](compute::HostSync& sync) { return sync.end_recording(); });
+        return with_host_sync(command_buffers, [](compute::HostSync& sync) { return sync.end_recording(); });
     });
 }
 

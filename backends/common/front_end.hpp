@@ -43,9 +43,13 @@ class FrontEnd final : public compute::Device, private compute::HostSync {
   private:
     Status wait_before(std::span<const compute::SyncPoint> points) override;
     Status signal_after(const compute::SyncPoint& point) override;
+    Status wait_event(void* event) override;
+    Status record_event(void* event) override;
+    Result<compute::Ticket> copy_to_image(const compute::BufferRows& from, const compute::HostImage& to) override;
+    Result<compute::Ticket> copy_from(const compute::HostRows& from, compute::Buffer to) override;
     Status begin_recording(void* commands, const compute::SyncPoint& promise) override;
     Status end_recording() override;
-    template <class Call> Status with_host_sync(Call call);
+    template <class Call> auto with_host_sync(const char* what, Call call) -> decltype(call(std::declval<compute::HostSync&>()));
     template <class Call> auto unless_lost(Call call) -> decltype(call());
     Status check_given_out(compute::Ticket ticket) const;
 

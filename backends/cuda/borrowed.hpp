@@ -1,8 +1,6 @@
-// What CUDA borrows from a host's Vulkan device: memory under its buffers, and timeline semaphores.
+// Memory under a host's Vulkan buffers that CUDA borrows.
 #pragma once
 #include "backends/cuda/context.hpp"
-#include <map>
-#include <span>
 
 namespace wadi::cuda {
 
@@ -16,25 +14,5 @@ struct BorrowedMemory {
 /// Errors: out_of_memory, not_supported.
 Result<BorrowedMemory> borrow(Context& context, std::uint64_t bytes, const std::string& label);
 void give_back(Context& context, BorrowedMemory& memory);
-
-/// The host's timeline semaphores, imported when first used and kept until the device closes.
-class Semaphores final : public compute::HostSync {
-  public:
-    explicit Semaphores(Context& context) : c_(context) {}
-    ~Semaphores();
-    Semaphores(const Semaphores&) = delete;
-    Semaphores& operator=(const Semaphores&) = delete;
-    Status wait_before(std::span<const compute::SyncPoint> points) override;
-    Status signal_after(const compute::SyncPoint& point) override;
-    /// Refused: CUDA cannot record into Vulkan's command buffers.
-    Status begin_recording(void* commands, const compute::SyncPoint& promise) override;
-    Status end_recording() override;
-
-  private:
-    Result<cudaExternalSemaphore_t> find(std::uint64_t semaphore);
-
-    Context& c_;
-    std::map<std::uint64_t, cudaExternalSemaphore_t> imported_; // by VkSemaphore
-};
 
 } // namespace wadi::cuda

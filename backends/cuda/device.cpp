@@ -1,4 +1,5 @@
 #include "backends/cuda/device.hpp"
+#include "backends/cuda/host_order.hpp"
 #include "backends/cuda/program.hpp"
 #include "backends/cuda/self_test.hpp"
 
@@ -97,15 +98,15 @@ class CudaDevice final : public compute::Device {
                                      memory.bytes};
     }
 
-    compute::HostSync* host_sync() override { return context_->options.lender != nullptr ? &semaphores_ : nullptr; }
+    compute::HostSync* host_sync() override { return &host_order_; }
 
   private:
     // Destroyed from the last to the first.
     std::unique_ptr<Context> context_;
-    Semaphores semaphores_{*context_};
     Buffers buffers_{*context_};
     Pipelines pipelines_{*context_};
     Submissions submissions_{*context_};
+    HostOrder host_order_{*context_, buffers_, submissions_};
     backends::HandleTable<CompiledProgram> programs_;
 };
 

@@ -109,7 +109,8 @@ class VulkanDevice final : public compute::Device {
                                      memory.bytes};
     }
 
-    compute::HostSync* host_sync() override { return &submissions_; }
+    // A host's handles are of its own device.
+    compute::HostSync* host_sync() override { return context_->options.host ? &submissions_ : nullptr; }
 
   private:
     void free_retired(std::uint64_t finished, std::size_t most) {
@@ -123,7 +124,7 @@ class VulkanDevice final : public compute::Device {
     Transfers transfers_{*context_, once_};
     Buffers buffers_{*context_, transfers_};
     Pipelines pipelines_{*context_};
-    Submissions submissions_{*context_};
+    Submissions submissions_{*context_, buffers_};
     backends::HandleTable<CompiledProgram> programs_;
     // The host's command buffers, too, may refer to anything that was alive when they were recorded.
     backends::Retired<CompiledProgram> retired_programs_;

@@ -1,4 +1,5 @@
 #include "backends/vulkan/submissions.hpp"
+#include "backends/vulkan/host_copies.hpp"
 #include <algorithm>
 
 namespace wadi::vulkan {
@@ -85,25 +86,56 @@ Status Submissions::record_inputs(const Slot& slot, std::span<const StepInput> i
 Result<compute::Ticket> Submissions::submit(std::uint32_t index, std::span<const StepInput> inputs, const Update& update,
                                             VkCommandBuffer commands, compute::Program program) {
     Slot& slot = slots_[index];
-    const std::uint64_t ticket = last_ + 1;
     if (recording()) {
         record_boundary(host_commands_, inputs, update);
         c_.vk.vkCmdExecuteCommands(host_commands_, 1, &commands);
-        last_recorded_ = ticket;
     } else {
         if (Status s = record_inputs(slot, inputs, update); !s) return s;
-        if (Status s = send(slot, ticket, commands); !s) return s;
+        const VkCommandBuffer both[] = {slot.input, commands};
+        if (Status s = send(slot, both); !s) return s;
     }
-    ++c_.counters.submits;
-    last_ = ticket;
-    slot.ticket = ticket;
-    slot.program = program;
-    slot.promise = recording() ? promise_ : compute::SyncPoint{};
-    return compute::Ticket{ticket};
+    return give_out(slot, program);
 }
 
-Status Submissions::send(const Slot& slot, std::uint64_t ticket, VkCommandBuffer commands) {
-    const VkCommandBuffer both[] = {slot.input, commands};
+compute::Ticket Submissions::give_out(Slot& slot, compute::Program program) {
+    ++c_.counters.submits;
+    slot.ticket = ++last_;
+    slot.program = program;
+    slot.promise = recording() ? promise_ : compute::SyncPoint{};
+    if (recording()) last_recorded_ = last_;
+    return {last_};
+}
+
+template <class Record> Result<compute::Ticket> Submissions::submit_once(Record record) {
+    if (Status s = recording() ? ok_status() : check_order(); !s) return s;
+    auto index = acquire();
+    if (!index) return index.status();
+    Slot& slot = slots_[*index];
+    if (recording()) {
+        record(host_commands_);
+    } else {
+        auto info = vk_struct<VkCommandBufferBeginInfo>(VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO);
+        info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+        if (Status s = c_.check(c_.vk.vkBeginCommandBuffer(slot.own, &info), "vkBeginCommandBuffer"); !s) return s;
+        record(slot.own);
+        if (Status s = c_.check(c_.vk.vkEndCommandBuffer(slot.own), "vkEndCommandBuffer"); !s) return s;
+        if (Status s = send(slot, {&slot.own, 1}); !s) return s;
+    }
+    return give_out(slot, {});
+}
+
+Result<compute::Ticket> Submissions::copy_to_image(const compute::BufferRows& from, const compute::HostImage& to) {
+    const VkBuffer buffer = buffers_.find(from.buffer)->buffer;
+    return submit_once([&](VkCommandBuffer commands) { record_image_copy(c_, commands, buffer, from, to); });
+}
+
+Result<compute::Ticket> Submissions::copy_from(const compute::HostRows& from, compute::Buffer to) {
+    const VkBuffer buffer = buffers_.find(to)->buffer;
+    return submit_once([&](VkCommandBuffer commands) { record_rows_copy(c_, commands, from, buffer); });
+}
+
+Status Submissions::send(const Slot& slot, std::span<const VkCommandBuffer> commands) {
+    const std::uint64_t ticket = last_ + 1;
     const std::vector<VkPipelineStageFlags> stages(wait_semaphores_.size(), VK_PIPELINE_STAGE_ALL_COMMANDS_BIT);
     auto value = vk_struct<VkTimelineSemaphoreSubmitInfo>(VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO);
     value.waitSemaphoreValueCount = static_cast<std::uint32_t>(wait_values_.size());
@@ -111,8 +143,8 @@ Status Submissions::send(const Slot& slot, std::uint64_t ticket, VkCommandBuffer
     value.signalSemaphoreValueCount = 1;
     value.pSignalSemaphoreValues = &ticket;
     auto info = vk_struct<VkSubmitInfo>(VK_STRUCTURE_TYPE_SUBMIT_INFO);
-    info.commandBufferCount = 2;
-    info.pCommandBuffers = both;
+    info.commandBufferCount = static_cast<std::uint32_t>(commands.size());
+    info.pCommandBuffers = commands.data();
     if (c_.timeline) {
         info.pNext = &value;
         info.waitSemaphoreCount = static_cast<std::uint32_t>(wait_semaphores_.size());
@@ -155,6 +187,10 @@ Status Submissions::signal_after(const compute::SyncPoint& point) {
     info.pSignalSemaphores = &semaphore;
     return c_.check(c_.vk.vkQueueSubmit(c_.queue, 1, &info, VK_NULL_HANDLE), "vkQueueSubmit");
 }
+
+Status Submissions::wait_event(void* event) { return record_event(event); }
+
+Status Submissions::record_event(void*) { return compute::no_host_sync(c_.capabilities.backend, "CUDA events"); }
 
 Status Submissions::begin_recording(void* commands, const compute::SyncPoint& promise) {
     if (Status s = check_timeline(); !s) return s;

@@ -1,7 +1,7 @@
 // The queue of submissions in flight: tickets, their completion, the commands that bring each step's input, the host's
-// semaphores, and recording into the host's command buffer.
+// semaphores and images, and recording into the host's command buffer.
 #pragma once
-#include "backends/vulkan/memory.hpp"
+#include "backends/vulkan/buffers.hpp"
 #include <array>
 #include <vector>
 
@@ -12,7 +12,7 @@ class Submissions final : public compute::HostSync {
     /// Submissions in flight at most; also the number of copies of anything that one submission must own.
     static constexpr std::uint32_t most_in_flight = 32;
 
-    explicit Submissions(Context& context) : c_(context) {}
+    Submissions(Context& context, const Buffers& buffers) : c_(context), buffers_(buffers) {}
     ~Submissions();
     Submissions(const Submissions&) = delete;
     Submissions& operator=(const Submissions&) = delete;
@@ -36,6 +36,11 @@ class Submissions final : public compute::HostSync {
 
     Status wait_before(std::span<const compute::SyncPoint> points) override;
     Status signal_after(const compute::SyncPoint& point) override;
+    /// Refused: CUDA's events are none of Vulkan's.
+    Status wait_event(void* event) override;
+    Status record_event(void* event) override;
+    Result<compute::Ticket> copy_to_image(const compute::BufferRows& from, const compute::HostImage& to) override;
+    Result<compute::Ticket> copy_from(const compute::HostRows& from, compute::Buffer to) override;
     /// Until end_recording() submit() records into `commands`; its programs' command buffers must then be secondary ones.
     Status begin_recording(void* commands, const compute::SyncPoint& promise) override;
     Status end_recording() override;
@@ -68,12 +73,18 @@ class Submissions final : public compute::HostSync {
         compute::SyncPoint promise; // of recorded work; semaphore 0 = went to the queue
     };
     Status record_inputs(const Slot& slot, std::span<const StepInput> inputs, const Update& update);
-    Status send(const Slot& slot, std::uint64_t ticket, VkCommandBuffer commands);
+    /// Submits, or records, commands that run once: record(commands).
+    template <class Record> Result<compute::Ticket> submit_once(Record record);
+    /// Submits to the queue as the next ticket.
+    Status send(const Slot& slot, std::span<const VkCommandBuffer> commands);
+    /// Gives out the next ticket, for what was sent or recorded with this slot.
+    compute::Ticket give_out(Slot& slot, compute::Program program);
     void record_boundary(VkCommandBuffer commands, std::span<const StepInput> inputs, const Update& update);
     Status check_timeline() const;
     Result<std::uint64_t> value_of(VkSemaphore semaphore);
 
     Context& c_;
+    const Buffers& buffers_;
     VkCommandPool pool_ = VK_NULL_HANDLE;
     VkSemaphore timeline_ = VK_NULL_HANDLE; // its value is the newest finished ticket
     Memory inputs_;

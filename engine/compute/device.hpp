@@ -122,11 +122,6 @@ struct DeviceCounters {
     std::uint64_t validation_messages = 0; // warnings and errors from validation layers
 };
 
-/// Names a submission; tickets of one device finish in order.
-struct Ticket {
-    std::uint64_t value = 0;
-};
-
 /// A device runs programs. Calls come from one thread at a time, and no exception leaves one.
 /// After device_lost every call that needs the device returns device_lost, and finished() is true.
 /// What bad_argument stands for here, the front end of all backends refuses (backends/common/front_end.hpp); a backend, which
@@ -181,7 +176,8 @@ class Device {
 
     /// What a host passes to its own API. Errors: bad_argument (no such buffer).
     virtual Result<NativeBuffer> native(Buffer buffer) = 0;
-    /// The host's semaphores and command buffers. Null where a backend has none; the front end's is never null and refuses.
+    /// The host's semaphores, events, images and command buffers. Null where a device has none; the front end's is never null and
+    /// refuses.
     virtual HostSync* host_sync() { return nullptr; }
 
     /// Makes every later call return device_lost, as a real fault would: for tests of the host's reaction. Of the front end

@@ -2,8 +2,8 @@
 
 namespace wadi::compute {
 
-Status no_host_sync(const std::string& backend) {
-    return error(Code::not_supported, "the backend " + backend + " has no semaphores or command buffers of a host");
+Status no_host_sync(const std::string& backend, const char* what) {
+    return error(Code::not_supported, "a world of the backend " + backend + " knows no " + what + " of a host");
 }
 
 } // namespace wadi::compute

@@ -20,6 +20,10 @@ struct Pipeline {
 struct Program {
     std::uint32_t id = 0;
 };
+/// Names a submission; tickets of one device finish in order.
+struct Ticket {
+    std::uint64_t value = 0;
+};
 
 /// The active tiles of a step, as mark_, count_ and list_active_tiles write them. A dispatch that has them runs over those tiles
 /// instead of its range, a rim stage over all of its range; both put the step's number into `activity` of every tile in which

@@ -30,6 +30,15 @@ Status CommandLog::write_region(EditLayer layer, const Region& region, std::span
     return status;
 }
 
+Status CommandLog::write_values(EditLayer layer, const Region& region, const ValueSource& from) {
+    if (remember_)
+        return error(Code::not_supported,
+                     "the command log is on and cannot remember values that the host does not see; write them "
+                     "with wadi_world_write_region");
+    auto status = stepper_.finish_step();
+    return status ? values_.write(layer, region, from) : status;
+}
+
 Status CommandLog::trim() {
     auto status = stepper_.finish_step();
     if (status) status = wadi::trim(state_, stepper_);

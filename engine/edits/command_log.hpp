@@ -2,6 +2,7 @@
 // the same level, which then goes through the same states to the bit.
 #pragma once
 #include "engine/edits/regions.hpp"
+#include "engine/edits/value_writes.hpp"
 #include <map>
 #include <variant>
 
@@ -38,12 +39,15 @@ Result<CommandList> read_commands(std::span<const std::byte> bytes);
 /// The way for commands into a world: runs or queues them and remembers them where that was asked for.
 class CommandLog {
   public:
-    CommandLog(WorldState& state, Stepper& stepper, Edits& edits) : state_(state), stepper_(stepper), edits_(edits) {}
+    CommandLog(WorldState& state, Stepper& stepper, Edits& edits, ValueWrites& values)
+        : state_(state), stepper_(stepper), edits_(edits), values_(values) {}
 
     /// Queues edits for their steps. Errors: bad_argument, and nothing is queued.
     Status edit(std::span<const Edit> edits);
     /// The state between two steps is changed: what is left of a step begun in parts runs first. Errors: regions.hpp.
     Status write_region(EditLayer layer, const Region& region, std::span<const float> values);
+    /// The same for values that the log could not remember. Errors: not_supported (it is on), ValueWrites::write().
+    Status write_values(EditLayer layer, const Region& region, const ValueSource& from);
     Status trim();
     /// A number of the material, by its index in material_keys(), from the next step on. Errors, nothing changed:
     /// check_material_change(), Stepper::set_material().
@@ -73,6 +77,7 @@ class CommandLog {
     WorldState& state_;
     Stepper& stepper_;
     Edits& edits_;
+    ValueWrites& values_;
     bool remember_ = false;
     std::vector<Command> remembered_;
     std::multimap<std::uint64_t, Command> played_; // all but edits: they wait for their step, in order

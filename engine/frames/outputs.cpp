@@ -234,10 +234,11 @@ Result<OutputView> Outputs::view(Output output, OutputSet set) const {
     const bool missing = published_ < (set == OutputSet::previous ? 2u : 1u);
     if (missing) return error(Code::not_ready, "output " + name + " was not published yet; it is after the next update");
     const std::size_t at = set == OutputSet::previous ? previous() : current();
-    auto native = (*state_.device()).native(between ? buffers_[interpolated_label(output)] : buffer(output, at));
-    if (!native) return native.status();
     OutputView view;
-    view.buffer = *native;
+    view.buffer = between ? buffers_[interpolated_label(output)] : buffer(output, at);
+    auto native = (*state_.device()).native(view.buffer);
+    if (!native) return native.status();
+    view.native = *native;
     view.format = kind_of(output).format;
     view.offset = first_byte(output);
     view.row_pitch = static_cast<std::uint64_t>(state_.layout().pitch()) * view.format.bytes();
@@ -246,6 +247,20 @@ Result<OutputView> Outputs::view(Output output, OutputSet set) const {
     view.step = sets_[at].step;
     view.finished = state_.device().finished(between ? interpolations_[1] : sets_[at].ticket);
     return view;
+}
+
+Status Outputs::copy_to_image(Output output, OutputSet set, const Region& cells, const compute::HostImage& to) {
+    auto found = view(output, set);
+    if (!found) return found.status();
+    const std::uint64_t bytes = found->format.bytes();
+    const compute::BufferRows from{.buffer = found->buffer,
+                                   .offset = found->offset + static_cast<std::uint64_t>(cells.j0) * found->row_pitch +
+                                             static_cast<std::uint64_t>(cells.i0) * bytes,
+                                   .row_pitch = found->row_pitch,
+                                   .texel_bytes = static_cast<std::uint32_t>(bytes),
+                                   .width = static_cast<std::uint32_t>(cells.nx),
+                                   .height = static_cast<std::uint32_t>(cells.ny)};
+    return (*state_.device()).host_sync()->copy_to_image(from, to).status(); // of a front end: never null
 }
 
 Result<Outputs::HostView> Outputs::host_view(Output output) {

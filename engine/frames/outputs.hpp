@@ -39,7 +39,8 @@ enum class OutputSet { previous, current, interpolated };
 
 /// A published field on the device.
 struct OutputView {
-    compute::NativeBuffer buffer;
+    compute::Buffer buffer;
+    compute::NativeBuffer native;
     std::uint64_t offset = 0;    // of cell (0, 0) [bytes]
     std::uint64_t row_pitch = 0; // [bytes]
     int nx = 0, ny = 0;
@@ -71,6 +72,10 @@ class Outputs {
 
     /// Errors: bad_argument (not asked for), not_ready (not published yet).
     Result<OutputView> view(Output output, OutputSet set) const;
+    /// Copies cells within the grid of an output into an image of the host's, on the device and behind everything submitted; `to`
+    /// must have room. Errors: those of view(), not_supported (a device without the host's images), not_ready (it would overtake
+    /// recorded work).
+    Status copy_to_image(Output output, OutputSet set, const Region& cells, const compute::HostImage& to);
     /// The newest copy in host memory; its rows are row_pitch bytes apart. Errors: bad_argument (not asked for), not_ready.
     struct HostView {
         const std::byte* data = nullptr;

@@ -116,7 +116,7 @@ void native_handles(Session&, Device& device, Expect& expect) {
     device.destroy_buffer(other);
 }
 
-// Null semaphores and command buffers. The working of both is shown by samples/vulkan_host_minimal.
+// Null semaphores, events, images and command buffers. The working of both is shown by samples/vulkan_host_minimal.
 void host_sync_refusals(Session&, Device& device, Expect& expect) {
     compute::HostSync* sync = device.host_sync();
     expect.that(sync != nullptr, "the front end has no host_sync()");
@@ -128,7 +128,33 @@ void host_sync_refusals(Session&, Device& device, Expect& expect) {
     expect.refused(sync->begin_recording(nullptr, null[0]), "begin_recording: the semaphore is null", "begin_recording");
     expect.refused(sync->begin_recording(nullptr, {1, 1}), "begin_recording: the command buffer is null", "begin_recording");
     expect.refused(sync->end_recording(), "end_recording: no recording is under way", "end_recording");
+    expect.refused(sync->wait_event(nullptr), "wait_event: the event is null", "wait_event");
+    expect.refused(sync->record_event(nullptr), "record_event: the event is null", "record_event");
     const Buffer buffer = buffer_of(device, {9});
+    const compute::BufferRows one{.buffer = buffer, .row_pitch = 4, .texel_bytes = 4, .width = 1, .height = 1};
+    const auto copied = [&](auto change) {
+        auto rows = one;
+        change(rows);
+        return sync->copy_to_image(rows, {.image = 1}).status();
+    };
+    expect.refused(sync->copy_to_image(one, {}).status(), "copy_to_image: the image is null", "copy_to_image");
+    expect.refused(copied([](auto& r) { r.width = 2; }), "copy_to_image: rows of 2 texels of 4 bytes, 1 of them 4 bytes apart",
+                   "a row");
+    expect.refused(copied([](auto& r) { r.row_pitch = 6; }), "copy_to_image: rows of 1 texels of 4 bytes, 1 of them 6 bytes",
+                   "a pitch");
+    expect.refused(copied([](auto& r) { r.height = 2; }), "copy_to_image", "a row beyond the buffer");
+    expect.refused(copied([](auto& r) { r.buffer = {4'000'000'000u}; }), "copy_to_image", "no buffer");
+    expect.that(copied([](auto&) {}).code == Code::not_supported, "a device of its own copies into a host's image");
+    const compute::HostRows rows{.handle = 1, .row_pitch = 4, .width = 1, .height = 1};
+    auto wrong = rows;
+    wrong.handle = 0;
+    expect.refused(sync->copy_from(wrong, buffer).status(), "copy_from: the handle is null", "copy_from");
+    wrong = rows;
+    wrong.offset = 2;
+    expect.refused(sync->copy_from(wrong, buffer).status(), "copy_from: rows of 1 numbers", "an offset");
+    wrong = rows;
+    wrong.height = 2;
+    expect.refused(sync->copy_from(wrong, buffer).status(), "copy_from", "rows beyond the buffer");
     expect.that(words_of(device, buffer, 1) == std::vector<std::uint32_t>{9}, "a refused recording stops the queue");
     device.destroy_buffer(buffer);
 }

@@ -69,7 +69,7 @@ const std::vector<Control>& controls() {
              const std::size_t cell = largest_cell(out);
              set_word(out, cell, out.words()[cell] + 64);
          }},
-        {"ledger_by_one_quantum", Outcome::fail, "account_sides apply_rain apply_sources apply_edits",
+        {"ledger_by_one_quantum", Outcome::fail, "account_sides apply_rain apply_sources apply_edits write_values",
          [](const auto& stage, auto& buffers) {
              for (std::size_t b = 0; b < buffers.size(); ++b)
                  if (stage.bindings[b].name.ends_with("ledger")) set_word(buffers[b], 0, buffers[b].words()[0] + 1);

@@ -2,6 +2,7 @@
 #include "tests/conformance/active_tiles_check.hpp"
 #include "tests/conformance/edits_check.hpp"
 #include "tests/conformance/stage_inputs.hpp"
+#include "tests/conformance/values_check.hpp"
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -182,6 +183,7 @@ constexpr Definition definitions[] = {
     {"mark_limits", check_marks},
     {"sample_points", check_samples},
     {"apply_edits", check_edits},
+    {"write_values", check_values},
     {"mark_active_tiles", check_active_tiles},
     {"choose_active_tiles", check_active_tiles},
     {"look_into_tiles", check_active_tiles},

@@ -5,6 +5,7 @@
 #include "tests/conformance/edits_check.hpp"
 #include "tests/conformance/fields.hpp"
 #include "tests/conformance/stage_checks.hpp"
+#include "tests/conformance/values_check.hpp"
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -147,7 +148,8 @@ std::uint32_t ledger_start(std::size_t word) { return 0xFFFFFF00u + static_cast<
 
 compute::Range2 written_range(const std::string& stage, const std::string& base, const WorldParams& params) {
     if (stage == "open_sides" && base == "water_height") return {-1, -1, params.nx + 1, params.ny + 1};
-    if (stage == "apply_edits" && base == "terrain") return {-GHOST, -GHOST, params.nx + 1 + GHOST, params.ny + 1 + GHOST};
+    if ((stage == "apply_edits" || stage == "write_values") && base == "terrain")
+        return {-GHOST, -GHOST, params.nx + 1 + GHOST, params.ny + 1 + GHOST};
     return values_of(base, params);
 }
 
@@ -173,6 +175,10 @@ std::vector<BenchBuffer> stage_buffers(const compute::StageInfo& stage, const Sc
             std::vector<std::uint32_t> words(STAMP_PAGE, nan_word);
             std::size_t at = 0;
             for (const float value : stamp_of_cases().values) words[at++] = std::bit_cast<std::uint32_t>(value);
+            fill_words(buffers[b], std::move(words), false);
+        } else if (binding.name == "written_values") {
+            std::vector<std::uint32_t> words;
+            for (const float value : values_of_cases(scene)) words.push_back(std::bit_cast<std::uint32_t>(value));
             fill_words(buffers[b], std::move(words), false);
         } else if (binding.name == "source_ledger") {
             fill_words(buffers[b],

@@ -7,6 +7,7 @@
 #include "tests/conformance/masks.hpp"
 #include "tests/conformance/stage_checks.hpp"
 #include "tests/conformance/stage_inputs.hpp"
+#include "tests/conformance/values_check.hpp"
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -74,14 +75,14 @@ Verdict compare_with_reference(const StageRun& run) {
     return verdict;
 }
 
-// A stage with half storage: what it computes without it from the same inputs, rounded where it is stored. The two that change a
+// A stage with half storage: what it computes without it from the same inputs, rounded where it is stored. Those that change a
 // cell more than once round in between.
 Verdict check_half_storage(compute::Device& device, int stage, std::uint32_t mask, const StageRun& run,
                            const std::vector<BenchBuffer>& rounded, std::span<const BenchBuffer> got) {
     std::vector<BenchBuffer> full = rounded;
     if (auto status = run_bench(device, stage, mask & ~EFFECT_HALF_STORAGE, run.params, run.pilot.input, {}, full); !status)
         return verdict_of(status);
-    const bool repeats = run.stage.name == "apply_edits" || run.stage.name == "apply_sources";
+    const bool repeats = run.stage.name == "apply_edits" || run.stage.name == "apply_sources" || run.stage.name == "write_values";
     Verdict verdict;
     for (std::size_t b = 0; b < full.size(); ++b) {
         const auto& binding = run.stage.bindings[b];
@@ -178,6 +179,7 @@ Verdict run_stage_case(const CaseSpec& spec, compute::Device& device, const Tamp
     if (lists_active_tiles(spec.name)) add_active_tiles(*scene, pilot.input);
     const WorldParams params = derive_params(scene->settings, scene->effects);
     if (spec.name == "apply_edits") add_edits(*scene, pilot.input);
+    if (spec.name == "write_values") add_values(*scene, pilot.input);
     auto buffers = stage_buffers(info, *scene, pilot, params);
     if (half) {
         for (std::size_t b = 0; b < buffers.size(); ++b)

@@ -197,7 +197,7 @@ std::string check_reference(const Case& c, Session& session) {
 
 const std::vector<std::string>& check_names() {
     static const std::vector<std::string> names = {"books", "bits",  "image", "reference", "driver", "save",
-                                                   "log",   "calls", "shift", "fused",     "tiles"};
+                                                   "log",   "calls", "shift", "fused",     "tiles",  "values"};
     return names;
 }
 
@@ -269,6 +269,7 @@ Outcome run_case(const Case& c, Devices& devices, Weaken weaken, const std::stri
     });
     made("fused", 0.3, [&] { return check_fused(weakened, *devices.others.back(), base); });
     made("tiles", 0.5, [&] { return check_tiles(weakened, *devices.others.back(), base, random, weaken); });
+    made("values", 0.3, [&] { return check_values(weakened, twin, *devices.plain, *devices.others.back(), random); });
     return outcome;
 }
 

@@ -49,5 +49,7 @@ std::string check_calls(const Case& c, const Case& twin, Session& session);
 /// The case on a dry plateau and `twin` a few cells away from there: the same bits, but for the place. Not compared where
 /// something came near to the rim.
 std::string check_shift(const Case& c, const Case& twin, Session& session, Random& random, bool& compared);
+/// Regions written between steps, checked on the host in one world and on the device in the world of `twin`: the same bits.
+std::string check_values(const Case& c, const Case& twin, Session& session, Session& other, Random& random);
 
 } // namespace wadi::fuzz

@@ -27,7 +27,7 @@ def main():
             assert code == 1 and f"FAILED {check}" in text, f"{weaken}: the level passes:\n{text}"
             code, text = run(program, "--level", level, "--check", "save", "--backend", "cpu")
             assert weaken != "bits" or code == 0, f"a sound level fails another check:\n{text}"
-    for check in ("calls", "shift"):
+    for check in ("calls", "shift", "values"):
         with tempfile.TemporaryDirectory() as folder:
             code, text = run(program, "--scenes", "30", "--weaken", "bits", "--check", check, "--out", folder, "--failures", "1", *common)
             assert code == 1 and f"{check}: " in text, f"other bits are not found by {check}:\n{text}"

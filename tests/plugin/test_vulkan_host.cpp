@@ -1,34 +1,10 @@
 // Worlds on a host's own Vulkan device: what they refuse, and a promotion in the middle of a recording. What works every frame is
 // tested by samples/vulkan_host_minimal.
-#include "tests/plugin/abi_worlds.hpp"
-#include <doctest/doctest.h>
-extern "C" {
-#include "samples/vulkan_host_minimal/host.h"
-}
+#include "tests/plugin/vulkan_test_host.hpp"
 
 using namespace wadi::test;
 
 namespace {
-
-struct VulkanHost {
-    wadi_vulkan_host vulkan = make_device(0);
-    VkSemaphore semaphore = make_timeline(&vulkan, 0);
-    VulkanHost() = default;
-    VulkanHost(const VulkanHost&) = delete;
-    VulkanHost& operator=(const VulkanHost&) = delete;
-    ~VulkanHost() {
-        vkDestroySemaphore(vulkan.device, semaphore, nullptr);
-        destroy_device(&vulkan);
-    }
-};
-
-bool has_vulkan() {
-    for (const auto& name : abi_backends()) {
-        if (name == "vulkan") return true;
-    }
-    MESSAGE("SKIPPED: no Vulkan device here");
-    return false;
-}
 
 wadi_result create(const char* backend, const wadi_vulkan_host* host, wadi_world_id& world) {
     auto options = wadi_default_device_options();
@@ -48,43 +24,6 @@ wadi_edit heap_of_sand() {
     edit.y0 = 2.5;
     edit.amount = 0.5;
     return edit;
-}
-
-// Records calls into a command buffer of the host's, submits it and waits.
-template <class Calls> void record(const VulkanHost& host, wadi_world_id world, std::uint64_t value, Calls calls) {
-    VkCommandPoolCreateInfo pool_info{};
-    pool_info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
-    pool_info.queueFamilyIndex = host.vulkan.queue_family;
-    VkCommandPool pool{};
-    check_vk(vkCreateCommandPool(host.vulkan.device, &pool_info, nullptr, &pool), "vkCreateCommandPool");
-    VkCommandBufferAllocateInfo allocate{};
-    allocate.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-    allocate.commandPool = pool;
-    allocate.commandBufferCount = 1;
-    VkCommandBuffer commands{};
-    check_vk(vkAllocateCommandBuffers(host.vulkan.device, &allocate, &commands), "vkAllocateCommandBuffers");
-    VkCommandBufferBeginInfo begin{};
-    begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
-    check_vk(vkBeginCommandBuffer(commands, &begin), "vkBeginCommandBuffer");
-    const wadi_vulkan_sync promise{host.semaphore, value};
-    REQUIRE(wadi_vulkan_begin_recording(world, commands, &promise) == WADI_OK);
-    calls();
-    CHECK(wadi_vulkan_end_recording(world) == WADI_OK);
-    check_vk(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
-    VkTimelineSemaphoreSubmitInfo values{};
-    values.sType = VK_STRUCTURE_TYPE_TIMELINE_SEMAPHORE_SUBMIT_INFO;
-    values.signalSemaphoreValueCount = 1;
-    values.pSignalSemaphoreValues = &value;
-    VkSubmitInfo submit{};
-    submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
-    submit.pNext = &values;
-    submit.commandBufferCount = 1;
-    submit.pCommandBuffers = &commands;
-    submit.signalSemaphoreCount = 1;
-    submit.pSignalSemaphores = &host.semaphore;
-    check_vk(vkQueueSubmit(host.vulkan.queue, 1, &submit, VK_NULL_HANDLE), "vkQueueSubmit");
-    wait_for(&host.vulkan, host.semaphore, value);
-    vkDestroyCommandPool(host.vulkan.device, pool, nullptr);
 }
 
 } // namespace
@@ -144,12 +83,12 @@ TEST_CASE("an edit of a new material promotes in the middle of a recording, same
     const AbiWorld recorded(make_world("vulkan", &host.vulkan)), twin(make_world("cpu", nullptr));
     const auto edit = heap_of_sand();
     std::uint64_t value = 0;
-    record(host, recorded.id, ++value, [&] {
+    record(host, recorded.id, ++value, [&](VkCommandBuffer) {
         CHECK(wadi_world_step(recorded.id, 2) == WADI_OK);
         CHECK(wadi_world_edit(recorded.id, &edit, 1) == WADI_OK);
         CHECK(wadi_world_step(recorded.id, 1) == WADI_OK);
     });
-    record(host, recorded.id, ++value, [&] { CHECK(wadi_world_step(recorded.id, 4) == WADI_OK); });
+    record(host, recorded.id, ++value, [&](VkCommandBuffer) { CHECK(wadi_world_step(recorded.id, 4) == WADI_OK); });
     step(twin, 2);
     CHECK(wadi_world_edit(twin.id, &edit, 1) == WADI_OK);
     step(twin, 5);

@@ -681,6 +681,37 @@ WADI_API wadi_result wadi_world_create_stamp(wadi_world_id world, int32_t nx, in
 WADI_API wadi_result wadi_world_write_region(wadi_world_id world, wadi_field field, const wadi_region* region, const float* values,
                                              size_t count);
 
+/** Rows of floats in memory of the device or the host, the south first. */
+typedef struct wadi_device_values {
+    uint32_t struct_size;
+    wadi_handle_kind handle_kind; /* HOST_POINTER: any world, read before the call returns. Else memory of the API that the world runs
+                                     in: CUDA_POINTER of its device, or VULKAN_BUFFER of its vulkan_host, made with
+                                     VK_BUFFER_USAGE_TRANSFER_SRC_BIT, CONCURRENT or owned by queue_family */
+    uint64_t handle;              /* address, or VkBuffer */
+    uint64_t offset;              /* of the region's south-west value [bytes], a multiple of 4 */
+    uint64_t row_pitch;           /* [bytes], a multiple of 4, at least 4 * nx of the region; 0 = 4 * nx */
+} wadi_device_values;
+static inline wadi_device_values wadi_default_device_values(void) {
+    WADI_ZERO_STRUCT(wadi_device_values);
+    return value;
+}
+/** wadi_world_write_region of values that the host need not see: copied and checked on the device, after the steps asked for. A value
+ *  that wadi_world_write_region takes gives the same bits, and with method.quantum above 0 the same counts. Which it refuses the host
+ *  cannot be told in time:
+ *  too high or too low   is cut to what the cell has room for; what was cut (beyond twice method.largest_height: that) is counted in
+ *                        wadi_world_stats.refused;
+ *  NaN or infinite       the cell stays as it is, and method.largest_height is counted there.
+ *  SAND_DEPTH and TOTAL_WATER_DEPTH promote the world whatever the values are. Device memory is read behind all that the host put on
+ *  the world's queue and points of wadi_vulkan_wait, with CUDA behind events of wadi_cuda_wait; until that is done (behind
+ *  wadi_vulkan_signal, wadi_cuda_signal, or on the queue) it must stay as it is.
+ *  Waits: room for a larger region than before, and for compilers of drivers at first; of HOST_POINTER the fifth write for the first;
+ *  while the device's queue is full.
+ *  Errors: BAD_ARGUMENT (another field, a region outside, a field of `values`: the message says what is allowed; `effects` forced off),
+ *  NOT_SUPPORTED (while the command log is on; device memory where the world knows none of the host's), NOT_READY (recorded work would
+ *  be overtaken), OUT_OF_MEMORY. */
+WADI_API wadi_result wadi_world_write_region_from(wadi_world_id world, wadi_field field, const wadi_region* region,
+                                                  const wadi_device_values* values);
+
 /** Compiles the pipelines of every effect that the level allows, so that a later promotion only allocates and records.
  *  Costs time once (GPU drivers: up to seconds) and next to no memory; call it while loading.
  *  Waits: for compilers of drivers. */
@@ -770,7 +801,7 @@ WADI_API wadi_result wadi_world_roll_back(wadi_world_id world, uint64_t step, ui
 
 /** 1 = from now on remember every edit, written region, trim and change of the material with its step, in host memory that grows;
  *  0 = stop and drop the log.
- *  Off at first. Going back in time drops what was remembered for later steps. */
+ *  Off at first. Going back in time drops what was remembered for later steps. While it is on wadi_world_write_region_from is refused. */
 WADI_API wadi_result wadi_world_set_command_log(wadi_world_id world, wadi_bool on);
 /** The log as bytes, with all stamps of the world: a few dozen bytes per edit, versioned and checksummed.
  *  *size: bytes at `data` in, bytes of the log out; data may be NULL to ask the number.

@@ -1,4 +1,4 @@
-/* Written by plugin/write_api.py from wadi.h. For hosts that open the library at run time and run on without it; C99.
+/* Written by plugin/write_api.py from wadi.h and wadi_cuda.h. For hosts that open the library at run time and run on without it; C99.
  *
  * Define WADI_LOADER_IMPLEMENTATION in one file ahead of including this. The functions are members of a table:
  *   wadi_functions wadi;
@@ -8,7 +8,7 @@
 #ifndef WADI_LOADER_H
 #define WADI_LOADER_H
 
-#include <wadi/wadi.h>
+#include <wadi/wadi_cuda.h>
 
 #define WADI_FUNCTIONS(X) \
     X(uint32_t, get_abi_version, (void)) \
@@ -44,6 +44,7 @@
     X(wadi_result, world_edit, (wadi_world_id world, const wadi_edit* edits, uint32_t count)) \
     X(wadi_result, world_create_stamp, (wadi_world_id world, int32_t nx, int32_t ny, const float* values, uint32_t* stamp)) \
     X(wadi_result, world_write_region, (wadi_world_id world, wadi_field field, const wadi_region* region, const float* values, size_t count)) \
+    X(wadi_result, world_write_region_from, (wadi_world_id world, wadi_field field, const wadi_region* region, const wadi_device_values* values)) \
     X(wadi_result, world_prepare_effects, (wadi_world_id world)) \
     X(wadi_result, world_trim, (wadi_world_id world)) \
     X(wadi_result, world_get_material, (wadi_world_id world, wadi_material_info* infos, uint32_t* count)) \
@@ -66,7 +67,9 @@
     X(wadi_result, world_get_memory, (wadi_world_id world, wadi_memory_item* items, uint32_t* count)) \
     X(wadi_result, world_set_profiling, (wadi_world_id world, wadi_bool on)) \
     X(wadi_result, world_get_stage_timings, (wadi_world_id world, wadi_stage_timing* timings, uint32_t* count)) \
-    X(wadi_result, world_get_error, (wadi_world_id world))
+    X(wadi_result, world_get_error, (wadi_world_id world)) \
+    X(wadi_result, cuda_wait, (wadi_world_id world, void* event)) \
+    X(wadi_result, cuda_signal, (wadi_world_id world, void* event))
 
 typedef struct wadi_functions {
 #define WADI_MEMBER(RETURNS, NAME, ARGUMENTS) RETURNS (*NAME) ARGUMENTS;

@@ -64,6 +64,38 @@ WADI_API wadi_result wadi_vulkan_begin_recording(wadi_world_id world, VkCommandB
 /** Ends it with a barrier behind which the host's compute and transfer commands see the results; other stages need the host's own. */
 WADI_API wadi_result wadi_vulkan_end_recording(wadi_world_id world);
 
+/** Where an output goes in an image of the host's: 2D or an array of them, colour, one sample, made with
+ *  VK_IMAGE_USAGE_TRANSFER_DST_BIT, CONCURRENT or owned by queue_family. It must be there until the copy is done. */
+typedef struct wadi_vulkan_image {
+    uint32_t struct_size;
+    VkImage image;
+    VkFormat format;           /* of the image, which must be the output's: VK_FORMAT_R32_SFLOAT, _R32G32_SFLOAT, _R32G32B32A32_SFLOAT or
+                                  _R16G16B16A16_SFLOAT, as wadi_output_view.format has it */
+    uint32_t width, height;    /* of mip level 0 [texels] */
+    uint32_t mip_level, array_layer; /* the one that is written; the others keep layout and contents */
+    VkImageLayout old_layout;  /* its layout ahead of the copy: UNDEFINED (default; texels that are not written are lost), GENERAL,
+                                  SHADER_READ_ONLY_OPTIMAL, TRANSFER_SRC_OPTIMAL or TRANSFER_DST_OPTIMAL */
+    VkImageLayout new_layout;  /* and behind it: one of the same but UNDEFINED; default SHADER_READ_ONLY_OPTIMAL */
+    uint32_t x, y;             /* texel of the first cell; the next row north has the next y */
+    wadi_region cells;         /* those that are copied; nx = ny = 0: all */
+} wadi_vulkan_image;
+static inline wadi_vulkan_image wadi_default_vulkan_image(void) {
+    WADI_ZERO_STRUCT(wadi_vulkan_image);
+    value.new_layout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    return value;
+}
+/** Copies an output (what wadi_world_get_view gives) into an image, a cell to a texel, in a submission of its own: behind all that the
+ *  world and the host gave to `queue` so far and points of wadi_vulkan_wait, ahead of wadi_vulkan_signal, or into the host's command
+ *  buffer between wadi_vulkan_begin_recording and _end_recording. What comes behind it on the queue, or in that command buffer, sees the
+ *  texels in new_layout without a barrier of its own.
+ *  Waits: while the device's queue is full (32 submissions).
+ *  Errors, nothing copied: BAD_ARGUMENT (a field of the image, cells outside the grid: the message says what is allowed; no such output
+ *  or set, not asked for), NOT_READY (not published yet; 32 recorded submissions are ahead, or recorded work would be overtaken),
+ *  NOT_SUPPORTED (the world runs on no Vulkan device of a host; with CUDA beside it, copy from the view's buffer behind
+ *  wadi_vulkan_signal). */
+WADI_API wadi_result wadi_vulkan_copy_output(wadi_world_id world, wadi_output output, wadi_output_set set,
+                                             const wadi_vulkan_image* image);
+
 #ifdef __cplusplus
 }
 #endif

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <vector>
-#include <wadi/wadi.h>
+#include <wadi/wadi_cuda.h>
 
 namespace {
 
@@ -33,7 +33,7 @@ const char* const LEVEL = R"({ "format_version": 1, "name": "calls", "grid": { "
 
 void call(Input& in, wadi_world_id& world, std::vector<unsigned char>& snapshot, std::vector<unsigned char>& log) {
     float cells[20];
-    switch (in.byte() % 18) {
+    switch (in.byte() % 20) {
     case 0:
         wadi_world_step(world, in.whole() % 5);
         break;
@@ -122,6 +122,21 @@ void call(Input& in, wadi_world_id& world, std::vector<unsigned char>& snapshot,
                                 cells, &stamp);
         break;
     }
+    case 18: {
+        const wadi_region region{static_cast<std::int32_t>(in.whole()), static_cast<std::int32_t>(in.whole()),
+                                 static_cast<std::int32_t>(in.whole() % 3), static_cast<std::int32_t>(in.whole() % 3)};
+        for (float& c : cells) c = static_cast<float>(in.number());
+        auto values = wadi_default_device_values(); // of at most 2 x 2 cells: within the 20
+        values.handle_kind = static_cast<wadi_handle_kind>(in.byte() < 200 ? 0 : in.whole());
+        values.handle = in.byte() < 200 ? reinterpret_cast<std::uintptr_t>(cells) : 0;
+        values.offset = in.byte() % 24;
+        values.row_pitch = in.byte() % 48;
+        wadi_world_write_region_from(world, static_cast<wadi_field>(in.byte() % 8), &region, &values);
+        break;
+    }
+    case 17: // no world here takes events: nobody looks into it
+        (in.byte() % 2 == 0 ? wadi_cuda_wait : wadi_cuda_signal)(world, in.byte() % 2 == 0 ? nullptr : cells);
+        break;
     default:
         if (in.byte() > 100) break;
         wadi_destroy_world(world); // calls go on with a dead id
