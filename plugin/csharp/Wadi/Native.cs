@@ -297,6 +297,22 @@ namespace Wadi
         public static extern Result wadi_world_write_region(WorldId world, Field field, Region* region, float* values, UIntPtr count);
 
         /// <summary>
+        /// wadi_world_write_region of values that the host need not see: copied and checked on the device, after the steps asked for.
+        /// A value that wadi_world_write_region takes gives the same bits, and with method.quantum above 0 the same counts. Which it
+        /// refuses the host cannot be told in time: too high or too low is cut to what the cell has room for; what was cut (beyond
+        /// twice method.largest_height: that) is counted in wadi_world_stats.refused; NaN or infinite the cell stays as it is, and
+        /// method.largest_height is counted there. SAND_DEPTH and TOTAL_WATER_DEPTH promote the world whatever the values are. Device
+        /// memory is read behind all that the host put on the world's queue and points of wadi_vulkan_wait, with CUDA behind events
+        /// of wadi_cuda_wait; until that is done (behind wadi_vulkan_signal, wadi_cuda_signal, or on the queue) it must stay as it
+        /// is. Waits: room for a larger region than before, and for compilers of drivers at first; of HOST_POINTER the fifth write
+        /// for the first; while the device's queue is full. Errors: BAD_ARGUMENT (another field, a region outside, a field of
+        /// `values`: the message says what is allowed; `effects` forced off), NOT_SUPPORTED (while the command log is on; device
+        /// memory where the world knows none of the host's), NOT_READY (recorded work would be overtaken), OUT_OF_MEMORY.
+        /// </summary>
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        public static extern Result wadi_world_write_region_from(WorldId world, Field field, Region* region, DeviceValues* values);
+
+        /// <summary>
         /// Compiles the pipelines of every effect that the level allows, so that a later promotion only allocates and records. Costs
         /// time once (GPU drivers: up to seconds) and next to no memory; call it while loading. Waits: for compilers of drivers.
         /// </summary>
@@ -407,7 +423,8 @@ namespace Wadi
 
         /// <summary>
         /// 1 = from now on remember every edit, written region, trim and change of the material with its step, in host memory that
-        /// grows; 0 = stop and drop the log. Off at first. Going back in time drops what was remembered for later steps.
+        /// grows; 0 = stop and drop the log. Off at first. Going back in time drops what was remembered for later steps. While it is
+        /// on wadi_world_write_region_from is refused.
         /// </summary>
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         public static extern Result wadi_world_set_command_log(WorldId world, int on);
@@ -471,5 +488,17 @@ namespace Wadi
         /// </summary>
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         public static extern Result wadi_world_get_error(WorldId world);
+
+        /// <summary>
+        /// The world's next submission waits on the device for the newest record of `event` ahead of this call; for nothing where
+        /// there is none. The event may be recorded anew, or destroyed, from here on. Errors: BAD_ARGUMENT (NULL, or no event of the
+        /// device's primary context), NOT_SUPPORTED (the world's backend is not cuda).
+        /// </summary>
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        public static extern Result wadi_cuda_wait(WorldId world, void* @event);
+
+        /// <summary>Records `event` behind everything that the world submitted so far. Errors: those of wadi_cuda_wait.</summary>
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        public static extern Result wadi_cuda_signal(WorldId world, void* @event);
     }
 }

@@ -569,6 +569,35 @@ namespace Wadi
         }
     }
 
+    /// <summary>Rows of floats in memory of the device or the host, the south first.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct DeviceValues
+    {
+        uint structSize;
+        /// <summary>
+        /// HOST_POINTER: any world, read before the call returns. Else memory of the API that the world runs in: CUDA_POINTER of its
+        /// device, or VULKAN_BUFFER of its vulkan_host, made with VK_BUFFER_USAGE_TRANSFER_SRC_BIT, CONCURRENT or owned by
+        /// queue_family
+        /// </summary>
+        public HandleKind HandleKind;
+        /// <summary>address, or VkBuffer</summary>
+        public ulong Handle;
+        /// <summary>of the region's south-west value [bytes], a multiple of 4</summary>
+        public ulong Offset;
+        /// <summary>[bytes], a multiple of 4, at least 4 * nx of the region; 0 = 4 * nx</summary>
+        public ulong RowPitch;
+        /// <summary>A struct with the size that the library asks for and the header's defaults.</summary>
+        public static unsafe DeviceValues Default
+        {
+            get
+            {
+                var value = new DeviceValues();
+                value.structSize = (uint)sizeof(DeviceValues);
+                return value;
+            }
+        }
+    }
+
     /// <summary>One number of the material.</summary>
     [StructLayout(LayoutKind.Sequential)]
     public struct MaterialInfo
