@@ -45,9 +45,9 @@ if [ "$(cat "$output/interface/version" 2>/dev/null)" != "$version" ]; then
         { cat "$output/interface/dump.log"; exit 1; }
     echo "$version" >"$output/interface/version"
 fi
-python3 "$here/generate.py" "$output/interface/extension_api.json" "$here/source" "$output/interface"
+python3 "$here/generate.py" "$output/interface/extension_api.json" "$here/source" "$here/doc_classes" "$output/interface"
 
-flags=(-std=c11 -fPIC -fvisibility=hidden -Wall -Wextra -Werror -I"$output/interface" -I"$root/plugin/include")
+flags=(-std=c11 -fPIC -fvisibility=hidden -Wall -Wextra -Werror -I"$output/interface" -I"$here/source" -I"$root/plugin/include")
 [ -n "$debug" ] && flags+=(-O0 -g) || flags+=(-O2)
 objects=()
 for source in "$here"/source/*.c "$output"/interface/*.c; do

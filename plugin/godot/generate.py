@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Writes engine_methods.h: the engine's methods that the C sources use, with the hashes by which the engine knows them.
+"""Writes engine_methods.h: the engine's methods that the C sources use, with the hashes by which the engine knows them; and class_docs.c:
+the texts of the class documentation.
 
-Usage: generate.py EXTENSION_API_JSON SOURCE_FOLDER OUTPUT_FOLDER
+Usage: generate.py EXTENSION_API_JSON SOURCE_FOLDER DOC_FOLDER OUTPUT_FOLDER
 The sources name a method ENGINE_Class_method or, of a built-in type, BUILTIN_Type_method; a name that the engine lacks is an error.
 """
 import json
@@ -37,11 +38,25 @@ def table(macro: str, enum: str, prefix: str, names: list, owners: dict) -> list
     return lines + [""]
 
 
+def class_docs(folder: pathlib.Path) -> str:
+    """The XML files as bytes: a text of C may not be that long."""
+    lines = ["/* Written by generate.py from doc_classes. */", '#include "class_docs.h"', ""]
+    names = []
+    for path in sorted(folder.glob("*.xml")):
+        names.append(path.stem)
+        data = path.read_bytes()
+        lines.append(f"static const char {path.stem}[] = {{")
+        lines += ["    " + ", ".join(str(byte) for byte in data[at : at + 32]) + "," for at in range(0, len(data), 32)]
+        lines.append("};")
+    lines += ["const ClassDoc class_docs[] = {", *[f"    {{{name}, sizeof {name}}}," for name in names], "    {0},", "};", ""]
+    return "\n".join(lines)
+
+
 def main() -> None:
-    if len(sys.argv) != 4:
+    if len(sys.argv) != 5:
         sys.exit(__doc__)
     api = json.loads(pathlib.Path(sys.argv[1]).read_text())
-    folder, output = pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3])
+    folder, docs, output = (pathlib.Path(word) for word in sys.argv[2:])
     sources = sorted([*folder.glob("*.c"), *folder.glob("*.h")])
     classes = {entry["name"]: entry for entry in api["classes"]}
     types = {entry["name"]: entry for entry in api["builtin_classes"]}
@@ -51,6 +66,7 @@ def main() -> None:
     lines += table("BUILTIN_METHODS", "BuiltinMethod", "BUILTIN", builtin, types)
     lines += ["#define BUILTIN_TYPES \\", *[f"    GDEXTENSION_VARIANT_TYPE_{snake(owner)}, \\" for owner, _ in builtin], "", ""]
     (output / "engine_methods.h").write_text("\n".join(lines))
+    (output / "class_docs.c").write_text(class_docs(docs))
 
 
 if __name__ == "__main__":

@@ -48,6 +48,7 @@ window() {
 }
 headless hash_cpu hash.gd -- "$work/castle" cpu
 headless hash_vulkan hash.gd -- "$work/castle" vulkan
+headless docs docs.gd -- "$root/plugin/godot/doc_classes"
 headless frames frames.gd --fixed-fps 60
 headless saves saves.gd
 headless floats floats.gd --fixed-fps 60

@@ -1,4 +1,5 @@
 /* The extension's entry, named in wadi.gdextension. */
+#include "class_docs.h"
 #include "engine.h"
 #include "float.h"
 #include "level.h"
@@ -9,8 +10,17 @@
 static const Class* const classes[] = {&level_class, &terrain_class, &float_class};
 enum { CLASS_COUNT = sizeof classes / sizeof *classes };
 
+/* The editor alone has help, and the function for it. */
+static void add_help(void) {
+    const GDExtensionsInterfaceEditorHelpLoadXmlFromUtf8CharsAndLen load =
+        (GDExtensionsInterfaceEditorHelpLoadXmlFromUtf8CharsAndLen)(void (*)(void))api.get_proc_address(
+            "editor_help_load_xml_from_utf8_chars_and_len");
+    for (const ClassDoc* doc = class_docs; load && doc->xml; ++doc) load(doc->xml, (GDExtensionInt)doc->size);
+}
+
 static void initialize(void* data, GDExtensionInitializationLevel level) {
     (void)data;
+    if (level == GDEXTENSION_INITIALIZATION_EDITOR) add_help();
     if (level != GDEXTENSION_INITIALIZATION_SCENE) return;
     for (int n = 0; n < CLASS_COUNT; ++n) register_class(classes[n]);
 }
