@@ -54,6 +54,18 @@ namespace Wadi
             return timings;
         }
 
+        /// <summary>What the world submits next runs behind a CUDA event (cudaEvent_t, CUevent) of the host.</summary>
+        public void CudaWait(IntPtr cudaEvent)
+        {
+            Check(Native.wadi_cuda_wait(Id, (void*)cudaEvent));
+        }
+
+        /// <summary>Records a CUDA event behind everything that the world submitted so far.</summary>
+        public void CudaSignal(IntPtr cudaEvent)
+        {
+            Check(Native.wadi_cuda_signal(Id, (void*)cudaEvent));
+        }
+
         /// <summary>Throws what broke the world for good; a fault that the device has not reported yet is not known.</summary>
         public void ThrowIfBroken()
         {

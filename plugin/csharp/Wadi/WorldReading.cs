@@ -33,6 +33,13 @@ namespace Wadi
             fixed (float* from = values) Check(Native.wadi_world_write_region(Id, field, &region, from, (UIntPtr)(ulong)values.LongLength));
         }
 
+        /// <summary>The same of values that lie on the device or behind an address and are checked there; start from
+        /// DeviceValues.Default.</summary>
+        public void WriteRegionFrom(Field field, Region region, DeviceValues values)
+        {
+            Check(Native.wadi_world_write_region_from(Id, field, &region, &values));
+        }
+
         /// <summary>Extremes, limits at work and the ledger; reads the whole state, so not for every frame.</summary>
         public WorldStats GetStats()
         {
