@@ -26,7 +26,9 @@ RULES = {
     "backends": ["backends/", "engine/compute/"],
     "plugin": ["plugin/", "engine/", "wadi/", "backends/registry.hpp"],
     "samples/recorder": ["wadi/", "samples/recorder/", ""],
-    "samples/viewer": ["wadi/", "../recorder/files.hpp", "../recorder/levels.hpp", "../recorder/png.hpp", "shaders/", "viewer_shaders/"],
+    "samples/tune": ["wadi/", "../recorder/files.hpp", "../recorder/levels.hpp", "../recorder/platform.hpp"],
+    "samples/viewer": ["wadi/", "../recorder/files.hpp", "../recorder/levels.hpp", "../recorder/png.hpp", "../tune/print.hpp", "../tune/write_variant.hpp", "shaders/",
+                       "viewer_shaders/"],
     "samples": ["wadi/"],
 }
 # A folder of backends/ may include itself, what all backends share, the interface, how the stages compiled for the host's processor
