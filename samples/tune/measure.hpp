@@ -33,8 +33,9 @@ struct Run {
     std::vector<Surfaces> at;                 // the start, then each checkpoint; empty where not asked for
     bool has_sand = false, has_water = false; // at the end
     std::string device_name, backend;
-    double seconds() const;      // of all parts
-    double step_seconds() const; // mean
+    std::vector<std::string> warnings; // of the level with these settings
+    double seconds() const;            // of all parts
+    double step_seconds() const;       // mean
     /// Of the time of all parts that of the first `count`.
     double share(std::size_t count) const;
     /// For each part the quicker of this run and another one of the same settings: what else the machine did counts less.

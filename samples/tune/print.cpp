@@ -120,6 +120,9 @@ std::string report(const Level& level, const Request& request, const Outcome& ou
                 "note      %s: runs do not come closer to each other as cells get smaller; errors are at least the differences\n",
                 name);
     }
+    if (!outcome.errors_measured && (outcome.sand.moved || outcome.water.moved))
+        text += "note      the errors are the model's: no run finer than these settings fitted into the time (--minutes)\n";
+    for (const std::string& warning : outcome.warnings) text += "warning   " + warning + "\n";
     for (const std::string& note : outcome.notes) text += "note      " + note + "\n";
 
     text += format("\n  %-12s %10s %6s %6s %3s %5s %6s %10s %8s %8s\n", "cells", "dt [s]", "water", "sand", "T", "half", "tiles",
@@ -168,6 +171,7 @@ Json report_json(const std::string& level_name, const Level& level, const Reques
     json["frontier"] = Json::array();
     for (const Candidate& c : outcome.frontier) json["frontier"].push_back(candidate_json(level, c));
     json["notes"] = outcome.notes;
+    json["warnings"] = outcome.warnings;
     return json;
 }
 

@@ -26,7 +26,7 @@ std::vector<Overlap> overlaps(int from, int to) {
     return list;
 }
 
-std::optional<double> error_of(const Run& run, const Run& reference, std::vector<float> Surfaces::*field) {
+std::optional<double> percent_of(const Run& run, const Run& reference, std::vector<float> Surfaces::*field) {
     const auto on_grid = [&](const Surfaces& s) { return averaged(s.*field, s.nx, s.ny, run.at[0].nx, run.at[0].ny); };
     const std::vector<float> start = on_grid(reference.at[0]);
     const auto [lowest, highest] = std::minmax_element(start.begin(), start.end());
@@ -80,8 +80,8 @@ std::vector<float> averaged(const std::vector<float>& field, int nx, int ny, int
 
 Errors errors_against(const Run& run, const Run& reference) {
     Errors errors;
-    if (reference.has_sand) errors.sand = error_of(run, reference, &Surfaces::sand);
-    if (reference.has_water) errors.water = error_of(run, reference, &Surfaces::surface);
+    if (reference.has_sand) errors.sand = percent_of(run, reference, &Surfaces::sand);
+    if (reference.has_water) errors.water = percent_of(run, reference, &Surfaces::surface);
     return errors;
 }
 

@@ -320,6 +320,7 @@ void Tuner::confirm(const Candidate& candidate) {
         best.keep_quicker(again);
     }
     outcome_.chosen = candidate;
+    outcome_.warnings = best.warnings;
     outcome_.measured_share = static_cast<double>(best.parts.size()) / PARTS;
     outcome_.chosen.step_ms = 1e3 * best.step_seconds();
     if (outcome_.measured_share < 1 && whole_->parts.size() == PARTS) // as much of its time as of the other run's

@@ -41,7 +41,8 @@ struct Outcome {
     double seconds = 0;    // that it took
     int runs = 0;
     std::string device_name, backend;
-    std::vector<std::string> notes; // sentences
+    std::vector<std::string> notes;    // sentences
+    std::vector<std::string> warnings; // of the level with the chosen settings
 };
 
 /// Throws BadInput (also where the budget is too small: the message has the cheapest settings and their cost) and Stopped.
