@@ -16,7 +16,7 @@ import tempfile
 import numpy
 
 LEVELS = pathlib.Path(__file__).resolve().parents[1] / "levels"
-UNSEEN = ("beach", "canyon", "seepage", "piles")  # the tuner was made with dam_break and castle
+JUDGED = ("beach", "canyon", "seepage", "piles")  # the model's constants are from dam_break and castle
 KINDS = {"sand": "hs", "water": "surface"}  # fields
 MOST_TIME, MOST_ERROR = 1.15, 1.5  # factors
 
@@ -111,7 +111,7 @@ def offences(tuned, ms, errors):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("bin", type=pathlib.Path, help="folder of wadi-tune and wadi-recorder")
-    parser.add_argument("levels", nargs="*", default=UNSEEN)
+    parser.add_argument("levels", nargs="*", default=JUDGED)
     parser.add_argument("--backend", default="cpu")
     parser.add_argument("--threads", default="1")
     parser.add_argument("--wall-time", dest="processor_time", action="store_false")

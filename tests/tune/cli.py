@@ -86,7 +86,7 @@ def test_judge_objects():
 
 
 def test_judged(folder, level):
-    """What is said of a level that the tuner was not made with holds."""
+    """What is said of a level that the model's constants are not from holds."""
     for attempt in range(ATTEMPTS):
         done = subprocess.run([sys.executable, judge.__file__, folder, level, "--budget-ms", "0.7", "--minutes", "0.12"], capture_output=True, text=True, timeout=300)
         print(done.stdout)
