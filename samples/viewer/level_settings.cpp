@@ -40,6 +40,12 @@ LevelSettings::LevelSettings(const std::filesystem::path& level_file) {
     }
 }
 
+void LevelSettings::set_variant(const std::string& name, const std::string& patch) {
+    Json level = Json::parse(level_);
+    level["variants"][name] = Json::parse(patch);
+    level_ = level.dump();
+}
+
 std::string LevelSettings::text() const {
     if (effects.empty()) return {};
     Json level = Json::parse(level_);

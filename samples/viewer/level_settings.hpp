@@ -21,6 +21,8 @@ class LevelSettings {
     explicit LevelSettings(const std::filesystem::path& level_file);
     std::vector<EffectSetting> effects;
     std::map<std::string, std::string> material_help; // by key; begins or ends with the unit
+    /// A variant more, or another one of that name; `patch` as JSON.
+    void set_variant(const std::string& name, const std::string& patch);
     /// The level file's text with these effects; empty where there are none.
     std::string text() const;
 

@@ -10,6 +10,7 @@ namespace viewer {
 namespace {
 
 constexpr float WIDTH = 330; // [pixels]
+constexpr double TUNING_MINUTES = 0.5;
 
 /// A list to choose from; true where another entry was chosen.
 template <class Names> bool choose(const char* label, const Names& names, int count, int& chosen) {
@@ -99,6 +100,7 @@ void Panel::simulation(Session& session) {
         choice.accuracy = accuracies[accuracy];
         session.open(session.level_name, choice);
     }
+    budget(session);
     const wadi_world_info& info = session.simulation().info;
     ImGui::TextWrapped("%d x %d cells of %g m, dt %g s\n%s: %s", info.nx, info.ny, info.dx, info.dt, info.backend,
                        info.device_name);
@@ -112,6 +114,19 @@ void Panel::simulation(Session& session) {
     ImGui::SameLine();
     if (ImGui::Button("restart")) session.restart();
     ImGui::SliderFloat("speed", &session.speed, 0.02f, 4.0f, "%.2f x", ImGuiSliderFlags_Logarithmic);
+}
+
+void Panel::budget(Session& session) {
+    if (session.budget().running()) {
+        ImGui::TextWrapped("measuring for %.1f ms a frame ...\n%s", static_cast<double>(session.budget_ms),
+                           session.budget().progress().c_str());
+        if (ImGui::Button("stop measuring")) session.budget().stop();
+        return;
+    }
+    ImGui::SliderFloat("budget [ms]", &session.budget_ms, 0.2f, 16.0f, "%.1f", ImGuiSliderFlags_Logarithmic);
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("of each frame at 60 a second, for the simulation");
+    if (ImGui::Button("find settings for the budget")) session.find_settings(TUNING_MINUTES);
+    if (!session.found_settings.empty()) ImGui::TextWrapped("%s", session.found_settings.c_str());
 }
 
 void Panel::tools(Session& session) {

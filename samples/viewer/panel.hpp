@@ -18,6 +18,7 @@ class Panel {
     double stats_age_ = 1e9; // [s]
 
     void simulation(Session& session);
+    void budget(Session& session);
     void tools(Session& session);
     void quality(Session& session);
     void costs(Session& session);

@@ -15,7 +15,7 @@ const std::map<std::string, std::size_t> commands = {
     {"strength", 1}, {"speed", 1},  {"pause", 0},       {"resume", 0}, {"step", 0},    {"restart", 0},  {"screenshot", 0},
     {"record", 1},   {"view", 1},   {"quality", 1},     {"arrows", 0}, {"section", 4}, {"backend", 1},  {"level", 2},
     {"keep", 2},     {"back", 1},   {"determinism", 1}, {"print", 0},  {"resize", 2},  {"minimise", 0}, {"restore", 0},
-    {"material", 2}, {"effect", 2}, {"accuracy", 1},    {"device", 1},
+    {"material", 2}, {"effect", 2}, {"accuracy", 1},    {"device", 1}, {"budget", 2},
 };
 
 std::size_t button_number(const std::string& name) {
@@ -89,6 +89,13 @@ void run(const Script::Line& line, Session& session) {
         choice.text.clear();
         choice.variant.clear();
         session.open(line.words[0], choice);
+    }
+    if (command == "budget") { // milliseconds, minutes
+        session.budget_ms = number(0);
+        session.find_settings(std::stod(line.words[1]));
+        session.budget().wait();
+        session.take_settings();
+        std::printf("budget %s\n", session.found_settings.c_str());
     }
     if (command == "material") session.set_material(line.words[0], std::stod(line.words[1]));
     if (command == "effect") session.switch_effect(line.words[0], line.words[1] == "on");

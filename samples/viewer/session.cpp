@@ -12,6 +12,7 @@ namespace {
 
 constexpr uint32_t PROFILE_POINTS = 256;
 constexpr double RECORDED_FRAME = 1.0 / 30; // [s]
+constexpr const char* FOUND_VARIANT = "found for the budget";
 
 } // namespace
 
@@ -36,6 +37,8 @@ void Session::open(const std::string& name, const SimulationChoice& choice) {
     level_name = name;
     if (other_level) {
         settings = LevelSettings(choice.level_file);
+        budget_.stop();
+        found_settings.clear();
         picture.camera = camera_preset(options_.camera, simulation_->grid.block,
                                        static_cast<float>(renderer.width()) / static_cast<float>(renderer.height()));
         picture.look.clarity = default_clarity(simulation_->grid);
@@ -52,6 +55,30 @@ void Session::open(const std::string& name, const SimulationChoice& choice) {
     profiling = false;
     host_seconds_ = simulated_at_ = 0;
     steps_at_ = 0;
+}
+
+void Session::find_settings(double minutes) {
+    SimulationChoice choice = choice_;
+    choice.text = settings.text();
+    if (choice.text.empty()) throw std::runtime_error("only a level file has settings to find");
+    if (choice.variant != FOUND_VARIANT) untuned_variant_ = choice.variant;
+    choice.variant = untuned_variant_;
+    if (choice.backend == "auto") choice.backend = simulation_->info.backend; // which with a device of the host's own is Vulkan
+    budget_.start(level_name, choice, static_cast<double>(budget_ms), minutes);
+}
+
+void Session::take_settings() {
+    const std::optional<Budget::Found> found = budget_.take();
+    if (!found) return;
+    found_settings = found->conclusion;
+    if (found->patch.empty()) return;
+    settings.set_variant(FOUND_VARIANT, found->patch);
+    SimulationChoice choice = choice_;
+    choice.text = settings.text();
+    choice.variant = FOUND_VARIANT;
+    choice.accuracy.clear();
+    choice.nx = choice.ny = 0;
+    open(level_name, choice);
 }
 
 void Session::restart() {
@@ -169,9 +196,11 @@ void Session::queue_edits(double simulated_seconds, double seconds) {
 
 void Session::advance(double seconds) {
     seconds = recording_ ? RECORDED_FRAME : std::clamp(seconds, 0.0, 0.1);
-    const double simulated = paused ? 0 : seconds * static_cast<double>(speed);
-    queue_edits(paused ? steps_due_ * simulation_->info.dt : simulated, seconds);
-    if (paused && steps_due_ > 0) simulation_->step(steps_due_);
+    take_settings();
+    const bool stands = paused || budget_.running();
+    const double simulated = stands ? 0 : seconds * static_cast<double>(speed);
+    queue_edits(stands ? steps_due_ * simulation_->info.dt : simulated, seconds);
+    if (stands && steps_due_ > 0) simulation_->step(steps_due_);
     steps_due_ = 0;
     simulation_->show(host_field_of(picture.view));
     simulation_->update(static_cast<uint64_t>(simulated * 1e9));

@@ -1,5 +1,6 @@
 // What the window and the script act on: a world, how it is seen, and tools. Knows no window and no panel.
 #pragma once
+#include "budget.hpp"
 #include "level_settings.hpp"
 #include "options.hpp"
 #include "renderer.hpp"
@@ -55,6 +56,13 @@ class Session {
     /// By those numbers: 0, or what they were before, or the level's, or usual values.
     void switch_effect(const std::string& effect, bool on);
 
+    /// Measures which settings of the level err least for `budget_ms` of each frame at 60 a second; the world stands still
+    /// meanwhile and begins again with them. `minutes`: to measure for, about.
+    void find_settings(double minutes);
+    Budget& budget() { return budget_; }
+    /// Begins again with what was found, if something was since the last call; every advance() does.
+    void take_settings();
+
     std::string check_determinism(uint32_t steps);
     void set_rollback(uint32_t frames, uint32_t interval);
     void roll_back(uint64_t step);
@@ -66,6 +74,8 @@ class Session {
     void set_recording(bool on);                  // pictures of equal simulated time, then an MP4
 
     std::string level_name;
+    float budget_ms = 2;
+    std::string found_settings; // in a sentence, or why none were
     Picture picture;
     bool paused = false;
     float speed = 1;
@@ -89,6 +99,8 @@ class Session {
     SimulationChoice choice_;
     std::unique_ptr<Simulation> simulation_;
     std::vector<wadi_material_info> level_material_;
+    Budget budget_;
+    std::string untuned_variant_;                // of the level, ahead of the variant with found settings
     std::map<std::string, double> switched_off_; // by number: the value that switch_effect() took away
     uint32_t steps_due_ = 0;
     std::optional<glm::vec3> pointed_, last_pointed_;

@@ -25,8 +25,11 @@ RULES = {
     "engine/reads": ["engine/reads/", "engine/step/", "engine/image/number_text.hpp", "engine/settings/", "engine/threads/", "engine/compute/"],
     "backends": ["backends/", "engine/compute/"],
     "plugin": ["plugin/", "engine/", "wadi/", "backends/registry.hpp"],
+    "plugin/godot": ["engine_methods.h"],
     "samples/recorder": ["wadi/", "samples/recorder/", ""],
-    "samples/viewer": ["wadi/", "../recorder/files.hpp", "../recorder/levels.hpp", "../recorder/png.hpp", "shaders/", "viewer_shaders/"],
+    "samples/tune": ["wadi/", "../recorder/files.hpp", "../recorder/levels.hpp", "../recorder/platform.hpp"],
+    "samples/viewer": ["wadi/", "../recorder/files.hpp", "../recorder/levels.hpp", "../recorder/png.hpp", "../tune/print.hpp", "../tune/write_variant.hpp", "shaders/",
+                       "viewer_shaders/"],
     "samples": ["wadi/"],
 }
 # A folder of backends/ may include itself, what all backends share, the interface, how the stages compiled for the host's processor
@@ -41,7 +44,7 @@ LIBRARIES = {
     "nlohmann/": ["engine/level", "samples", "tests"],
     "stb/": ["engine/image", "tests"],
     "libdeflate.h": ["samples/recorder"],
-    "vulkan/": ["backends/vulkan", "plugin/include", "samples", "tests"],
+    "vulkan/": ["backends/vulkan", "plugin/include", "plugin/godot", "samples", "tests"],
     "volk.h": ["backends/vulkan"],
     "cuda": ["backends/cuda"],
     "CLI/": ["samples", "tests"],

@@ -62,6 +62,16 @@ def test_device(session):
     assert "41" in errors, errors
 
 
+def test_budget(session):
+    """Settings found for a budget of milliseconds make the world anew, whatever --grid said; an impossible budget changes nothing and says so."""
+    _, text, (before, after, again), _ = session.run("0 pause\n1 step\n2 print\n3 budget 1 0.05\n4 step\n5 print\n6 restart\n7 step\n8 print\n", 10)
+    found = re.search(r"budget dam_break: (\d+) x (\d+) cells, .* ms of the 1 ms a frame", text)
+    assert found and found.group(1) == found.group(2) != "96", text
+    assert before["step"] == after["step"] == again["step"] == "1" and before["hash"] != after["hash"] == again["hash"], (before, after, again)
+    _, text, (before, after), _ = session.run("0 pause\n1 step\n2 print\n3 budget 0.00001 0.05\n4 print\n", 6)
+    assert "is too small: the cheapest settings" in text and before == after, text
+
+
 def test_painting(session):
     """Sand painted at a pixel lands there, is in the ledger, and is seen; with the tool "look" the same input changes nothing."""
     for backend in ("cpu", "vulkan"):
@@ -237,7 +247,7 @@ def main():
             if window:
                 tests = (test_minimised, test_real_input)
             else:
-                tests = (test_painting, test_tools, test_time, test_accuracy, test_device, test_changes, test_material, test_panel, test_one_queue, test_refusals)
+                tests = (test_painting, test_tools, test_time, test_accuracy, test_budget, test_device, test_changes, test_material, test_panel, test_one_queue, test_refusals)
             chosen = [word for word in sys.argv[2:] if word != "--window"]
             for test in (test for test in tests if not chosen or test.__name__ in chosen):
                 start = time.time()

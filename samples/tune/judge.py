@@ -1,0 +1,139 @@
+#!/usr/bin/env python3
+"""Holds wadi-tune to what the recorder then measures. Usage: judge.py BIN [LEVEL ...] [options]; needs numpy.
+
+For each level: tunes a copy of it, records the variant that was written (time: least of three whole recordings), and compares its surfaces
+with those of a run that is finer than any the tuner made. Prints a table in Markdown; exit code 1 where a time is off by more than 15 %
+or an error by more than a factor of 1.5."""
+import argparse
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import numpy
+
+LEVELS = pathlib.Path(__file__).resolve().parents[1] / "levels"
+JUDGED = ("beach", "canyon", "seepage", "piles")  # the model's constants are from dam_break and castle
+KINDS = {"sand": "hs", "water": "surface"}  # fields
+MOST_TIME, MOST_ERROR = 1.15, 1.5  # factors
+
+
+def strip_comments(text):
+    return re.sub(r'("(?:\\.|[^"\\])*")|//[^\n]*|/\*.*?\*/', lambda match: match.group(1) or "", text, flags=re.S)
+
+
+def averaged(field, shape):
+    """Means over the cells of another grid of the same extent."""
+    for axis, cells in enumerate(shape):
+        edges = numpy.linspace(0, field.shape[axis], cells + 1)
+        sums = numpy.concatenate([numpy.zeros_like(field.take([0], axis)), numpy.cumsum(field, axis)], axis)
+        low = numpy.minimum(edges.astype(int), field.shape[axis] - 1)
+        share = (edges - low).reshape([-1 if k == axis else 1 for k in range(2)])
+        at = sums.take(low, axis) + share * (sums.take(low + 1, axis) - sums.take(low, axis))
+        field = numpy.diff(at, axis=axis) / (field.shape[axis] / cells)
+    return field
+
+
+def record(recorder, level, variant, seconds, times, scratch, options):
+    """(summary, {field: [at each time]}), between two steps where a time lies there."""
+    folder = scratch / "out"
+    command = [recorder, level, "--variant", variant, "--seconds", repr(seconds), "--no-frames", "--out", folder, "--summary", scratch / "summary.json", *options]
+    dt = json.loads(strip_comments(level.read_text()))["variants"][variant]["dt"]
+    steps = [(int(time / dt + 1e-6), time / dt - int(time / dt + 1e-6)) for time in times]
+    asked = sorted({step + more for step, share in steps for more in ((0, 1) if share > 1e-3 else (0,))})
+    if times:
+        command += ["--dump", "hs,surface@" + ",".join(f"{step * dt:.9g}" for step in asked)]
+        command[command.index("--seconds") + 1] = repr((asked[-1] + 0.1) * dt)
+    subprocess.run([str(word) for word in command], check=True, capture_output=True, text=True)
+    kept = {}
+    for name in ("hs", "surface") if times else ():
+        at = {step: numpy.load(folder / f"{name}_{step * dt:.9g}.npy").astype(float) for step in asked}
+        kept[name] = [at[step] if share <= 1e-3 else (1 - share) * at[step] + share * at[step + 1] for step, share in steps]
+    shutil.rmtree(folder, ignore_errors=True)
+    return json.loads((scratch / "summary.json").read_text()), kept
+
+
+def error(run, truth, name):
+    """As samples/tune/README.md says."""
+    moved = [averaged(field - truth[name][0], run[name][0].shape) for field in truth[name][1:]]
+    span = max(field.max() for field in [*moved, 0 * moved[0]]) - min(field.min() for field in [*moved, 0 * moved[0]])
+    return 100 * numpy.mean([numpy.abs(field - run[name][0] - truth).mean() for field, truth in zip(run[name][1:], moved)]) / span
+
+
+def judge(arguments, name, scratch):
+    folder = scratch / name
+    shutil.copytree(LEVELS / name, folder)
+    level = folder / "level.json"
+    device = ["--backend", arguments.backend, "--threads", arguments.threads]
+    command = [arguments.bin / "wadi-tune", level, "--budget-ms", arguments.budget_ms, "--minutes", arguments.minutes, "--write", "--quiet", "--json", scratch / "tune.json",
+               *device, *(["--processor-time"] if arguments.processor_time else [])]
+    subprocess.run([str(word) for word in command], check=True, capture_output=True, text=True)
+    tuned = json.loads((scratch / "tune.json").read_text())
+
+    key = "processor_seconds" if arguments.processor_time else "stepping_seconds"
+    duration = json.loads(strip_comments(level.read_text())).get("duration", 10)
+    recorder = arguments.bin / "wadi-recorder"
+    times = []
+    for _ in range(3):
+        summary, _ = record(recorder, level, "budget", duration, (), scratch, device)
+        times.append(1e3 * summary[key] / summary["simulated_seconds"] / tuned["frames_per_second"])
+
+    text = json.loads(strip_comments(level.read_text()))
+    finest = json.loads(json.dumps(text["variants"]["budget"]))
+    extent = finest["grid"]["nx"] * finest["grid"]["dx"]
+    nx, ny = (round(arguments.finer * tuned["reference"][axis]) for axis in ("nx", "ny"))
+    finest["dt"] = finest["dt"] * finest["grid"]["nx"] / nx
+    finest["grid"] = {"nx": nx, "ny": ny, "dx": extent / nx}
+    finest["method"] = {"substeps": 3, "water_transport_order": 2, "sand_transport_order": 2}
+    text["variants"]["finest"] = finest
+    level.write_text(json.dumps(text))
+    checkpoints = [tuned["piece_seconds"] * k / tuned["checkpoints"] for k in range(tuned["checkpoints"] + 1)]
+    _, mine = record(recorder, level, "budget", tuned["piece_seconds"], checkpoints, scratch, device)
+    _, truth = record(recorder, level, "finest", tuned["piece_seconds"], checkpoints, scratch, ["--backend", arguments.backend])
+    return tuned, min(times), (nx, ny), {kind: error(mine, truth, KINDS[kind]) if tuned[kind]["moved"] else None for kind in KINDS}
+
+
+def offences(tuned, ms, errors):
+    """What the tuner said too far from what was measured."""
+    chosen, found = tuned["chosen"], []
+    if max(ms / chosen["ms_per_frame"], chosen["ms_per_frame"] / ms) > MOST_TIME:
+        found.append(f"{chosen['ms_per_frame']:.3g} ms said, {ms:.3g} ms recorded")
+    for kind in KINDS:
+        said, judged = chosen[f"{kind}_percent"], errors[kind]
+        if judged is not None and (said > MOST_ERROR * judged or judged > MOST_ERROR * said and tuned[kind]["converges"]):
+            found.append(f"{kind} {said:.3g} % said, {judged:.3g} % judged")
+    return found
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("bin", type=pathlib.Path, help="folder of wadi-tune and wadi-recorder")
+    parser.add_argument("levels", nargs="*", default=JUDGED)
+    parser.add_argument("--backend", default="cpu")
+    parser.add_argument("--threads", default="1")
+    parser.add_argument("--wall-time", dest="processor_time", action="store_false")
+    parser.add_argument("--budget-ms", default="2")
+    parser.add_argument("--minutes", default="1")
+    parser.add_argument("--finer", type=float, default=1.6, help="cells along x of the run that judges, over those of the tuner's finest")
+    arguments = parser.parse_args()
+    off = []
+    print("| level | settings | model [ms] | said [ms] | recorder [ms] | sand: said, judged [%] | water: said, judged [%] | judged against |")
+    print("| --- | --- | ---: | ---: | ---: | ---: | ---: | --- |")
+    for name in arguments.levels:
+        with tempfile.TemporaryDirectory() as scratch:
+            tuned, ms, finest, errors = judge(arguments, name, pathlib.Path(scratch))
+        off += [f"{name}: {line}" for line in offences(tuned, ms, errors)]
+        chosen, model = tuned["chosen"], tuned["predicted"]
+        cells = ["-" if errors[kind] is None else f"{'' if tuned[kind]['converges'] else 'at least '}{chosen[f'{kind}_percent']:.2f}, {errors[kind]:.2f}" for kind in KINDS]
+        orders = "".join(str(chosen[f"{kind}_transport_order"]) for kind in ("water", "sand"))
+        print(f"| `{name}` | {chosen['nx']} x {chosen['ny']}, orders {orders}, T {chosen['substeps']} | {model['ms_per_frame']:.2f} | {chosen['ms_per_frame']:.2f} | {ms:.2f} | "
+              f"{cells[0]} | {cells[1]} | {finest[0]} x {finest[1]}, {tuned['piece_seconds']:.3g} s |", flush=True)
+    print("\n".join(off))
+    return 1 if off else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

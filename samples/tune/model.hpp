@@ -1,0 +1,38 @@
+// What a setting costs and errs, from a few runs.
+#pragma once
+#include "surfaces.hpp"
+#include <array>
+
+namespace tune {
+
+/// Time of a step = fixed + per_cell * cells [s].
+struct TimeFit {
+    double fixed = 0, per_cell = 0;
+    double step(double cells) const { return fixed + per_cell * cells; }
+};
+struct TimePoint {
+    double cells, step; // [s]
+};
+/// Least squares of relative deviations; neither number below 0.
+TimeFit fit_time(const std::vector<TimePoint>& points);
+
+/// Error = factor * h^order [percent], h the size of a cell in units of the reference's.
+struct ErrorFit {
+    double factor = 0, order = 0;
+    double scatter = 0; // root mean square of the points' relative deviations
+    double at(double h) const;
+    /// Whether an error can be told: differences fall with cells, and as a power of them.
+    bool converges() const;
+};
+struct ErrorPoint {
+    double h, difference; // from the reference [percent]
+};
+/// From differences to a reference of the same kind, whose own error is at(1).
+ErrorFit fit_own(const std::vector<ErrorPoint>& points);
+/// From differences of another kind to that reference. `order`: where it is known from runs of a kin (above 0), one point is
+/// enough.
+ErrorFit fit_other(const std::vector<ErrorPoint>& points, double reference_error, double order);
+/// The error of a run that differs so much from a reference of this error [percent].
+double error_of(double difference, double reference_error);
+
+} // namespace tune
