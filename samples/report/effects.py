@@ -49,7 +49,7 @@ NEEDED_BY = {"water": ("mixture", "diffusion", "drag", "cohesion", "rain", "bed_
 OFF = {"shock_viscosity": {"method": {"shock_viscosity": 0}}}  # choices of method are no `effects`
 LEAST_PIXELS, LEAST_ERROR = 1.0, 0.2  # [%]: a pair differs from here on, to the eye and in its fields
 FINER, PICTURE = 2, "440x300"  # pictures: cells along x and y over those of the numbers; pixels
-CAMERA = {}  # effect: where it is seen best, else "overview"
+CAMERA = {"internal_friction": "opposite"}  # effect: where it is seen best, else "overview"
 
 
 def known(recorder):
