@@ -24,7 +24,7 @@ make_folder() {
     [ ! -e "$folder/.ready" ] || return 0
     echo "godot.sh: making $folder, see $folder.log" >&2
     {
-        debootstrap --variant=minbase sid "$folder" http://deb.debian.org/debian &&
+        debootstrap --variant=minbase sid "$folder" &&
             chroot "$folder" apt-get install -qy --no-install-recommends $packages
     } >"$folder.log" 2>&1 || no_godot "making $folder failed, see $folder.log"
     touch "$folder/.ready"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Tests of the Godot extension: builds it, and a C host beside it from the installed library, and runs the scripts of project/ in Godot,
-# headless and on a software Vulkan device. Usage: run.sh [BUILD] [SCRIPT ...]; BUILD (build/ci) has the library. Exit status 77 where
-# there is no Godot (godot.sh says why).
+# headless and on a software Vulkan device; then what the add-on draws and the games (play.sh). Usage: run.sh [BUILD] [SCRIPT ...];
+# BUILD (build/ci) has the library; SCRIPT: a name below, or play. Exit status 77 where there is no Godot (godot.sh says why).
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
@@ -31,10 +31,11 @@ LD_LIBRARY_PATH=$work/installed/lib "$work/host" "$root/samples/levels/castle/le
     >"$work/castle/hashes.txt"
 
 failed=
+asked_for() { [ ${#wanted[@]} -eq 0 ] || [[ " ${wanted[*]} " == *" $1 "* ]]; }
 script() { # NAME SCRIPT ENGINE_OPTION ... -- ARGUMENT ...
     local name=$1 file=$2 log=$work/$1.log
     shift 2
-    [ ${#wanted[@]} -eq 0 ] || [[ " ${wanted[*]} " == *" $name "* ]] || return 0
+    asked_for "$name" || return 0
     local start=$SECONDS
     timeout 120 "$here/godot.sh" "$@" >"$log" 2>&1 && good=yes || good=
     grep -q "^[1-9][0-9]* checks passed, 0 failed$" "$log" || good=
@@ -53,8 +54,12 @@ headless frames frames.gd --fixed-fps 60
 headless saves saves.gd
 headless floats floats.gd --fixed-fps 60
 headless bad bad.gd
-headless leaks leaks.gd -- "$work/castle" cpu 100 4000
+headless leaks leaks.gd -- "$work/castle" cpu 100 60000
 window textures_host hash.gd -- "$work/castle" cpu
 window shared shared.gd -- "$work/castle"
 window leaks_shared leaks.gd -- "$work/castle" vulkan 30 400 share
+window picture picture.gd -- "$work/castle"
+window costs costs.gd
+if asked_for costs; then grep "^|" "$work/costs.log" || failed=yes; fi
+if asked_for play; then "$here/play.sh" "$work" || failed=yes; fi
 [ -z "$failed" ] || exit 1
