@@ -61,14 +61,16 @@ int main_checked(int argc, char** argv) {
     app.add_option("--frames", options.frames, "offscreen: pictures to write")
         ->check(CLI::Range(1, 1000000))
         ->capture_default_str();
-    app.add_option("--start", options.start, "offscreen: simulated time of the first picture [s]")->check(CLI::Range(0.0, 1e6));
+    auto* const start = app.add_option("--start", options.start, "offscreen: simulated time of the first picture [s]")
+                            ->check(CLI::Range(0.0, 1e6));
     app.add_option("--every", options.every, "offscreen: simulated time between pictures [s]; default 1/30")
         ->check(CLI::Range(1e-6, 1e3));
     app.add_option("--out", options.out, "folder for pictures; default: out/LEVEL");
-    app.add_flag("--video", options.video, "offscreen: also an MP4, where ffmpeg is installed");
-    app.add_flag("--panel", options.panel, "offscreen: draw the panel too");
-    app.add_option("--script", options.script,
-                   "input from a file: lines FRAME COMMAND WORDS, see README.md; ends after --frames");
+    auto* const video = app.add_flag("--video", options.video, "offscreen: also an MP4, where ffmpeg is installed");
+    app.add_flag("--panel", options.panel, "offscreen: draw the panel too, from the level's start on, and keep the last picture")
+        ->excludes(start, video);
+    app.add_option("--script", options.script, "input from a file: lines FRAME COMMAND WORDS, see README.md; ends after --frames")
+        ->excludes(start, video);
     app.add_flag("--validate", options.validate, "Vulkan validation layers; any message makes the exit code 3");
     app.add_flag("--list-levels", only_list_levels, "list levels and exit");
     app.add_flag("--list-gpus", only_list_gpus, "list Vulkan devices and exit");

@@ -167,6 +167,8 @@ def test_refusals(session):
     for script, says in (("0 dance\n", "dance"), ("x pause\n", "frame number"), ("0 pointer 3\n", "2 words"), ("0 tool spoon\n", "spoon")):
         _, _, _, errors = session.run(script, 3, code=2)
         assert says in errors, errors
+    _, _, _, errors = session.run("1 step\n", 3, "--start", 1, code=2)  # which a scripted session would not heed
+    assert "--start" in errors and "--script" in errors, errors
 
 
 def test_minimised(session):
