@@ -52,6 +52,7 @@ headless hash_vulkan hash.gd -- "$work/castle" vulkan
 headless docs docs.gd -- "$root/plugin/godot/doc_classes"
 headless frames frames.gd --fixed-fps 60
 headless saves saves.gd
+headless sources sources.gd --fixed-fps 60
 headless floats floats.gd --fixed-fps 60
 headless bad bad.gd
 headless leaks leaks.gd -- "$work/castle" cpu 100 60000
