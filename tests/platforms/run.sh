@@ -115,7 +115,7 @@ lane_windows() {
     local wine
     wine=$(command -v wine64 || echo /usr/lib/wine/wine64)
     export WINEDEBUG=-all WINEPREFIX=$work/wine
-    run "x86-64 Windows" "MinGW-w64 g++ $(version x86_64-w64-mingw32-g++-posix -dumpfullversion), Wine $(version "$wine" --version)" windows .exe "$wine" || return 1
+    run "x86-64 Windows" "MinGW-w64 g++ $(version dpkg-query -W -f '${Version}' g++-mingw-w64-x86-64-posix), Wine $(version "$wine" --version)" windows .exe "$wine" || return 1
     local runs=${WADI_WINE_RUNS:-20}
     for n in $(seq "$runs"); do # waits that lose a wake-up show as runs that hang
         timeout 60 "$wine" "$work/windows/bin/wadi-minimal-host.exe" >/dev/null 2>&1 || { echo "windows: run $n of $runs hung or failed"; return 1; }
