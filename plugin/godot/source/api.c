@@ -7,7 +7,7 @@ Api api;
 
 bool load_api(GDExtensionInterfaceGetProcAddress get_proc_address, GDExtensionClassLibraryPtr library) {
     api.get_proc_address = get_proc_address;
-    api.library = library;
+    api.extension = library;
 #define API_LOAD(name, type)                                                                                                     \
     api.name = (GDExtensionInterface##type)(void (*)(void))get_proc_address(#name);                                              \
     if (!api.name) {                                                                                                             \

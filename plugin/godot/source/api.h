@@ -58,7 +58,7 @@ typedef struct Api {
     API_FUNCTIONS(API_FIELD)
 #undef API_FIELD
     GDExtensionInterfaceGetProcAddress get_proc_address;
-    GDExtensionClassLibraryPtr library; /* this extension's token */
+    GDExtensionClassLibraryPtr extension; /* this extension's token */
 } Api;
 extern Api api;
 

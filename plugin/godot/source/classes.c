@@ -33,7 +33,7 @@ static GDExtensionObjectPtr create(void* data, GDExtensionBool notify) {
     for_fields(class, self, value_new);
     if (class->create) class->create(self);
     api.object_set_instance(object, &name, self);
-    api.object_set_instance_binding(object, api.library, self, &no_callbacks);
+    api.object_set_instance_binding(object, api.extension, self, &no_callbacks);
     name_free(&name);
     const int64_t postinitialize = 0;
     const uint8_t reversed = 0;
@@ -51,7 +51,7 @@ static void destroy(void* data, GDExtensionClassInstancePtr self) {
 
 void* instance_of(const Class* class, Object object) {
     if (!cast_to(object, class->name)) return NULL;
-    return api.object_get_instance_binding(object, api.library, &no_callbacks);
+    return api.object_get_instance_binding(object, api.extension, &no_callbacks);
 }
 
 static void* find_virtual(void* data, GDExtensionConstStringNamePtr name, uint32_t hash) {
@@ -118,7 +118,7 @@ static void add_method(const Class* class, const char* text, const Method* metho
         .default_arguments = default_pointers,
     };
     StringName class_name = name_of(class->name);
-    api.classdb_register_extension_class_method(api.library, &class_name, &info);
+    api.classdb_register_extension_class_method(api.extension, &class_name, &info);
     name_free(&class_name);
     for (int n = 0; n < bound->defaults; ++n) api.variant_destroy(&defaults[n]);
     signature_free(&signature);
@@ -141,7 +141,7 @@ static void add_property(const Class* class, const Property* property) {
     GDExtensionPropertyInfo info = signature.result.info;
     info.hint = (uint32_t)property->hint;
     info.hint_string = &hint;
-    api.classdb_register_extension_class_property(api.library, &class_name, &info, &setter, &getter);
+    api.classdb_register_extension_class_property(api.extension, &class_name, &info, &setter, &getter);
     value_free(GDEXTENSION_VARIANT_TYPE_STRING, &hint);
     name_free(&setter);
     name_free(&getter);
@@ -155,14 +155,14 @@ static void add_signal(const Class* class, const char* text) {
     GDExtensionPropertyInfo infos[MOST_ARGUMENTS];
     for (int n = 0; n < signature.count; ++n) infos[n] = signature.arguments[n].info;
     StringName class_name = name_of(class->name);
-    api.classdb_register_extension_class_signal(api.library, &class_name, &signature.result.name, infos, signature.count);
+    api.classdb_register_extension_class_signal(api.extension, &class_name, &signature.result.name, infos, signature.count);
     name_free(&class_name);
     signature_free(&signature);
 }
 
 static void add_constant(const Class* class, const Constant* constant) {
     StringName class_name = name_of(class->name), of = name_of(constant->of), name = name_of(constant->name);
-    api.classdb_register_extension_class_integer_constant(api.library, &class_name, &of, &name, constant->value, false);
+    api.classdb_register_extension_class_integer_constant(api.extension, &class_name, &of, &name, constant->value, false);
     name_free(&class_name);
     name_free(&of);
     name_free(&name);
@@ -179,7 +179,7 @@ void register_class(const Class* class) {
         .class_userdata = (void*)(uintptr_t) class,
     };
     StringName name = name_of(class->name), parent = name_of(class->parent);
-    api.classdb_register_extension_class4(api.library, &name, &parent, &info);
+    api.classdb_register_extension_class4(api.extension, &name, &parent, &info);
     name_free(&name);
     name_free(&parent);
     ++registered;
@@ -193,7 +193,7 @@ void register_class(const Class* class) {
 
 void unregister_class(const Class* class) {
     StringName name = name_of(class->name);
-    api.classdb_unregister_extension_class(api.library, &name);
+    api.classdb_unregister_extension_class(api.extension, &name);
     name_free(&name);
     if (--registered > 0) return;
     while (all_bound) {
