@@ -215,9 +215,9 @@ def unity(work, _):
             fail(f"unity: {name} has no .meta file")
     json.loads((package / "package.json").read_text()), json.loads((package / "Runtime/Wadi.asmdef").read_text())
     sources = sorted((package / "Runtime").rglob("*.cs"))
-    stub = compile_program(work, "UnityEngine", here / "UnityEngineStub.cs", library_file=True)
-    runtime = compile_program(work, "WadiUnity", *sources, references=[stub], library_file=True)
-    program = compile_program(work, "UnityHost", here / "UnityHost.cs", references=[stub, runtime])
+    stand_in = compile_program(work, "UnityEngine", here / "UnityEngineStub.cs", library_file=True)
+    runtime = compile_program(work, "WadiUnity", *sources, references=[stand_in], library_file=True)
+    program = compile_program(work, "UnityHost", here / "UnityHost.cs", references=[stand_in, runtime])
     shutil.copytree(source / "samples/levels/castle", work / "StreamingAssets/castle")
     ends_well("unity", mono(work, program, work / "StreamingAssets"))
 

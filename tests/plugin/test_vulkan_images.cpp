@@ -48,20 +48,7 @@ VkDeviceMemory allocate(const VulkanHost& host, const VkMemoryRequirements& need
 
 // Runs commands on the host's queue and waits.
 template <class Commands> void run(const VulkanHost& host, Commands record_commands) {
-    VkCommandPoolCreateInfo pool_info{};
-    pool_info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
-    pool_info.queueFamilyIndex = host.vulkan.queue_family;
-    VkCommandPool pool{};
-    check_vk(vkCreateCommandPool(host.vulkan.device, &pool_info, nullptr, &pool), "vkCreateCommandPool");
-    VkCommandBufferAllocateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO;
-    info.commandPool = pool;
-    info.commandBufferCount = 1;
-    VkCommandBuffer commands{};
-    check_vk(vkAllocateCommandBuffers(host.vulkan.device, &info, &commands), "vkAllocateCommandBuffers");
-    VkCommandBufferBeginInfo begin{};
-    begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
-    check_vk(vkBeginCommandBuffer(commands, &begin), "vkBeginCommandBuffer");
+    const auto [pool, commands] = begin_commands(host);
     record_commands(commands);
     check_vk(vkEndCommandBuffer(commands), "vkEndCommandBuffer");
     VkSubmitInfo submit{};

@@ -28,9 +28,13 @@ inline bool has_vulkan() {
     return false;
 }
 
-/// Records calls into a command buffer of the host's, submits it and waits. `ahead` runs between the two.
-template <class Calls, class Ahead>
-void record(const VulkanHost& host, wadi_world_id world, std::uint64_t value, Calls calls, Ahead ahead) {
+struct HostCommands {
+    VkCommandPool pool{};
+    VkCommandBuffer commands{};
+};
+
+/// A command buffer on the host's queue, begun, with a pool of its own.
+inline HostCommands begin_commands(const VulkanHost& host) {
     VkCommandPoolCreateInfo pool_info{};
     pool_info.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO;
     pool_info.queueFamilyIndex = host.vulkan.queue_family;
@@ -45,6 +49,13 @@ void record(const VulkanHost& host, wadi_world_id world, std::uint64_t value, Ca
     VkCommandBufferBeginInfo begin{};
     begin.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO;
     check_vk(vkBeginCommandBuffer(commands, &begin), "vkBeginCommandBuffer");
+    return {pool, commands};
+}
+
+/// Records calls into a command buffer of the host's, submits it and waits. `ahead` runs between the two.
+template <class Calls, class Ahead>
+void record(const VulkanHost& host, wadi_world_id world, std::uint64_t value, Calls calls, Ahead ahead) {
+    const auto [pool, commands] = begin_commands(host);
     const wadi_vulkan_sync promise{host.semaphore, value};
     REQUIRE(wadi_vulkan_begin_recording(world, commands, &promise) == WADI_OK);
     calls(commands);
