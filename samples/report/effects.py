@@ -2,7 +2,10 @@
 """Effect by effect, and choice by choice that levels have on by themselves, what leaving it out changes: the level that shows it best, with it
 and without, in three dimensions and in numbers, and what it costs. Writes samples/report/effects.
 
-usage: samples/report/effects.py BIN_FOLDER [--backend cpu] [--processor-time] [--rounds 7] [--only EFFECT ...] [--out DIR | --check]
+usage: samples/report/effects.py BIN_FOLDER [--backend cpu] [--prices] [--processor-time] [--rounds 7] [--only EFFECT ...] [--out DIR | --check]
+       samples/report/effects.py --page [--out DIR]     the page anew, of rows that lie there
+Rows lie in OUT/rows_cpu.jsonl and OUT/rows_gpu.jsonl; the page wants those of the sources as they are: numbers and pictures of every effect, and
+prices from a CPU, a GPU or both.
 --check: half the cells along x and y and half the time, no files; fails where a pair does not differ, where the same run twice does, or where an effect, or a
 choice that is on by itself, has no pair.
 """
@@ -48,6 +51,7 @@ NEEDED_BY = {"water": ("mixture", "diffusion", "drag", "cohesion", "rain", "bed_
              "mixture": ("diffusion", "bed_shear", "retention"), "drag": ("retention",), "bed_friction": ("roughness",), "elastoplastic": ("cohesion",)}
 OFF = {"shock_viscosity": {"method": {"shock_viscosity": 0}}}  # choices of method are no `effects`
 LEAST_PIXELS, LEAST_ERROR = 1.0, 0.2  # [%]: a pair differs from here on, to the eye and in its fields
+PRICED = {"cpu": 2, "gpu": 8}  # prices: cells along x and y over those of the numbers, enough to keep the device busy
 FINER, PICTURE = 2, "440x300"  # pictures: cells along x and y over those of the numbers; pixels
 CAMERA = {"internal_friction": "opposite"}  # effect: where it is seen best, else "overview"
 
@@ -118,43 +122,84 @@ def view(programs, effect, off, picture):
         pairs.write(picture, pairs.whole(next((scratch / "out").glob("*.png"))))
 
 
+def kind_of(recorder):
+    return "cpu" if recorder.backend == "cpu" else "gpu"
+
+
 def priced(recorder, effect, rounds):
-    """What the effect adds to a step [% of the step with it]: text with the quartiles, or that the scatter hides it."""
+    """A row: what the effect adds to a step, in percent of the step with it, with the quartiles."""
     _, cells, seconds, _, _ = SHOWN[effect]
+    cells = tuple(n * PRICED[kind_of(recorder)] for n in cells)
     step = lambda off: recorder.record(level_of(effect, off), size=cells, seconds=seconds)[1]
     price = prices.paired(lambda: step(False), {"off": lambda: step(True)}, rounds)["off"]
     low, middle, high = (100 * (1 - ratio) for ratio in (price.high, price.ratio, price.low))
-    told = low > 0 or high < 0
-    print(f"{effect}: {middle:.1f} % ({low:.1f} to {high:.1f}) of {price.base_ms:.3g} ms", flush=True)
-    return number(price.base_ms), f"{middle:.0f} ({low:.0f} to {high:.0f})" if told else f"lost in the scatter ({low:.0f} to {high:.0f})"
+    print(f"{effect}: {middle:.1f} % ({low:.1f} to {high:.1f}) of {price.base_ms:.3g} ms on {cells[0]} x {cells[1]} cells", flush=True)
+    device = price.summary["device"]
+    return {"what": "price", "ms": price.base_ms, "low": low, "middle": middle, "high": high, "rounds": rounds,
+            "device": f"{device['backend']}: {device['name']}" + (", processor time" if recorder.processor_time else "")}
 
 
-def write_page(recorder, programs, only, rounds, out):
-    out.mkdir(parents=True, exist_ok=True)
-    numbers, shown = [], []
+def numbers_of(recorder, effect):
+    """A row: what leaving the effect out changes, and what a step has with it and without."""
+    _, cells, seconds, _, _ = SHOWN[effect]
+    with_it, without, errors, pixels = pair(recorder, effect, cells, seconds)
+    return {"what": "numbers", "errors": dict(errors), "pixels": pixels, "passes": [side[1]["passes"]["per_step"] for side in (with_it, without)],
+            "bytes_per_cell": [side[1]["bytes_per_cell"] for side in (with_it, without)]}
+
+
+def measure(recorder, programs, options):
+    with (options.out / f"rows_{kind_of(recorder)}.jsonl").open("a") as file:
+        for effect in options.only or SHOWN:
+            if not options.prices:
+                for off in (False, True):
+                    view(programs, effect, off, options.out / f"{effect}_{'off' if off else 'on'}.png")
+            for row in ([] if options.prices else [numbers_of(recorder, effect)]) + [priced(recorder, effect, options.rounds)]:
+                file.write(json.dumps({**row, "effect": effect, "sources": stamps.state("effects")}) + "\n")
+                file.flush()
+
+
+def kept_rows(out):
+    """({effect: numbers}, {kind of machine: {effect: price}}) that the sources as they are have made, the latest."""
+    numbers, priced_on = {}, {}
+    for kind in PRICED:
+        path = out / f"rows_{kind}.jsonl"
+        for row in map(json.loads, path.read_text().splitlines() if path.exists() else ()):
+            if row["sources"] == stamps.state("effects"):
+                (numbers if row["what"] == "numbers" else priced_on.setdefault(kind, {}))[row["effect"]] = row
+    return numbers, {kind: rows for kind, rows in priced_on.items() if set(rows) == set(SHOWN)}
+
+
+def share(price):
+    text = f"({price['low']:.0f} to {price['high']:.0f})"
+    return f"{price['middle']:.0f} {text}" if price["low"] > 0 or price["high"] < 0 else f"lost in the scatter {text}"
+
+
+def write_page(out):
+    """False where an effect lacks its numbers or prices."""
+    numbers, priced_on = kept_rows(out)
+    if set(numbers) != set(SHOWN) or not priced_on:
+        print(f"{out}: no page, want numbers and prices of all effects: numbers of {len(numbers)} of {len(SHOWN)}, prices from {', '.join(priced_on) or 'no machine'}")
+        return False
+    both = lambda pair: " / ".join(f"{value:.0f}" for value in pair)
+    rows, shown = [], []
     for effect, (level, cells, seconds, changes, look) in SHOWN.items():
-        if only and effect not in only:
-            continue
-        with_it, without, errors, pixels = pair(recorder, effect, cells, seconds)
-        for off in (False, True):
-            view(programs, effect, off, out / f"{effect}_{'off' if off else 'on'}.png")
-        by_field = dict(errors)
-        both = lambda pick: f"{pick(with_it)} / {pick(without)}"
-        numbers.append([f"[{effect}](#{effect})", level, *(number(by_field[what]) if what in by_field else "" for what in ("sand", "water surface")), number(pixels),
-                        *priced(recorder, effect, rounds), both(lambda side: f"{side[1]['passes']['per_step']}"), both(lambda side: f"{side[1]['bytes_per_cell']:.0f}")])
+        row = numbers[effect]
+        rows.append([f"[{effect}](#{effect})", level, *(number(row["errors"][what]) if what in row["errors"] else "" for what in ("sand", "water surface")), number(row["pixels"]),
+                     *(text for on in priced_on.values() for text in (number(on[effect]["ms"]), share(on[effect]))), both(row["passes"]), both(row["bytes_per_cell"])])
         extra = "".join(f", `{key}` {json.dumps(value)}" for key, value in changes.items())
         shown += [f"## {effect}", f"`{level}`, {cells[0]} x {cells[1]} cells (pictures: {FINER} times as many along x and y), {seconds} s{extra}. {look}", "",
                   f"| with `{effect}` | without |", "| --- | --- |", f"| ![with {effect}]({effect}_on.png) | ![without {effect}]({effect}_off.png) |", ""]
-    if only:
-        return
-    head = ["without", "level", "sand [%]", "water surface [%]", "pixels [%]", "ms per step", "of that the effect's [%]", "passes", "bytes per cell"]
-    device = with_it[1]["device"]
+    head = ["without", "level", "sand [%]", "water surface [%]", "pixels [%]", *(text for kind in priced_on for text in (f"{kind.upper()}: ms per step", "of that the effect's [%]")), "passes",
+            "bytes per cell"]
+    machines = "; ".join(f"{kind.upper()}: {first['device']}, {PRICED[kind]} times the cells along x and y, {first['rounds']} pairs"
+                         for kind, on in priced_on.items() for first in [next(iter(on.values()))])
     lines = ["# Effect by effect", "", "What leaving one effect out of a level changes (`\"effects\": { NAME: \"off\" }`, what needs it off as well; `shock_viscosity`, a choice of method: 0). Sand and water "
              "surface: mean absolute difference in percent of the range over which they moved with the effect on. Pixels: of the recorder's map, different by a tenth or more. Its share of a step: "
-             f"median and quartiles of {rounds} pairs of runs by turns; negative where a step without it takes longer, since the scene is another then. Passes and bytes: with it / without. "
-             f"Made by `samples/report/effects.py BIN` on {device['backend']}: {device['name']}{'; processor time' if recorder.processor_time else ''}.", "",
-             "| " + " | ".join(head) + " |", "| --- | --- " + "| ---: " * (len(head) - 2) + "|", *("| " + " | ".join(row) + " |" for row in numbers), "", *shown, stamps.stamp("effects"), ""]
+             "median and quartiles of pairs of runs by turns; negative where a step without it takes longer, since the scene is another then. Passes and bytes: with it / without. "
+             f"Made by `samples/report/effects.py BIN`. {machines}.", "",
+             "| " + " | ".join(head) + " |", "| --- | --- " + "| ---: " * (len(head) - 2) + "|", *("| " + " | ".join(row) + " |" for row in rows), "", *shown, stamps.stamp("effects"), ""]
     (out / "README.md").write_text("\n".join(lines))
+    return True
 
 
 def check(recorder):
@@ -175,19 +220,26 @@ def check(recorder):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("programs", type=pathlib.Path)
+    parser.add_argument("programs", type=pathlib.Path, nargs="?")
     parser.add_argument("--backend", default="cpu")
+    parser.add_argument("--threads", type=int, default=0, metavar="N", help="of the CPU backend (default 0: all cores)")
     parser.add_argument("--processor-time", action="store_true", help="times are processor time of one thread: for a busy machine, CPU backend alone")
+    parser.add_argument("--prices", action="store_true", help="measure prices alone")
     parser.add_argument("--rounds", type=int, default=7, metavar="N", help="pairs of runs that price an effect (default %(default)s)")
     parser.add_argument("--only", nargs="*", default=[], choices=SHOWN, metavar="EFFECT")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent / "effects")
     parser.add_argument("--check", action="store_true")
+    parser.add_argument("--page", action="store_true", help="measure nothing")
     options = parser.parse_args()
-    with recordings.Recorder(options.programs / "wadi-recorder", options.backend, int(options.processor_time), options.processor_time) as recorder:
-        if options.check:
-            return 0 if check(recorder) else 1
-        write_page(recorder, options.programs, options.only, options.rounds, options.out)
-    return 0
+    if options.page == bool(options.programs):
+        parser.error("want the programs' folder or --page")
+    options.out.mkdir(parents=True, exist_ok=True)
+    if options.programs:
+        with recordings.Recorder(options.programs / "wadi-recorder", options.backend, 1 if options.processor_time else options.threads, options.processor_time) as recorder:
+            if options.check:
+                return 0 if check(recorder) else 1
+            measure(recorder, options.programs, options)
+    return 0 if write_page(options.out) or (options.programs and (options.prices or options.only)) else 1
 
 
 if __name__ == "__main__":

@@ -77,10 +77,11 @@ class Recorder:
 
 
 def write_npy(path, nx, ny, values):
-    """float32, row 0 in the south."""
+    """float32, row 0 in the south. values: any numbers in a row, or 32-bit floats as an array of Python's or numpy's."""
+    whole = values if getattr(values, "itemsize", 0) == 4 else array.array("f", values)  # of which a large numpy array is slow to make
     head = f"{{'descr': '<f4', 'fortran_order': False, 'shape': ({ny}, {nx}), }}"
     head += " " * (-(len(head) + 11) % 64) + "\n"
-    path.write_bytes(b"\x93NUMPY\x01\x00" + len(head).to_bytes(2, "little") + head.encode() + array.array("f", values).tobytes())
+    path.write_bytes(b"\x93NUMPY\x01\x00" + len(head).to_bytes(2, "little") + head.encode() + whole.tobytes())
 
 
 def read_level(name):

@@ -16,6 +16,7 @@ import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 SHARES = {"frontier": 0.2, "timings": 0.25, "effects": 0.1, "report": 0.45}  # of the time, in this order; what one leaves over goes to the next
+FRONTIER_ROWS = 30  # as many of the longest rows as fit: of each of 16 kinds of run one, and those of smaller grids
 WRITES_PAGE = 0.9  # of its time: the report stops measuring here
 
 
@@ -74,7 +75,7 @@ def main():
         parts = {
             "frontier": ["frontier.py", options.programs, "--backend", there[0], *(["--sizes", "16", "32"] if options.quick else [])],
             "timings": ["timings.py", options.programs, *quick, "--backends", ",".join(there)],
-            "effects": ["effects.py", options.programs, "--backend", there[0], *(["--only", "water", "drag"] if options.quick else [])],
+            "effects": ["effects.py", options.programs, "--backend", there[0], *(["--only", "water", "drag"] if options.quick else []), *(["--prices", "--rounds", "3"] if there[0] != "cpu" else [])],
             "report": ["wadi-report", options.programs, *(quick or ["--full"]), "--backend", there[0], "--repeats", options.repeats, *(["--relaxed", options.relaxed] if options.relaxed else [])]}
         failed, due = [], begun
         for name in [part for part in SHARES if part in options.parts]:
@@ -83,6 +84,8 @@ def main():
             left = due - time.monotonic()
             if name == "report":
                 arguments += ["--minutes", f"{WRITES_PAGE * left / 60:.2f}"]
+            if name == "frontier":
+                arguments += ["--row-seconds", f"{left / FRONTIER_ROWS:.1f}"]
             say(f"== {name}: {script} {' '.join(map(str, arguments))}, {left:.0f} s at most")
             start = time.monotonic()
             code = run([sys.executable, "-u", str(HERE / script), *map(str, arguments), "--out", str(options.out / name)], left, log)

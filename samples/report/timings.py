@@ -3,7 +3,7 @@
 Figure 4), and what several sand substeps per water step save and cost (its supplement's section 2); what second order for water and the
 accuracy presets cost. Writes CSVs, charts and the generated part of samples/report/timings/README.md, section by section.
 
-usage: samples/report/timings.py BIN_FOLDER [--backends cuda,vulkan,cpu] [--largest 4096] [--steps 200 | --quick] [--out DIR]
+usage: samples/report/timings.py BIN_FOLDER [--backends cuda,vulkan,cpu] [--threads 2] [--largest 4096] [--steps 200 | --quick] [--out DIR]
 """
 import argparse
 import csv
@@ -278,6 +278,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("programs", type=pathlib.Path)
     parser.add_argument("--backends", default="cpu")
+    parser.add_argument("--threads", type=int, default=0, metavar="N", help="of the CPU backend (default 0: all cores)")
     parser.add_argument("--largest", type=int, default=4096)
     parser.add_argument("--steps", type=int, default=200, help="of the timed runs on GPUs; a twentieth on the CPU")
     parser.add_argument("--quick", action="store_true", help="grids an eighth as wide, few steps: shows that the script runs, measures nothing")
@@ -288,7 +289,7 @@ def main():
     page, kept = options.out / "README.md", pathlib.Path(__file__).resolve().parent / "timings" / "README.md"
     text = (page if page.exists() else kept).read_text()
     start, end = text.index(BEGIN) + len(BEGIN), text.index(END)
-    recorders = {backend: recordings.Recorder(options.programs / "wadi-recorder", backend) for backend in options.backends.split(",")}
+    recorders = {backend: recordings.Recorder(options.programs / "wadi-recorder", backend, options.threads) for backend in options.backends.split(",")}
     first = next(iter(recorders.values()))
     ratio_of = {backend: recorder for backend, recorder in recorders.items() if recorder is first or backend == "cpu"}
     sections = (lambda: two_text(table_two(recorders, shrink, steps), options.out),
