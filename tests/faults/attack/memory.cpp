@@ -1,0 +1,69 @@
+// What a process or its control group cannot give is told.
+#include "tests/faults/attack/attack.hpp"
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace attack {
+namespace {
+
+/// Makes worlds until one is refused. 0 where that was told as a lack of memory.
+int worlds_until_refused(int cells) {
+    for (int n = 0; n < 1000; ++n) {
+        wadi_world_id world{};
+        const auto made = make(cells, world);
+        const auto stepped = made == WADI_OK ? wadi_world_step(world, 2) : made;
+        if (stepped == WADI_ERROR_OUT_OF_MEMORY) return 0;
+        if (!expect(stepped == WADI_OK, "a world too many is told as a lack of memory")) return 1;
+    }
+    return 2;
+}
+
+/// A group of processes that may take so many bytes; its folder, empty where the machine allows none.
+std::string memory_group(const std::string& bytes) {
+    const std::string name = "wadi-attack-" + std::to_string(getpid());
+    for (const auto& [root, limit] : {std::pair<std::string, const char*>{"/sys/fs/cgroup/", "memory.max"},
+                                      {"/sys/fs/cgroup/memory/", "memory.limit_in_bytes"}}) {
+        std::error_code failed;
+        const std::string folder = root + name;
+        if (!std::filesystem::exists(root + "cgroup.procs", failed) || !std::filesystem::create_directory(folder, failed))
+            continue;
+        std::ofstream file(folder + "/" + limit);
+        if (file << bytes << std::flush) return folder;
+        std::filesystem::remove(folder, failed);
+    }
+    return {};
+}
+
+} // namespace
+
+int memory() {
+    for (const std::uint64_t mebibytes : {4, 16, 48, 100, 300}) {
+        const auto ran = run_child([&] {
+            const rlim_t most = pages(0) * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + (mebibytes << 20);
+            const rlimit limit{most, most};
+            setrlimit(RLIMIT_AS, &limit);
+            return worlds_until_refused(200);
+        });
+        expect(ran.code == 0,
+               "address space of " + std::to_string(mebibytes) + " MiB more: ended with " + std::to_string(ran.code));
+    }
+    std::printf("address space for 4 to 300 MiB more: worlds until one is refused\n");
+    const std::string group = memory_group("314572800");
+    if (group.empty()) {
+        std::printf("a control group of 300 MiB: not on this machine\n");
+        return wrong;
+    }
+    const auto ran = run_child([&] {
+        std::ofstream(group + "/cgroup.procs") << getpid() << std::flush;
+        return worlds_until_refused(700);
+    });
+    std::printf("a control group of 300 MiB: at most %.0f MiB used\n", ran.mebibytes);
+    expect(ran.code == 0, "a control group of 300 MiB: ended with " + std::to_string(ran.code));
+    rmdir(group.c_str());
+    return wrong;
+}
+
+} // namespace attack
