@@ -7,24 +7,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SLOTS = 3 }; /* submissions of copies that may be under way */
-
 typedef struct SharedImage {
     VkImage image;
     VkDeviceMemory memory;
     uint64_t rid; /* the engine's texture of it */
-    bool written;
+    bool shown;   /* the engine looks at it, since it has a content */
 } SharedImage;
 
 struct SharedDevice {
     Object rendering_device;
     wadi_vulkan_host host;
     VulkanCalls calls;
-    VkCommandPool pool;
-    VkCommandBuffer commands[SLOTS];
-    VkFence fences[SLOTS];
-    bool submitted[SLOTS];
-    int slot;
     SharedImage images[WADI_OUTPUT_COUNT];
 };
 
@@ -50,24 +43,6 @@ static bool is_vulkan(void) {
     free(text);
     value_free(GDEXTENSION_VARIANT_TYPE_STRING, &name);
     return vulkan;
-}
-
-static VkResult make_commands(SharedDevice* device) {
-    const VkDevice vulkan = device->host.device;
-    const VkCommandPoolCreateInfo pool = {.sType = VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO,
-                                          .flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT,
-                                          .queueFamilyIndex = device->host.queue_family};
-    VkResult result = device->calls.CreateCommandPool(vulkan, &pool, NULL, &device->pool);
-    if (result != VK_SUCCESS) return result;
-    const VkCommandBufferAllocateInfo commands = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO,
-                                                  .commandPool = device->pool,
-                                                  .level = VK_COMMAND_BUFFER_LEVEL_PRIMARY,
-                                                  .commandBufferCount = SLOTS};
-    result = device->calls.AllocateCommandBuffers(vulkan, &commands, device->commands);
-    const VkFenceCreateInfo fence = {.sType = VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
-    for (int n = 0; n < SLOTS && result == VK_SUCCESS; ++n)
-        result = device->calls.CreateFence(vulkan, &fence, NULL, &device->fences[n]);
-    return result;
 }
 
 SharedDevice* shared_open(char* why, size_t size) {
@@ -101,8 +76,6 @@ SharedDevice* shared_open(char* why, size_t size) {
     device->host.queue_family = (uint32_t)resource(rendering_device, QUEUE_FAMILY);
     if (!vulkan_load(&device->calls, device->host.instance, device->host.device))
         snprintf(why, size, "Vulkan's loader is not found");
-    else if (make_commands(device) != VK_SUCCESS)
-        snprintf(why, size, "the device makes no command buffers");
     device->host.get_instance_proc_addr = device->calls.GetInstanceProcAddr;
     if (*why) {
         shared_close(device, NULL);
@@ -120,7 +93,7 @@ static void set_rid(Object texture, uint64_t rid) {
 
 void shared_close(SharedDevice* device, Textures* textures) {
     const VkDevice vulkan = device->host.device;
-    if (device->pool) device->calls.QueueWaitIdle(device->host.queue);
+    if (device->calls.QueueWaitIdle) device->calls.QueueWaitIdle(device->host.queue);
     for (int output = 0; output < WADI_OUTPUT_COUNT; ++output) {
         SharedImage* image = &device->images[output];
         if (textures && textures->objects[output]) set_rid(textures->objects[output], 0);
@@ -129,10 +102,6 @@ void shared_close(SharedDevice* device, Textures* textures) {
         if (image->image) device->calls.DestroyImage(vulkan, image->image, NULL);
         if (image->memory) device->calls.FreeMemory(vulkan, image->memory, NULL);
     }
-    for (int n = 0; n < SLOTS; ++n) {
-        if (device->fences[n]) device->calls.DestroyFence(vulkan, device->fences[n], NULL);
-    }
-    if (device->pool) device->calls.DestroyCommandPool(vulkan, device->pool, NULL);
     free(device);
 }
 
@@ -179,7 +148,7 @@ static uint64_t import(Object rendering_device, VkImage vulkan_image, VkFormat v
     return rid;
 }
 
-static bool make_image(SharedDevice* device, SharedImage* image, const wadi_output_view* view, Object* texture) {
+static void make_image(SharedDevice* device, SharedImage* image, const wadi_output_view* view, Object* texture) {
     const VkImageCreateInfo info = {
         .sType = VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO,
         .imageType = VK_IMAGE_TYPE_2D,
@@ -193,96 +162,41 @@ static bool make_image(SharedDevice* device, SharedImage* image, const wadi_outp
         .sharingMode = VK_SHARING_MODE_EXCLUSIVE,
         .initialLayout = VK_IMAGE_LAYOUT_UNDEFINED,
     };
-    if (device->calls.CreateImage(device->host.device, &info, NULL, &image->image) != VK_SUCCESS) return false;
-    if (!allocate(device, image)) return false;
+    if (device->calls.CreateImage(device->host.device, &info, NULL, &image->image) != VK_SUCCESS) return;
+    if (!allocate(device, image)) return;
     image->rid = import(device->rendering_device, image->image, info.format, view);
-    if (!image->rid) return false;
+    if (!image->rid) return;
     const Object object = construct("Texture2DRD");
     api.ref_set_object(texture, object);
-    return true;
 }
 
-/* Ahead of a copy: what read the image and what wrote the buffer is done; after it: shaders see the image, and the buffer may be
- * written again. */
-static void barrier(SharedDevice* device, VkCommandBuffer commands, SharedImage* image, bool ahead) {
-    const VkImageMemoryBarrier images = {
-        .sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER,
-        .srcAccessMask = ahead ? 0 : VK_ACCESS_TRANSFER_WRITE_BIT,
-        .dstAccessMask = ahead ? VK_ACCESS_TRANSFER_WRITE_BIT : VK_ACCESS_SHADER_READ_BIT,
-        .oldLayout = ahead ? VK_IMAGE_LAYOUT_UNDEFINED : VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-        .newLayout = ahead ? VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
-        .srcQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-        .dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED,
-        .image = image->image,
-        .subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1},
-    };
-    const VkMemoryBarrier memory = {.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER,
-                                    .srcAccessMask = VK_ACCESS_SHADER_WRITE_BIT | VK_ACCESS_TRANSFER_WRITE_BIT,
-                                    .dstAccessMask = VK_ACCESS_TRANSFER_READ_BIT};
-    device->calls.CmdPipelineBarrier(commands, ahead ? VK_PIPELINE_STAGE_ALL_COMMANDS_BIT : VK_PIPELINE_STAGE_TRANSFER_BIT,
-                                     ahead ? VK_PIPELINE_STAGE_TRANSFER_BIT : VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0,
-                                     ahead ? 1 : 0, &memory, 0, NULL, 1, &images);
-}
-
-static void copy(SharedDevice* device, VkCommandBuffer commands, SharedImage* image, const wadi_output_view* view, size_t texel) {
-    const VkBufferImageCopy region = {.bufferOffset = view->offset,
-                                      .bufferRowLength = (uint32_t)(view->row_pitch / texel),
-                                      .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                                      .imageExtent = {(uint32_t)view->nx, (uint32_t)view->ny, 1}};
-    barrier(device, commands, image, true);
-    device->calls.CmdCopyBufferToImage(commands, (VkBuffer)(uintptr_t)view->handle, image->image,
-                                       VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
-    barrier(device, commands, image, false);
-    image->written = true;
-}
-
-/* The next command buffer, begun; waits for the copies that were recorded into it three updates ago. */
-static VkCommandBuffer begin(SharedDevice* device) {
-    device->slot = (device->slot + 1) % SLOTS;
-    const int slot = device->slot;
-    if (device->submitted[slot]) {
-        device->calls.WaitForFences(device->host.device, 1, &device->fences[slot], VK_TRUE, UINT64_MAX);
-        device->calls.ResetFences(device->host.device, 1, &device->fences[slot]);
-        device->submitted[slot] = false;
-    }
-    const VkCommandBufferBeginInfo info = {.sType = VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO,
-                                           .flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT};
-    device->calls.BeginCommandBuffer(device->commands[slot], &info);
-    return device->commands[slot];
-}
-
-static bool submit(SharedDevice* device) {
-    const int slot = device->slot;
-    device->calls.EndCommandBuffer(device->commands[slot]);
-    const VkSubmitInfo info = {
-        .sType = VK_STRUCTURE_TYPE_SUBMIT_INFO, .commandBufferCount = 1, .pCommandBuffers = &device->commands[slot]};
-    device->submitted[slot] = device->calls.QueueSubmit(device->host.queue, 1, &info, device->fences[slot]) == VK_SUCCESS;
-    return device->submitted[slot];
+/* Behind what reads the image so far, ahead of what reads it from now on: both on the renderer's queue. */
+static bool copy(wadi_world_id world, wadi_output output, const SharedImage* image, const wadi_output_view* view) {
+    wadi_vulkan_image to = wadi_default_vulkan_image();
+    to.image = image->image;
+    to.format = format_of(view->format);
+    to.width = (uint32_t)view->nx;
+    to.height = (uint32_t)view->ny;
+    return wadi_vulkan_copy_output(world, output, WADI_OUTPUT_CURRENT, &to) == WADI_OK;
 }
 
 bool textures_update_shared(Textures* textures, wadi_world_id world, wadi_output_mask mask, uint64_t step) {
     SharedDevice* device = textures->shared;
-    if (!mask) return true;
-    const VkCommandBuffer commands = begin(device);
-    bool all = true, fresh[WADI_OUTPUT_COUNT] = {false};
+    bool all = true;
     for (int output = 0; output < WADI_OUTPUT_COUNT; ++output) {
         if (!(mask & WADI_OUTPUT_BIT(output))) continue;
         SharedImage* image = &device->images[output];
         wadi_output_view view = wadi_default_output_view();
-        const bool there = wadi_world_get_view(world, (wadi_output)output, WADI_OUTPUT_CURRENT, &view) == WADI_OK &&
-                           view.handle_kind == WADI_HANDLE_VULKAN_BUFFER;
-        if (there && !image->image) fresh[output] = make_image(device, image, &view, &textures->objects[output]);
-        if (!there || !image->rid) {
+        const bool there = wadi_world_get_view(world, (wadi_output)output, WADI_OUTPUT_CURRENT, &view) == WADI_OK;
+        if (there && !image->image) make_image(device, image, &view, &textures->objects[output]);
+        if (!there || !image->rid || !copy(world, (wadi_output)output, image, &view)) {
             all = false;
             continue;
         }
-        copy(device, commands, image, &view, texel_format((wadi_output)output).bytes);
+        if (!image->shown) set_rid(textures->objects[output], image->rid);
+        image->shown = true;
         textures->steps[output] = view.step;
         all = all && view.step == step;
-    }
-    if (!submit(device)) return false;
-    for (int output = 0; output < WADI_OUTPUT_COUNT; ++output) { /* the engine looks at an image that has a content */
-        if (fresh[output]) set_rid(textures->objects[output], device->images[output].rid);
     }
     return all;
 }

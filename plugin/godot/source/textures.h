@@ -6,20 +6,13 @@
 
 #include <wadi/wadi.h>
 
-typedef struct SharedDevice SharedDevice; /* textures_vulkan.c */
+typedef struct SharedDevice SharedDevice; /* shared_device.c */
 
 typedef struct Textures {
     SharedDevice* shared;              /* NULL: through host memory */
     Object objects[WADI_OUTPUT_COUNT]; /* references to Texture2D, or NULL */
     uint64_t steps[WADI_OUTPUT_COUNT]; /* that each one shows; UINT64_MAX = nothing yet */
 } Textures;
-
-/** An output's texel: the engine's Image.Format, bytes. */
-typedef struct TexelFormat {
-    int64_t image_format;
-    size_t bytes;
-} TexelFormat;
-TexelFormat texel_format(wadi_output output);
 
 void textures_clear(Textures* textures);
 /** Brings what was published into the textures of `mask`; makes those that are missing. true: all of them show step `step`. */

@@ -4,7 +4,13 @@
 #include <stdlib.h>
 #include <string.h>
 
-TexelFormat texel_format(wadi_output output) {
+/* An output's texel: the engine's Image.Format, bytes. */
+typedef struct TexelFormat {
+    int64_t image_format;
+    size_t bytes;
+} TexelFormat;
+
+static TexelFormat texel_format(wadi_output output) {
     enum { RF = 8, RGF = 9, RGBAF = 11, RGBAH = 15 };
     switch (output) {
     case WADI_OUTPUT_FLOW:

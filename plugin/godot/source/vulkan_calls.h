@@ -6,26 +6,13 @@
 #include <vulkan/vulkan_core.h>
 
 #define VULKAN_DEVICE_FUNCTIONS(X)                                                                                               \
-    X(AllocateCommandBuffers)                                                                                                    \
     X(AllocateMemory)                                                                                                            \
-    X(BeginCommandBuffer)                                                                                                        \
     X(BindImageMemory)                                                                                                           \
-    X(CmdCopyBufferToImage)                                                                                                      \
-    X(CmdPipelineBarrier)                                                                                                        \
-    X(CreateCommandPool)                                                                                                         \
-    X(CreateFence)                                                                                                               \
     X(CreateImage)                                                                                                               \
-    X(DestroyCommandPool)                                                                                                        \
-    X(DestroyFence)                                                                                                              \
     X(DestroyImage)                                                                                                              \
-    X(EndCommandBuffer)                                                                                                          \
     X(FreeMemory)                                                                                                                \
     X(GetImageMemoryRequirements)                                                                                                \
-    X(QueueSubmit)                                                                                                               \
-    X(QueueWaitIdle)                                                                                                             \
-    X(ResetCommandBuffer)                                                                                                        \
-    X(ResetFences)                                                                                                               \
-    X(WaitForFences)
+    X(QueueWaitIdle)
 
 typedef struct VulkanCalls {
     PFN_vkGetInstanceProcAddr GetInstanceProcAddr;
