@@ -49,6 +49,7 @@ PAGES = {
     "samples/report/methods/README.md": "methods",
     "samples/report/mpm/README.md": "mpm",
     "samples/report/timings/README.md": "timings",
+    "samples/report/timings/two_cores/README.md": "timings",
     "samples/report/two_cores/README.md": "report",
     "tests/sand/README.md": "sand",
 }

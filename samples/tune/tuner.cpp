@@ -14,6 +14,7 @@ constexpr int COARSE_SIDE = 40, LEAST_SIDE = 48;     // cells along the shorter 
 constexpr double LADDER[] = {0.35, 0.5, 0.71};       // of the largest measured grid's cells along x
 constexpr double REFERENCES[] = {4, 3, 2.5, 2, 1.6}; // likewise
 constexpr double LEAST_H = 1.15;                     // cells of a run that is compared, in units of the reference's
+constexpr double FINER[] = {1.6, 1.3}, FINER_TIME = 0.4; // cells along x over the chosen settings'; share of the time, beyond it
 constexpr int ATTEMPTS = 4;
 constexpr double ENOUGH = 0.9; // of the budget
 
@@ -42,6 +43,7 @@ class Tuner {
     std::vector<Run> ladder_;
     std::vector<WayModel> models_;
     std::optional<Run> reference_;
+    ErrorFit sand_fit_, water_fit_; // of the reference's way, cells in units of the reference's
 
     double seconds() const { return 60 * request_.minutes; }
     double spent() const { return now(request_.device) - start_; }
@@ -59,6 +61,7 @@ class Tuner {
     void climb();
     void fit_times();
     void try_tiles();
+    std::pair<Way, const WayModel*> finest_way() const;
     void refer();
     void fit_errors();
     template <class Wanted> std::vector<ErrorPoint> differences(bool sand, const Wanted& wanted) const;
@@ -66,6 +69,7 @@ class Tuner {
     [[noreturn]] void refuse(const Candidate& cheapest) const;
     void confirm(const Candidate& candidate);
     void measure_load();
+    bool refer_finer();
     void measure_errors();
 };
 
@@ -194,8 +198,8 @@ void Tuner::try_tiles() {
     }
 }
 
-/// The finest run that the time allows.
-void Tuner::refer() {
+/// The way of reference runs, and the model that tells their time.
+std::pair<Way, const WayModel*> Tuner::finest_way() const {
     Way way = reference_way(level_, outcome_.sand.exists, outcome_.water.exists);
     const WayModel* model = &models_.front();
     for (const WayModel& known : models_) {
@@ -208,6 +212,14 @@ void Tuner::refer() {
         way.water_order = model->way.water_order;
         way.sand_order = model->way.sand_order;
     }
+    return {way, model};
+}
+
+/// The finest run that the time allows.
+void Tuner::refer() {
+    const auto finest = finest_way();
+    const Way& way = finest.first;
+    const WayModel* const model = finest.second;
     const double room = BEFORE_CONFIRMING * seconds() - spent();
     const auto try_with = [&](double times, int parts) {
         const Settings settings = sized(std::min(times * measured_nx_, 16384.0), way);
@@ -257,6 +269,7 @@ void Tuner::fit_errors() {
         told.moved = told.exists && !own.empty();
         if (!told.moved) continue;
         const ErrorFit fit = fit_own(own);
+        (sand ? sand_fit_ : water_fit_) = fit;
         told.order = fit.order;
         told.converges = own.size() > 1 && fit.converges();
         told.reference = told.converges ? fit.at(1) : 0;
@@ -333,9 +346,36 @@ void Tuner::confirm(const Candidate& candidate) {
     outcome_.spread = (*slowest - *quickest) / *quickest;
 }
 
-/// Of the chosen settings themselves, where the reference is finer.
+/// A run finer than the chosen settings, over a shorter time of the level where need be, or false: what was planned with was
+/// coarser than what the budget buys, and errors of a model alone were off by twice.
+bool Tuner::refer_finer() {
+    const auto finest = finest_way();
+    const Way& way = finest.first;
+    const WayModel* const model = finest.second;
+    const int whole = static_cast<int>(reference_->parts.size());
+    for (const int parts : {whole, whole / 2}) {
+        if (parts < PARTS / CHECKPOINTS) break;
+        for (const double times : FINER) {
+            const Settings settings = sized(times * outcome_.chosen.settings.nx, way);
+            const double simulated = piece_ * parts / PARTS;
+            if (simulated / level_.dt(settings) * model->time.step(settings.cells()) > FINER_TIME * seconds()) continue;
+            const double h = static_cast<double>(reference_->settings.nx) / settings.nx;
+            Run finer = run(settings, {piece_, true, 1e9, parts});
+            reference_ = std::move(finer);
+            outcome_.reference = settings;
+            outcome_.piece = simulated;
+            outcome_.checkpoints = CHECKPOINTS * parts / PARTS;
+            if (outcome_.sand.converges) outcome_.sand.reference = sand_fit_.at(h);
+            if (outcome_.water.converges) outcome_.water.reference = water_fit_.at(h);
+            return true;
+        }
+    }
+    return false;
+}
+
+/// Of the chosen settings themselves.
 void Tuner::measure_errors() {
-    if (reference_->settings.nx < LEAST_H * outcome_.chosen.settings.nx) return;
+    if (reference_->settings.nx < LEAST_H * outcome_.chosen.settings.nx && !refer_finer()) return;
     const Errors apart = errors_against(
         run(outcome_.chosen.settings, {piece_, true, 1e9, static_cast<int>(reference_->parts.size())}), *reference_);
     outcome_.errors_measured = true;
