@@ -12,8 +12,8 @@ Usage: run.sh [--write] [LANE ...]; all lanes where none is named. Exit status 1
 lane         installs                          packages, build  runs
 windows      g++-mingw-w64-x86-64-posix wine64  1.0 GB, 0.8 GB   golden hashes, smallest host, it again WADI_WINE_RUNS (20) times
 aarch64      g++-aarch64-linux-gnu qemu-user    0.3 GB, 0.1 GB   that rows of stages are vectors (NEON), golden hashes, smallest host
-wasm         emscripten node-acorn              1.0 GB, 0.1 GB   with threads: golden hashes, smallest host; without: smallest host;
-                                                                 both in Chromium where that is installed (package chromium)
+wasm         emscripten node-acorn chromium     1.6 GB, 0.1 GB   in Node.js and in headless Chromium, with threads: golden hashes,
+                                                                 smallest host; without: smallest host; controls of browser.py
 swiftshader  chromium-common (for its driver)   0.1 GB, 0.4 GB   conformance, golden hashes, smallest host on Vulkan
 static       pkg-config                         0, 0.3 GB        smallest host by CMake and by pkg-config with one archive
 
@@ -89,22 +89,32 @@ cell() { # TARGET HASH EXPECTED: the reference has its hashes in the table, what
     if [[ $2 == "$3" && $1 != "x86-64 Linux" ]]; then echo equal; else echo "\`${2:-none}\`"; fi
 }
 
-host_hash() { sed -n 's/.*hash \([0-9a-f]*\).*/\1/p' | tr -d '\r'; }
+host_hash() { # of what a host prints
+    sed -n 's/.*hash \([0-9a-f]*\).*/\1/p' | tr -d '\r'
+}
+
+# Sets $found to the hash that a host printed; good where it is the one kept and the host ended, with status 0.
+limit=1800
+judge() { # WHAT LOG COMMAND ...
+    local what=$1 log=$2 status=0
+    shift 2
+    found=$(timeout "$limit" "$@" 2>"$log" | host_hash) || status=$?
+    [ $status -eq 0 ] || found="${found:-none}, status $status"
+    [[ $found == "$expected" ]] || { echo "$what: hash ${found:-none}, not $expected; see $log"; return 1; }
+}
 
 # RUNNER is a command ahead of a program's name. The golden test says what it found of each scene (-s), whether it is right or wrong.
 run() { # TARGET COMPILER FOLDER SUFFIX RUNNER ...
     local target=$1 compiler=$2 folder=$3 suffix=$4
     shift 4
-    local bin=$work/$folder/bin good=yes host
-    "$@" "$bin/wadi-test-golden$suffix" -s >"$work/$folder.golden.log" 2>&1 || { good=; echo "$target: golden hashes FAILED, see $work/$folder.golden.log"; }
-    host=$("$@" "$bin/wadi-minimal-host$suffix" 2>"$work/$folder.host.log" | host_hash)
-    [[ $host == "$expected" ]] || { good=; echo "$target: smallest host: hash ${host:-MISSING}, not $expected"; }
-    local found=()
+    local bin=$work/$folder/bin good=yes log=$work/${target//[ ,()]/_} found cells=()
+    timeout "$limit" "$@" "$bin/wadi-test-golden$suffix" -s >"$log.golden.log" 2>&1 || { good=; echo "$target: golden hashes FAILED, see $log.golden.log"; }
+    judge "$target: smallest host" "$log.host.log" "$@" "$bin/wadi-minimal-host$suffix" || good=
     for scene in dam_break piles canyon; do
-        found+=("$(cell "$target" "$(sed -n "s/.*${scene}_50 is \([0-9a-f]*\), golden.*/\1/p" "$work/$folder.golden.log" | head -n 1)" \
+        cells+=("$(cell "$target" "$(sed -n "s/.*${scene}_50 is \([0-9a-f]*\), golden.*/\1/p" "$log.golden.log" | head -n 1)" \
             "$(sed -n "s/^${scene}_50 //p" tests/golden/hashes.txt)")")
     done
-    tell "$target" "$compiler" "${found[@]}" "$(cell "$target" "$host" "$expected")"
+    tell "$target" "$compiler" "${cells[@]}" "$(cell "$target" "$found" "$expected")"
     [ -n "$good" ]
 }
 
@@ -130,45 +140,71 @@ lane_aarch64() {
     run "aarch64 Linux" "g++ $(version aarch64-linux-gnu-g++ -dumpfullversion), QEMU $(version qemu-aarch64 --version)" aarch64 "" qemu-aarch64 -L /usr/aarch64-linux-gnu
 }
 
-# A page needs a host without Node.js's files: samples/minimal_host against what was installed, in Node.js and in Chromium.
-wasm_host() { # FOLDER COMPILER_OPTION ...: prints the hashes that were found, "node HASH" and "Chromium HASH"
-    local folder=$work/$1
+# Files that are compiled as one shadow each other's names, of which this clang, unlike g++, warns (no fault).
+wasm_compile="-fexceptions -msimd128 -Wno-error=shadow"
+# Emscripten programs end with main() (EXIT_RUNTIME); pages wait for threads only beside their own (PROXY_TO_PTHREAD).
+wasm_options=(-fexceptions -msimd128 -sEXIT_RUNTIME)
+wasm_threads=(-pthread -sPROXY_TO_PTHREAD -sPTHREAD_POOL_SIZE=8)
+in_node=(node --no-experimental-fetch)
+in_page=(python3 "$here/browser.py" --limit 1500)
+
+# samples/minimal_host against what was installed, in Node.js and in Chromium; then programs that the same judgement must refuse. Sets $hashes.
+wasm_host() { # FOLDER COMPILER_OPTION ...
+    local folder=$work/$1 kind=$1 good=yes found
     shift
     cmake --install "$folder" --component plugin --prefix "$folder/installed" >>"$folder.log" 2>&1 &&
-        emcc -O1 -DWADI_STATIC -I"$folder/installed/include" samples/minimal_host/main.c "$folder/installed/lib/libwadi.a" -lstdc++ -fexceptions -msimd128 \
-            -sINITIAL_MEMORY=256MB "$@" -o "$folder/host.js" >>"$folder.log" 2>&1 || { tail -n 5 "$folder.log"; return 1; }
-    echo "node $(node --no-experimental-fetch "$folder/host.js" 2>>"$folder.host.log" | host_hash)"
-    if command -v chromium >/dev/null; then
-        echo "Chromium $(python3 $here/browser.py "$folder/host.js" 2>>"$folder.host.log" | host_hash)"
-    fi
+        emcc -O1 -DWADI_STATIC -I"$folder/installed/include" samples/minimal_host/main.c "$folder/installed/lib/libwadi.a" -lstdc++ \
+            "${wasm_options[@]}" -sINITIAL_MEMORY=256MB "$@" -o "$folder/host.js" >>"$folder.log" 2>&1 &&
+        emcc -O1 $here/control.c "${wasm_options[@]}" "$@" -o "$folder/control.js" >>"$folder.log" 2>&1 || { tail -n 5 "$folder.log"; return 1; }
+    judge "$kind: installed host in Node.js" "$folder.node.log" "${in_node[@]}" "$folder/host.js" || good=
+    hashes=("$found")
+    judge "$kind: installed host in Chromium" "$folder.page.log" "${in_page[@]}" "$folder/host.js" || good=
+    hashes+=("$found")
+    echo "$kind: installed host in Node.js: ${hashes[0]:-no hash}, in Chromium: ${hashes[1]:-no hash}"
+
+    local control=(python3 "$here/browser.py" --limit 10 "$folder/control.js") log=$folder.control.log refused
+    judge "$kind: control" "$log" "${control[@]}" "$expected" 0 || good=
+    for wrong in "$expected 1" "$expected hang" "${expected:1}0 0"; do
+        # shellcheck disable=SC2086
+        if refused=$(judge control "$log" "${control[@]}" $wrong); then
+            echo "$kind: a page that prints and ends with \"$wrong\" is taken for right"
+            good=
+        else
+            echo "$kind: refused as it must be: ${refused%;*}"
+        fi
+    done
+    [ -n "$good" ]
 }
 
 lane_wasm() {
-    samples/install_packages.sh emscripten node-acorn || return 1
+    samples/install_packages.sh emscripten node-acorn chromium || return 1
     # Where Node.js is not Debian's it does not look for Debian's modules; a build's time goes into starting emcc.
     export NODE_PATH=/usr/share/nodejs EMSDK_PYTHON=/usr/bin/python3
-    local toolchain=/usr/share/emscripten/cmake/Modules/Platform/Emscripten.cmake good=yes kind hashes
-    local options=("-DCMAKE_TOOLCHAIN_FILE=$toolchain" -DCMAKE_CROSSCOMPILING_EMULATOR= -DCMAKE_UNITY_BUILD=ON -DCMAKE_CXX_FLAGS_RELEASE="-O1 -DNDEBUG" -DWADI_OPTIMISE_BASE=-O2)
-    build wasm "wadi wadi-test-golden wadi-minimal-host" "${options[@]}" -DCMAKE_CXX_FLAGS="-pthread -fexceptions -msimd128" -DCMAKE_C_FLAGS=-pthread \
-        -DCMAKE_EXE_LINKER_FLAGS="-sPROXY_TO_PTHREAD -sPTHREAD_POOL_SIZE=8 -sINITIAL_MEMORY=1GB -sEXIT_RUNTIME -sNODERAWFS" &&
-        run "WebAssembly" "Emscripten $(version emcc --version), Node.js $(version node --version)" wasm .js node --no-experimental-fetch || return 1
-    build wasm_single wadi "${options[@]}" -DWADI_TESTS=OFF -DWADI_SAMPLES=OFF -DCMAKE_CXX_FLAGS="-fexceptions -msimd128" || return 1
-    for kind in wasm wasm_single; do
-        local threads=()
-        [ $kind != wasm ] || threads=(-pthread -sPROXY_TO_PTHREAD -sPTHREAD_POOL_SIZE=8 -sEXIT_RUNTIME)
-        hashes=$(wasm_host $kind "${threads[@]}") || { echo "$hashes"; return 1; }
-        while read -r where hash; do
-            echo "$kind: smallest host in $where: hash ${hash:-MISSING}"
-            [[ $hash == "$expected" ]] || good=
-        done <<<"$hashes"
-        [ $kind != wasm_single ] || tell "WebAssembly without threads" "the same" "-" "-" "-" "$(cell wasm "${hashes##* }" "$expected")"
+    local toolchain=/usr/share/emscripten/cmake/Modules/Platform/Emscripten.cmake good=yes embedded="" file hashes=() emscripten node chromium
+    emscripten="Emscripten $(version emcc --version)" node="Node.js $(version node --version)" chromium="Chromium $(version chromium --version)"
+    python3 $here/test_browser.py || good=
+    # What the golden test reads lies in the programs: a page has no files. They are linked anew, so that it is what the files are now.
+    for file in tests/golden/hashes.txt samples/levels/{dam_break,piles,canyon}/level.json samples/levels/canyon/terrain.png; do
+        embedded+=" --embed-file $PWD/$file@$PWD/$file"
     done
+    rm -f "$work"/wasm/bin/*.js
+    local options=("-DCMAKE_TOOLCHAIN_FILE=$toolchain" -DCMAKE_CROSSCOMPILING_EMULATOR= -DCMAKE_UNITY_BUILD=ON -DCMAKE_CXX_FLAGS_RELEASE="-O1 -DNDEBUG" -DWADI_OPTIMISE_BASE=-O2)
+    build wasm "wadi wadi-test-golden wadi-minimal-host" "${options[@]}" -DCMAKE_CXX_FLAGS="-pthread $wasm_compile" -DCMAKE_C_FLAGS=-pthread \
+        -DCMAKE_EXE_LINKER_FLAGS="${wasm_options[*]} ${wasm_threads[*]} -sINITIAL_MEMORY=1GB$embedded" || return 1
+    run "WebAssembly" "$emscripten, $node" wasm .js "${in_node[@]}" || good=
+    run "WebAssembly, a page" "$emscripten, $chromium" wasm .js "${in_page[@]}" || good=
+    wasm_host wasm "${wasm_threads[@]}" || good=
+
+    build wasm_single wadi "${options[@]}" -DWADI_TESTS=OFF -DWADI_SAMPLES=OFF -DCMAKE_CXX_FLAGS="$wasm_compile" || return 1
+    wasm_host wasm_single || good=
+    tell "WebAssembly without threads" "$emscripten, $node" "-" "-" "-" "$(cell wasm "${hashes[0]:-}" "$expected")"
+    tell "WebAssembly without threads, a page" "$emscripten, $chromium" "-" "-" "-" "$(cell wasm "${hashes[1]:-}" "$expected")"
     [ -n "$good" ]
 }
 
 lane_swiftshader() {
     samples/install_packages.sh chromium-common || return 1
-    local driver native=${WADI_NATIVE_BUILD:-} suite failed=0 host
+    local driver native=${WADI_NATIVE_BUILD:-} suite failed=0
     driver=$(dpkg -L chromium-common | grep vk_swiftshader_icd.json) || { echo "swiftshader: chromium-common has no vk_swiftshader_icd.json"; return 1; }
     if [ -z "$native" ]; then
         native=$work/native
