@@ -19,3 +19,6 @@ done
 cp "$root/samples/levels/canyon/terrain.png" "$here/levels/canyon"
 # A map is read as it is, in exported games too: Godot must not turn it into a texture.
 printf '[remap]\n\nimporter="keep"\n' > "$here/levels/canyon/terrain.png.import"
+# Ahead of the engine's first look: one without a screen that finds an extension by itself crashes as it ends (godotengine/godot 123511).
+mkdir -p "$here/.godot"
+[ -e "$here/.godot/extension_list.cfg" ] || echo "res://addons/wadi/wadi.gdextension" > "$here/.godot/extension_list.cfg"

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # Starts Godot 4.4 or later with the given arguments: the command in WADI_GODOT, or the installed "godot", or the one of a folder with
 # Debian sid that this script makes once (WADI_GODOT_FOLDER, /opt/godot-sid; 1.7 GB, needs root and debootstrap). Exit status 77 and a
-# reason where there is none. With --screen ahead the engine gets an X server of its own and a software Vulkan driver.
+# reason where there is none. With --screen ahead the engine gets an X server of its own and a software Vulkan driver; with --run COMMAND
+# behind that another command is started where the engine would be: an exported game.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 folder=${WADI_GODOT_FOLDER:-/opt/godot-sid}
-packages="godot mesa-vulkan-drivers libvulkan1 xvfb xauth gcc libc6-dev"
+packages="godot godot-template-release mesa-vulkan-drivers libvulkan1 xvfb xauth gcc libc6-dev"
 
 no_godot() { echo "godot.sh: no Godot 4.4: $1" >&2; exit 77; }
 
@@ -43,12 +44,17 @@ if [ "${1:-}" = --screen ]; then
     screen=(xvfb-run -a -s "-screen 0 1280x720x24")
     export LP_NUM_THREADS=${LP_NUM_THREADS:-2}
 fi
+command=
+if [ "${1:-}" = --run ]; then
+    command=$2
+    shift 2
+fi
 if [ -n "${WADI_GODOT:-}" ]; then
     new_enough "$WADI_GODOT" || no_godot "WADI_GODOT=\"$WADI_GODOT\" does not start or is older"
-    exec "${screen[@]}" $WADI_GODOT "$@"
+    exec "${screen[@]}" ${command:-$WADI_GODOT} "$@"
 fi
-if new_enough godot; then exec "${screen[@]}" godot "$@"; fi
+if new_enough godot; then exec "${screen[@]}" "${command:-godot}" "$@"; fi
 [ -e "$folder/.ready" ] || make_folder
 mount_folder || no_godot "$folder cannot be mounted"
 [ ${#screen[@]} -eq 0 ] || export VK_DRIVER_FILES=/usr/share/vulkan/icd.d/lvp_icd.json
-exec chroot "$folder" sh -c 'cd "$1" && shift && exec "$@"' sh "$PWD" "${screen[@]}" godot "$@"
+exec chroot "$folder" sh -c 'cd "$1" && shift && exec "$@"' sh "$PWD" "${screen[@]}" "${command:-godot}" "$@"

@@ -1,3 +1,5 @@
+#define _DEFAULT_SOURCE /* mkdtemp */
+
 #include "level.h"
 
 #include "engine.h"
@@ -6,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #define FIELD(type, name) #type " " #name, offsetof(Level, name)
 static void changed(void* self) {
@@ -76,6 +79,42 @@ static wadi_result from_text(const char* path, const wadi_level_overrides* overr
     return result;
 }
 
+/* A map alone, which the library reads from the disk itself: where only the engine has it, in an exported game's pack, by way of
+ * a folder of its own. The map keeps its name there, which is the level's. */
+static wadi_result from_map(const char* path, const wadi_level_overrides* overrides, const wadi_device_options* options,
+                            wadi_world_id* world, char* message, size_t size) {
+    char* global = global_path(path);
+    if (global && access(global, R_OK) == 0) {
+        const wadi_result result = wadi_create_world_from_level(global, overrides, options, world);
+        free(global);
+        return result;
+    }
+    free(global);
+    const char *temporary = getenv("TMPDIR"), *slash = strrchr(path, '/');
+    char folder[1024], file[2048];
+    snprintf(folder, sizeof folder, "%s/wadi-map-XXXXXX", temporary && *temporary ? temporary : "/tmp");
+    if (!mkdtemp(folder)) {
+        snprintf(message, size, "level.file: \"%s\" is in a pack, and no folder \"%s\" can be made to read it from", path,
+                 folder);
+        return WADI_ERROR_BAD_FILE;
+    }
+    snprintf(file, sizeof file, "%s/%s", folder, slash ? slash + 1 : path);
+    PackedByteArray bytes = file_bytes(path);
+    const size_t has = bytes_size(&bytes);
+    FILE* out = fopen(file, "wb");
+    const bool written = out && (has == 0 || fwrite(bytes_data(&bytes), 1, has, out) == has);
+    const bool closed = out && fclose(out) == 0;
+    value_free(GDEXTENSION_VARIANT_TYPE_PACKED_BYTE_ARRAY, &bytes);
+    wadi_result result = WADI_ERROR_BAD_FILE;
+    if (written && closed)
+        result = wadi_create_world_from_level(file, overrides, options, world);
+    else
+        snprintf(message, size, "level.file: \"%s\" is in a pack and cannot be written to \"%s\" to read it from", path, file);
+    unlink(file);
+    rmdir(folder);
+    return result;
+}
+
 static bool ends_in(const char* text, const char* end) {
     const size_t length = strlen(text), wanted = strlen(end);
     return length >= wanted && strcmp(text + length - wanted, end) == 0;
@@ -97,10 +136,8 @@ static wadi_result from_file(const Level* level, const char* path, const wadi_de
         result = WADI_ERROR_NOT_FOUND;
     } else if (ends_in(path, ".json")) {
         result = from_text(path, &overrides, options, world);
-    } else { /* the library reads a map from the disk itself */
-        char* global = global_path(path);
-        result = wadi_create_world_from_level(global ? global : path, &overrides, options, world);
-        free(global);
+    } else {
+        result = from_map(path, &overrides, options, world, message, size);
     }
     free(variant);
     free(method);
