@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The attack on the library as a host would see it: a minute of it, or with --full all of it (about an hour on two cores).
+# The attack on the library as a host would see it: a minute of it, or with --full all of it (a quarter of an hour on two cores without a GPU).
 # Usage: tests/faults/attack.sh BIN [--full]; BIN: the folder of the programs, such as build/release/bin.
 set -uo pipefail
 bin=$1

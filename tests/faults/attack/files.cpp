@@ -117,7 +117,7 @@ int files() {
         {"r16", "holes of 256 GiB", "largest accepted", [&] { return with_map("holes.r16"); }},
         {"snapshot", "holes of 1 TiB", "largest snapshot", [&] { return wadi_world_load_file(world(), huge.c_str()); }},
         {"commands", "as written", "", [&] { return play(log, [](auto&) {}); }},
-        {"commands", "cut", "there are 159", [&] { return play(log, [](auto& bytes) { bytes.resize(bytes.size() - 1); }); }},
+        {"commands", "cut", "there are 159", [&] { return play(log, [](auto& bytes) { bytes.pop_back(); }); }},
         {"commands", "a count of 2^32 - 1", "checksum",
          [&] { return play(log, [](auto& bytes) { std::fill_n(bytes.begin() + 32, 8, static_cast<unsigned char>(255)); }); }},
     };

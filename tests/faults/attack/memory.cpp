@@ -40,7 +40,7 @@ std::string memory_group(const std::string& bytes) {
 } // namespace
 
 int memory() {
-    for (const std::uint64_t mebibytes : {4, 16, 48, 100, 300}) {
+    for (const std::uint64_t mebibytes : {4U, 16U, 48U, 100U, 300U}) {
         const auto ran = run_child([&] {
             const rlim_t most = pages(0) * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + (mebibytes << 20);
             const rlimit limit{most, most};
