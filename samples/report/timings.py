@@ -3,7 +3,7 @@
 Figure 4), and what several sand substeps per water step save and cost (its supplement's section 2); what second order for water and the
 accuracy presets cost. Writes CSVs, charts and the generated part of samples/report/timings/README.md, section by section.
 
-usage: samples/report/timings.py BIN_FOLDER [--backends cuda,vulkan,cpu] [--threads 2] [--largest 4096] [--steps 200 | --quick] [--out DIR]
+usage: samples/report/timings.py BIN_FOLDER [--backends cuda,vulkan,cpu] [--threads 2] [--largest 4096] [--steps 200 | --quick] [--only table_2 scaling order presets budget asynchronous] [--out DIR]
 """
 import argparse
 import csv
@@ -42,6 +42,7 @@ ORDER_SIZES = {"cpu": (512, 1024), "": (512, 1024, 4096)}  # by backend, "": any
 PRESET_SIZE = 1024  # cells along a side of `balanced`
 BUDGET = {"level": "beach", "seconds": 10, "sizes": (256, 512, 1024), "truth": 2048, "substeps": 2, "frames": 60}  # frames per second
 PAIRS = 3  # pairs of runs of a ratio
+SECTIONS = ("table_2", "scaling", "order", "presets", "budget", "asynchronous")
 BEGIN, END = "<!-- timings.py writes from here -->\n", "<!-- to here -->\n"
 
 
@@ -282,6 +283,7 @@ def main():
     parser.add_argument("--largest", type=int, default=4096)
     parser.add_argument("--steps", type=int, default=200, help="of the timed runs on GPUs; a twentieth on the CPU")
     parser.add_argument("--quick", action="store_true", help="grids an eighth as wide, few steps: shows that the script runs, measures nothing")
+    parser.add_argument("--only", nargs="+", choices=SECTIONS, default=SECTIONS, metavar="SECTION", help=f"of {', '.join(SECTIONS)}; the page has these alone")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path(__file__).resolve().parent / "timings")
     options = parser.parse_args()
     shrink, largest, steps, sand_substeps = (8, 128, 20, (1, 3)) if options.quick else (1, options.largest, options.steps, ASYNC["ratios"])
@@ -292,18 +294,20 @@ def main():
     recorders = {backend: recordings.Recorder(options.programs / "wadi-recorder", backend, options.threads) for backend in options.backends.split(",")}
     first = next(iter(recorders.values()))
     ratio_of = {backend: recorder for backend, recorder in recorders.items() if recorder is first or backend == "cpu"}
-    sections = (lambda: two_text(table_two(recorders, shrink, steps), options.out),
-                lambda: scaling_text(scaling(recorders, largest, steps), options.out),
-                lambda: orders_text(orders(ratio_of, largest, steps), options.out),
-                lambda: presets_text(preset_costs(ratio_of, largest, steps), options.out),
-                lambda: budget_text(budget(first, shrink), options.out, first.backend, shrink),
-                lambda: async_text({method: asynchronous(first, method, sand_substeps) for method in METHODS}, options.out, first.backend))
+    sections = {
+        "table_2": lambda: two_text(table_two(recorders, shrink, steps), options.out),
+        "scaling": lambda: scaling_text(scaling(recorders, largest, steps), options.out),
+        "order": lambda: orders_text(orders(ratio_of, largest, steps), options.out),
+        "presets": lambda: presets_text(preset_costs(ratio_of, largest, steps), options.out),
+        "budget": lambda: budget_text(budget(first, shrink), options.out, first.backend, shrink),
+        "asynchronous": lambda: async_text({method: asynchronous(first, method, sand_substeps) for method in METHODS}, options.out, first.backend)}
     try:
         lines = ["Measured on " + "; ".join(f"{backend}: {device_name(recorder)}" for backend, recorder in recorders.items()) + ".", ""]
-        for section in sections:
-            lines += section()
+        for section in options.only:
+            lines += sections[section]()
             page.write_text(text[:start] + "\n".join(lines) + text[end:])
-        page.write_text(text[:start] + "\n".join([*lines, stamps.stamp("timings"), ""]) + text[end:])
+        tail = stamps.STAMP.sub("", text[end:]).rstrip()
+        page.write_text(text[:start] + "\n".join(lines) + tail + "\n\n" + stamps.stamp("timings") + "\n")
     finally:
         for recorder in recorders.values():
             recorder.close()
