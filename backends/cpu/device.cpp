@@ -268,6 +268,10 @@ void CpuDevice::prepare(Recorded& program) {
         }
         step.rows_per_grab = std::max(1, step.rows() / (8 * pool_->size()));
         if (step.active.activity != nullptr) step.rows_per_grab = std::min(step.rows_per_grab, program.params.tile_size);
+        if (step.stage->extent == compute::Extent::tile_lines) { // the lines of a tile store to the same numbers: by one thread
+            const int size = program.params.tile_size;
+            step.rows_per_grab = (step.rows_per_grab + size - 1) / size * size;
+        }
     }
     program.prepared = true;
 }
