@@ -54,6 +54,8 @@ func _ready() -> void:
 		world.time_dropped.connect(func(seconds: float) -> void: _leave("%f s dropped" % seconds, 1))
 	else:
 		world.time_dropped.connect(func(seconds: float) -> void: $Late.text = "%.0f ms late" % (1000 * seconds))
+	if RenderingServer.get_current_rendering_method() == "gl_compatibility":
+		$Sun.shadow_enabled = false  # there a light with shadows is added behind tone mapping, and the sum is too bright
 	world.device_lost.connect(func(message: String) -> void: _leave("device lost: " + message, 1))
 	# The scenes keep `running` off, so that arguments count before the world is made.
 	if world.start() != OK:

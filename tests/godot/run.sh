@@ -41,12 +41,15 @@ script() { # NAME SCRIPT ENGINE_OPTION ... -- ARGUMENT ...
     grep -q "^[1-9][0-9]* checks passed, 0 failed$" "$log" || good=
     ! grep -q "SCRIPT ERROR\|leaked at exit\|RIDs of type\|handle_crash" "$log" || good=
     echo "$name: ${good:-FAILED, see $log} ($((SECONDS - start)) s)"
-    [ -n "$good" ] || { failed=yes && grep "FAIL\|SCRIPT ERROR\|leaked\|RIDs of\|checks passed" "$log" | head -n 20; }
+    [ -n "$good" ] || { failed=yes && grep "FAIL\|SCRIPT ERROR\|leaked\|RIDs of\|checks passed" "$log" | head -n 20 || true; }
 }
 headless() { script "$1" "$2" --headless --path "$project" --script "$2" "${@:3}"; }
-window() {
-    script "$1" "$2" --screen --rendering-driver vulkan --rendering-method mobile --audio-driver Dummy --path "$project" --script "$2" "${@:3}"
+drawn() { # METHOD NAME SCRIPT -- ARGUMENT ...
+    local driver=vulkan
+    [ "$1" != gl_compatibility ] || driver=opengl3
+    script "$2" "$3" --screen --rendering-driver $driver --rendering-method "$1" --audio-driver Dummy --path "$project" --script "$3" "${@:4}"
 }
+window() { drawn mobile "$@"; }
 headless hash_cpu hash.gd -- "$work/castle" cpu
 headless hash_vulkan hash.gd -- "$work/castle" vulkan
 headless docs docs.gd -- "$root/plugin/godot/doc_classes"
@@ -60,6 +63,14 @@ window textures_host hash.gd -- "$work/castle" cpu
 window shared shared.gd -- "$work/castle"
 window leaks_shared leaks.gd -- "$work/castle" vulkan 30 400 share
 window picture picture.gd -- "$work/castle"
+drawn forward_plus picture_forward picture.gd -- "$work/castle"
+drawn gl_compatibility picture_compatibility picture.gd -- "$work/castle"
+drawn mobile renderer_mobile renderer.gd -- shared
+drawn forward_plus renderer_forward renderer.gd -- shared
+drawn gl_compatibility renderer_compatibility renderer.gd -- copied
+if asked_for renderer_compatibility && ! grep -q "share_device: this renderer has no RenderingDevice" "$work/renderer_compatibility.log"; then
+    echo "renderer_compatibility: FAILED, does not say why the device is not shared" && failed=yes
+fi
 window costs costs.gd
 if asked_for costs; then grep "^|" "$work/costs.log" || failed=yes; fi
 if asked_for export; then

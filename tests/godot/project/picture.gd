@@ -4,7 +4,8 @@ extends SceneTree
 
 const SIZE := Vector2i(480, 270)
 const BLOCK := 10 # pixels: what drivers draw otherwise along edges is lost in the mean of so many
-const ALLOWED := 0.006 # mean difference of blocks, of 1
+# Mean difference of blocks, of 1: foam depends on the time of the frame, and Compatibility lights 4 of 255 darker.
+const ALLOWED := {"forward_plus": 0.008, "mobile": 0.008, "gl_compatibility": 0.018}
 
 func drawn(water: bool) -> Image:
 	var view := SubViewport.new()
@@ -57,7 +58,8 @@ func _initialize() -> void:
 	if kept != null:
 		var off := difference(image, kept)
 		var dry := difference(await drawn(false), kept)
+		var allowed: float = ALLOWED[RenderingServer.get_current_rendering_method()]
 		print("difference from the stored picture %.4f, without water %.4f" % [off, dry])
-		check.that(off <= ALLOWED, "the picture is the stored one: %.4f" % off)
-		check.that(dry > 2 * ALLOWED, "control: without water it is another: %.4f" % dry)
+		check.that(off <= allowed, "the picture is the stored one: %.4f" % off)
+		check.that(dry > off + 0.01 and dry > allowed, "control: without water it is another: %.4f" % dry)
 	check.done(self)
