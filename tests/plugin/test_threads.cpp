@@ -17,10 +17,13 @@ using namespace wadi::test;
 TEST_CASE("two threads on one world: each call works or says BUSY, and what was done is what was counted") {
     auto world = mixed_world("cpu", 24);
     std::atomic<unsigned> stepped{0}, busy{0}, wrong{0};
+    std::atomic<int> begun{0};
     const auto hammer = [&] {
-        for (int n = 0; n < 300; ++n) {
+        ++begun;
+        while (begun < 2) std::this_thread::yield(); // or one is through before the other begins
+        for (int n = 0, done = 0; done < 60 && n < 1'000'000; ++n) {
             const auto result = wadi_world_step(world.id, 1);
-            if (result == WADI_OK) ++stepped;
+            if (result == WADI_OK) ++stepped, ++done;
             if (result == WADI_ERROR_BUSY) ++busy;
             if (result == WADI_ERROR_BUSY && !error_mentions("wadi_world_step: another call is inside this world")) ++wrong;
             if (result != WADI_OK && result != WADI_ERROR_BUSY) ++wrong;
@@ -34,6 +37,7 @@ TEST_CASE("two threads on one world: each call works or says BUSY, and what was 
     second.join();
     CHECK(wrong == 0);
     MESSAGE("stepped " << stepped.load() << ", busy " << busy.load());
+    CHECK(stepped == 120);
     CHECK(steps_of(world) == stepped);
     auto alone = mixed_world("cpu", 24);
     step(alone, stepped);
