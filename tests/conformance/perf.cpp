@@ -310,10 +310,9 @@ Status measure_host_work(Device& device, int size, const PerfOptions& options, s
     return status;
 }
 
-void print(const Session& session, const Device& device, const PerfOptions& options, const Ceiling& ceiling,
-           const std::vector<Row>& rows, bool first) {
-    const char* clock = device.capabilities().timestamps ? "device" : "host";
-    const std::string label = session.target().label();
+const char* clock_of(const Device& device) { return device.capabilities().timestamps ? "device" : "host"; }
+
+void print_head(const Session& session, const Device& device, const PerfOptions& options, const Ceiling& ceiling, bool first) {
     if (options.csv && first)
         std::printf(
             "backend,device,driver,clock,row,size,repeats,median_ms,p95_ms,bytes,GB_per_s,share_of_ceiling,cells_per_s,"
@@ -321,11 +320,18 @@ void print(const Session& session, const Device& device, const PerfOptions& opti
     if (!options.csv) {
         std::printf(
             "\n%s: %s (%s), %s clock, %d repeats\ncopy ceiling %.1f GB/s (Copy operation %.1f, stage publish_velocity %.1f)\n",
-            label.c_str(), device.capabilities().name.c_str(), device.capabilities().driver.c_str(), clock, options.repeats,
-            ceiling.best() * 1e-9, ceiling.copy * 1e-9, ceiling.stage * 1e-9);
+            session.target().label().c_str(), device.capabilities().name.c_str(), device.capabilities().driver.c_str(),
+            clock_of(device), options.repeats, ceiling.best() * 1e-9, ceiling.copy * 1e-9, ceiling.stage * 1e-9);
         std::printf("%-30s %6s %10s %10s %9s %7s %10s %9s %7s %9s %9s %9s\n", "row", "size", "median ms", "p95 ms", "GB/s",
                     "share", "Mcells/s", "floor ms", "B/cell", "world MiB", "host us", "host p95");
     }
+    std::fflush(stdout);
+}
+
+// Takes the rows away: what is measured is seen at once, and kept where the rest is broken off.
+void print_rows(const Session& session, const Device& device, const PerfOptions& options, const Ceiling& ceiling,
+                std::vector<Row>& rows) {
+    const std::string label = session.target().label();
     for (const Row& row : rows) {
         const double median = quantile(row.milliseconds, 0.5), p95 = quantile(row.milliseconds, 0.95);
         const double rate = row.bytes / (median * 1e-3), cells = static_cast<double>(row.size) * row.size / (median * 1e-3);
@@ -334,9 +340,9 @@ void print(const Session& session, const Device& device, const PerfOptions& opti
         const double host = quantile(row.host_microseconds, 0.5), host_p95 = quantile(row.host_microseconds, 0.95);
         if (options.csv) {
             std::printf("%s,%s,%s,%s,%s,%d,%zu,%.6f,%.6f,%.0f,%.3f,%.4f,%.0f,", label.c_str(),
-                        csv_field(device.capabilities().name).c_str(), csv_field(device.capabilities().driver).c_str(), clock,
-                        csv_field(row.name).c_str(), row.size, row.milliseconds.size(), median, p95, row.bytes, rate * 1e-9,
-                        rate / ceiling.best(), cells);
+                        csv_field(device.capabilities().name).c_str(), csv_field(device.capabilities().driver).c_str(),
+                        clock_of(device), csv_field(row.name).c_str(), row.size, row.milliseconds.size(), median, p95, row.bytes,
+                        rate * 1e-9, rate / ceiling.best(), cells);
             step ? std::printf("%.6f,%.1f,%.0f,%.2f,%.2f,", floor_ms, row.bytes_per_cell, row.world_bytes, host, host_p95)
                  : std::printf(",,,,,");
             std::printf("%.3f,%.3f\n", ceiling.copy * 1e-9, ceiling.stage * 1e-9);
@@ -348,6 +354,7 @@ void print(const Session& session, const Device& device, const PerfOptions& opti
                  : std::printf("\n");
         }
     }
+    rows.clear();
     std::fflush(stdout);
 }
 
@@ -358,12 +365,17 @@ Status run_perf(Session& session, const PerfOptions& options, bool first) {
     if (!device) return device.status();
     auto ceiling = measure_ceiling(**device, options.max_size, options.repeats);
     if (!ceiling) return ceiling.status();
+    print_head(session, **device, options, *ceiling, first);
     std::vector<Row> rows;
+    const auto told = [&](Status status) {
+        print_rows(session, **device, options, *ceiling, rows);
+        return status;
+    };
     std::vector<bool> kinds = {false};
     if ((*device)->capabilities().fused_gain_cells > 0) kinds.push_back(true);
     for (int size = options.min_size; size <= options.max_size; size *= 2) {
         for (const bool fused : kinds)
-            if (auto status = measure_stages(**device, size, fused, options, rows); !status) return status;
+            if (auto status = told(measure_stages(**device, size, fused, options, rows)); !status) return status;
         if (!options.stage.empty()) continue;
         constexpr std::uint32_t published =
             EFFECT_SEMI_LAGRANGIAN | EFFECT_WHOLE_STRAIN | EFFECT_EXPLICIT_DRAG | EFFECT_LAPLACE_DIFFUSION;
@@ -377,12 +389,11 @@ Status run_perf(Session& session, const PerfOptions& options, bool first) {
         for (const auto& [name, effects] : steps) {
             for (const bool fused : kinds) {
                 const std::string row = name + std::string(fused ? ", fused" : "");
-                if (auto status = measure_step(**device, size, row, effects, fused, options, rows); !status) return status;
+                if (auto status = told(measure_step(**device, size, row, effects, fused, options, rows)); !status) return status;
             }
         }
-        if (auto status = measure_host_work(**device, size, options, rows); !status) return status;
+        if (auto status = told(measure_host_work(**device, size, options, rows)); !status) return status;
     }
-    print(session, **device, options, *ceiling, rows, first);
     return ok_status();
 }
 
