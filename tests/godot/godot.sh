@@ -6,7 +6,7 @@
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 folder=${WADI_GODOT_FOLDER:-/opt/godot-sid}
-packages="godot godot-template-release mesa-vulkan-drivers libvulkan1 xvfb xauth gcc libc6-dev"
+packages="godot godot-template-release xdotool mesa-vulkan-drivers libvulkan1 xvfb xauth gcc libc6-dev"
 
 no_godot() { echo "godot.sh: no Godot 4.4: $1" >&2; exit 77; }
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Tests of the Godot extension: builds it, and a C host beside it from the installed library, and runs the scripts of project/ in Godot,
 # headless and on a software Vulkan device; then what the add-on draws and the games (play.sh). Usage: run.sh [BUILD] [SCRIPT ...];
-# BUILD (build/ci) has the library; SCRIPT: a name below, export or play. Exit status 77 where there is no Godot (godot.sh says why).
+# BUILD (build/ci) has the library; SCRIPT: a name below, export, editor or play. Exit status 77 where there is no Godot (godot.sh says why).
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
@@ -73,9 +73,10 @@ if asked_for renderer_compatibility && ! grep -q "share_device: this renderer ha
 fi
 window costs costs.gd
 if asked_for costs; then grep "^|" "$work/costs.log" || failed=yes; fi
-if asked_for export; then
-    "$here/export.sh" "$work" >"$work/export.log" 2>&1 && status=0 || status=$?
-    case $status in 0) echo "export: yes" ;; 77) echo "export: left out, $(cat "$work/export.log")" ;; *) failed=yes && cat "$work/export.log" ;; esac
-fi
+for part in export editor; do
+    asked_for $part || continue
+    "$here/$part.sh" "$work" >"$work/$part.log" 2>&1 && status=0 || status=$?
+    case $status in 0) echo "$part: yes" ;; 77) echo "$part: left out, $(cat "$work/$part.log")" ;; *) failed=yes && cat "$work/$part.log" ;; esac
+done
 if asked_for play; then "$here/play.sh" "$work" || failed=yes; fi
 [ -z "$failed" ] || exit 1

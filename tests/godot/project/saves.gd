@@ -24,6 +24,19 @@ func _initialize() -> void:
 	terrain.step(10)
 	check.same(terrain.get_hash(), later, "hash ten steps after loading")
 
+	# What is published after loading is of that state, also where a publish had the same step.
+	var heights: Array[PackedFloat32Array] = []
+	for raised in [false, true, false]:
+		terrain.load_state(state)
+		if raised:
+			terrain.brush(WadiTerrain3D.LAYER_SAND, Vector3.ZERO, 1.0, 0.5)
+		terrain.step(1)
+		terrain.sync_textures()
+		heights.append(terrain.get_heights(Rect2i(Vector2i.ZERO, terrain.get_cells())))
+	check.that(heights[1] != heights[0], "control: a brush changes the heights")
+	check.that(heights[2] == heights[0], "heights after loading, at a step that was published before")
+	terrain.load_state(state)
+
 	# Without waiting.
 	check.same(terrain.begin_save(), OK, "begin_save")
 	check.same(terrain.begin_save(), ERR_BUSY, "a second begin_save")

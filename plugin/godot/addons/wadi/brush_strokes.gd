@@ -25,8 +25,13 @@ func _ready() -> void:
 	if terrain() == null:
 		return
 	terrain().started.connect(_on_started)
-	if terrain().is_started():
+	if terrain().is_started() and _fresh.is_empty():
 		_on_started()
+
+
+## In the editor: the world as it was ahead of strokes that were drawn before this node came.
+func begin_from(state: PackedByteArray) -> void:
+	_fresh = state
 
 
 func _get_configuration_warnings() -> PackedStringArray:
@@ -42,7 +47,7 @@ func _on_started() -> void:
 		_fresh = terrain().save_state()
 	_apply()
 	if Engine.is_editor_hint() and not strokes.is_empty():
-		terrain().step(1)
+		show_now(terrain())
 
 
 ## Takes the world back to its start and draws all strokes: after an undo, in the editor, where time stands still otherwise.
@@ -51,7 +56,15 @@ func show_again() -> void:
 		return
 	terrain().load_state(_fresh)
 	_apply()
-	terrain().step(1)
+	show_now(terrain())
+
+
+## Draws what was done to a world in the editor, where no ticks do.
+static func show_now(world: WadiTerrain3D) -> void:
+	world.step(1)
+	world.sync_textures()
+	var everywhere: Array[Rect2i] = [Rect2i(Vector2i.ZERO, world.get_cells())]
+	world.world_changed.emit(everywhere)
 
 
 func _apply() -> void:

@@ -19,6 +19,7 @@ var _amount := SpinBox.new()
 var _terrain: WadiTerrain3D
 var _drawn := PackedFloat32Array()  # strokes since the button went down
 var _drawing := false
+var _before := PackedByteArray()  # the world ahead of the first stroke
 
 
 func _enter_tree() -> void:
@@ -75,6 +76,8 @@ func _forward_3d_gui_input(camera: Camera3D, event: InputEvent) -> int:
 		_drawing = event.pressed
 		if _drawing:
 			_drawn.clear()
+			if _strokes_of(_terrain) == null:
+				_before = _terrain.save_state()
 			_ray.look(_terrain)
 			_draw(camera, event.position, event.shift_pressed)
 		else:
@@ -95,28 +98,34 @@ func _draw(camera: Camera3D, mouse: Vector2, taking: bool) -> void:
 			-_amount.value if taking else _amount.value, 0.5])
 	_drawn.append_array(stroke)
 	_terrain.brush(_layer.selected, place, stroke[4], stroke[5], stroke[6])
-	_terrain.step(1)
+	Strokes.show_now(_terrain)
+
+
+static func _strokes_of(terrain: WadiTerrain3D) -> Strokes:
+	for child in terrain.get_children():
+		if child is Strokes:
+			return child
+	return null
 
 
 func _keep() -> void:
 	if _drawn.is_empty():
 		return
-	var node: Strokes
-	for child in _terrain.get_children():
-		if child is Strokes:
-			node = child
+	var node := _strokes_of(_terrain)
 	var undo := get_undo_redo()
 	undo.create_action("Wadi: draw", UndoRedo.MERGE_DISABLE, _terrain)
 	var before := PackedFloat32Array()
 	if node == null:
 		node = Strokes.new()
 		node.name = "Strokes"
+		node.begin_from(_before)
 		undo.add_do_method(_terrain, "add_child", node, true)
 		undo.add_do_method(node, "set_owner", EditorInterface.get_edited_scene_root())
 		undo.add_do_reference(node)
+		undo.add_undo_property(node, "strokes", before)  # while it has its terrain
 		undo.add_undo_method(_terrain, "remove_child", node)
 	else:
 		before = node.strokes
+		undo.add_undo_property(node, "strokes", before)
 	undo.add_do_property(node, "strokes", before + _drawn)
-	undo.add_undo_property(node, "strokes", before)
 	undo.commit_action()

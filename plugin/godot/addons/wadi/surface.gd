@@ -9,6 +9,7 @@ extends Node3D
 const Grid := preload("surface_grid.gd")
 const GROUND := preload("ground.gdshader")
 const WATER := preload("water.gdshader")
+const BOUND: Array[StringName] = [&"packed_texture", &"sand_texture", &"flow_texture", &"cells", &"cell_size", &"detail", &"to_terrain"]
 
 ## The terrain; empty: the parent.
 @export var terrain: WadiTerrain3D
@@ -67,6 +68,12 @@ func _notification(what: int) -> void:
 	if what == NOTIFICATION_TRANSFORM_CHANGED:
 		for material in _materials:
 			material.set_shader_parameter("to_terrain", global_transform.affine_inverse())
+	elif what == NOTIFICATION_EDITOR_PRE_SAVE:  # what a world shows is no part of the scene
+		for material in _materials:
+			for parameter in BOUND:
+				material.set_shader_parameter(parameter, null)
+	elif what == NOTIFICATION_EDITOR_POST_SAVE and not _materials.is_empty():
+		_bind(terrain.get_cells(), terrain.get_cell_size())
 
 
 func _get_configuration_warnings() -> PackedStringArray:
