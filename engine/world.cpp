@@ -59,6 +59,7 @@ std::uint64_t World::undisturbed(std::uint64_t most) const {
 
 Status World::jumped() {
     frames_.went_back();
+    outputs_.jumped();
     commands_.went_to(state_.steps);
     return at_boundary();
 }

@@ -178,7 +178,7 @@ Status Outputs::build_interpolation(compute::ProgramBuilder& builder, const Pari
 
 Status Outputs::publish(bool between_steps, double interpolation) {
     if (fields_of(asked_) == 0) return ok_status();
-    if (between_steps && (published_ == 0 || published_step() != state_.steps)) {
+    if (between_steps && (published_ == 0 || jumped_ || published_step() != state_.steps)) {
         const std::size_t set = next_;
         auto& program = publish_[set];
         if (!program) {
@@ -193,6 +193,7 @@ Status Outputs::publish(bool between_steps, double interpolation) {
         sets_[set] = {state_.steps, *ticket};
         next_ = (set + 1) % sets;
         ++published_;
+        jumped_ = false;
         copied_ = false;
     }
     if (published_ > 0 && !copied_) {

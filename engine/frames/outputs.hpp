@@ -62,6 +62,8 @@ class Outputs {
 
     /// To be called as an update begins.
     void begin_update() { copies_.begin_update(); }
+    /// The state is another, at whatever step: loaded, or gone back to. The next update publishes it.
+    void jumped() { jumped_ = true; }
     /// Publishes the state, if it is that `between_steps` and another than last time, and interpolates. `interpolation`: where
     /// the host's time is from the last step but one to the last. Submits nothing where nothing is asked for.
     Status publish(bool between_steps, double interpolation);
@@ -119,6 +121,7 @@ class Outputs {
     std::array<Set, sets> sets_{};
     std::size_t next_ = 0;                            // the set to be written next
     std::uint64_t published_ = 0;                     // since the mask changed
+    bool jumped_ = false;                             // the state, since the last publish
     bool copied_ = false;                             // the current set, to host memory
     std::array<compute::Ticket, 2> interpolations_{}; // the newest
 };

@@ -260,6 +260,38 @@ TEST_CASE("sets in turn: handles stay, current becomes previous, one publish per
     CHECK(on_cpu(world, WADI_OUTPUT_FREE_SURFACE, WADI_OUTPUT_CURRENT) == world.read(WADI_FIELD_FREE_SURFACE));
 }
 
+TEST_CASE("a state that was loaded or gone back to is published, also at a step that was published before") {
+    const World world("cpu");
+    REQUIRE(wadi_world_set_outputs(world.id, WADI_OUTPUT_BIT(WADI_OUTPUT_FREE_SURFACE)) == WADI_OK);
+    REQUIRE(wadi_world_set_rollback(world.id, 2, 1) == WADI_OK);
+    uint64_t size = 0;
+    REQUIRE(wadi_world_save(world.id, nullptr, &size) == WADI_OK);
+    std::vector<unsigned char> start(size);
+    REQUIRE(wadi_world_save(world.id, start.data(), &size) == WADI_OK);
+    CHECK(world.update(2 * step_time).published_step == 2);
+    const auto first = on_cpu(world, WADI_OUTPUT_FREE_SURFACE, WADI_OUTPUT_CURRENT);
+    auto edit = wadi_default_edit();
+    edit.layer = WADI_LAYER_WATER;
+    edit.x0 = edit.y0 = 8;
+    edit.amount = 0.5;
+    for (const bool load : {true, false}) {
+        CAPTURE(load);
+        if (load) REQUIRE(wadi_world_load(world.id, start.data(), size) == WADI_OK);
+        if (!load) REQUIRE(wadi_world_roll_back(world.id, 1, nullptr) == WADI_OK);
+        const auto before = on_cpu(world, WADI_OUTPUT_FREE_SURFACE, WADI_OUTPUT_CURRENT);
+        REQUIRE(wadi_world_edit(world.id, &edit, 1) == WADI_OK);
+        REQUIRE(wadi_world_step(world.id, load ? 2 : 1) == WADI_OK);
+        CHECK(world.update(0).published_step == 2);
+        const auto now = on_cpu(world, WADI_OUTPUT_FREE_SURFACE, WADI_OUTPUT_CURRENT);
+        CHECK(now == world.read(WADI_FIELD_FREE_SURFACE));
+        CHECK(now != before);
+        CHECK(now != first);
+        const auto handle = view(world, WADI_OUTPUT_FREE_SURFACE, WADI_OUTPUT_CURRENT).handle;
+        CHECK(world.update(0).published_step == 2); // once
+        CHECK(view(world, WADI_OUTPUT_FREE_SURFACE, WADI_OUTPUT_CURRENT).handle == handle);
+    }
+}
+
 TEST_CASE("the interpolated set lies between the publishes, at the host's time") {
     for (const bool spread : {false, true}) {
         const World world("cpu");

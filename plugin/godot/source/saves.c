@@ -28,11 +28,7 @@ typedef wadi_result (*Reader)(wadi_world_id world, const void* data, size_t size
 static int64_t read_bytes(Terrain* terrain, const char* call, Reader reader, const PackedByteArray* bytes) {
     if (!world_needed(terrain, call)) return ERROR_UNCONFIGURED;
     const void* data = bytes_data(bytes);
-    wadi_result outcome = reader(terrain->world, data ? data : "", bytes_size(bytes));
-    /* An update publishes where the step is another than at the last publish; a state that was loaded may have the same. A change
-     * of what is asked for begins anew. */
-    if (outcome == WADI_OK) outcome = wadi_world_set_outputs(terrain->world, 0);
-    if (outcome == WADI_OK) outcome = world_set_outputs(terrain);
+    const wadi_result outcome = reader(terrain->world, data ? data : "", bytes_size(bytes));
     terrain->updates_due = 2;
     return outcome == WADI_OK ? ERROR_OK : world_failed(terrain, call, outcome);
 }
