@@ -150,10 +150,10 @@ def numbers_of(recorder, effect):
 def measure(recorder, programs, options):
     with (options.out / f"rows_{kind_of(recorder)}.jsonl").open("a") as file:
         for effect in options.only or SHOWN:
-            if not options.prices:
-                for off in (False, True):
-                    view(programs, effect, off, options.out / f"{effect}_{'off' if off else 'on'}.png")
-            for row in ([] if options.prices else [numbers_of(recorder, effect)]) + [priced(recorder, effect, options.rounds)]:
+            rows = [] if options.prices else [numbers_of(recorder, effect)]
+            for off in () if options.prices else (False, True):
+                view(programs, effect, off, options.out / f"{effect}_{'off' if off else 'on'}.png")
+            for row in [*rows, priced(recorder, effect, options.rounds)]:
                 file.write(json.dumps({**row, "effect": effect, "sources": stamps.state("effects")}) + "\n")
                 file.flush()
 
