@@ -75,11 +75,19 @@ Json candidate_json(const Level& level, const Candidate& c) {
 }
 
 Json told_json(const Told& told) {
+    Json differences = Json::array();
+    for (const ErrorPoint& point : told.differences)
+        differences.push_back({{"cell_size", point.h}, {"percent", point.difference}});
     return {{"exists", told.exists},
             {"moved", told.moved},
             {"converges", told.converges},
             {"order", told.order},
-            {"reference_percent", told.reference}};
+            {"closing_order", told.closing},
+            {"scatter", told.scatter},
+            {"reference_percent", told.reference},
+            {"differences", differences},
+            {"early_checkpoints", told.early},
+            {"early_percent", told.early_percent}};
 }
 
 } // namespace
@@ -116,9 +124,12 @@ std::string report(const Level& level, const Request& request, const Outcome& ou
         if (told.exists && !told.moved)
             text += format("note      %s: nothing of it moves in %.3g s, so no error can be told\n", name, outcome.piece);
         if (told.moved && !told.converges)
-            text += format(
-                "note      %s: runs do not come closer to each other as cells get smaller; errors are at least the differences\n",
-                name);
+            text += format("note      %s: runs do not come closer to each other as cells get smaller; errors are at least half "
+                           "the differences\n",
+                           name);
+        if (told.early > 0)
+            text += format("note      %s: in the first %.3g s they do, and there it is %.2g %% wrong\n", name,
+                           outcome.piece * told.early / outcome.checkpoints, told.early_percent);
     }
     if (!outcome.errors_measured && (outcome.sand.moved || outcome.water.moved))
         text += "note      the errors are the model's: no run finer than these settings fitted into the time (--minutes)\n";

@@ -26,7 +26,8 @@ std::vector<Overlap> overlaps(int from, int to) {
     return list;
 }
 
-std::optional<double> percent_of(const Run& run, const Run& reference, std::vector<float> Surfaces::*field) {
+std::optional<double> percent_of(const Run& run, const Run& reference, std::size_t checkpoints,
+                                 std::vector<float> Surfaces::*field) {
     const auto on_grid = [&](const Surfaces& s) { return averaged(s.*field, s.nx, s.ny, run.at[0].nx, run.at[0].ny); };
     const std::vector<float> start = on_grid(reference.at[0]);
     const auto [lowest, highest] = std::minmax_element(start.begin(), start.end());
@@ -34,7 +35,8 @@ std::optional<double> percent_of(const Run& run, const Run& reference, std::vect
     const std::vector<float>& mine_start = run.at[0].*field;
     double sum = 0, low = 0, high = 0;
     std::size_t count = 0;
-    for (std::size_t time = 1; time < reference.at.size() && time < run.at.size(); ++time) {
+    const std::size_t end = std::min({reference.at.size(), run.at.size(), checkpoints + 1});
+    for (std::size_t time = 1; time < end; ++time) {
         const std::vector<float> truth = on_grid(reference.at[time]), &mine = run.at[time].*field;
         for (std::size_t n = 0; n < truth.size(); ++n) {
             const double moved = static_cast<double>(truth[n]) - static_cast<double>(start[n]);
@@ -78,10 +80,11 @@ std::vector<float> averaged(const std::vector<float>& field, int nx, int ny, int
     return result;
 }
 
-Errors errors_against(const Run& run, const Run& reference) {
+Errors errors_against(const Run& run, const Run& reference, int checkpoints) {
     Errors errors;
-    if (reference.has_sand) errors.sand = percent_of(run, reference, &Surfaces::sand);
-    if (reference.has_water) errors.water = percent_of(run, reference, &Surfaces::surface);
+    const auto count = static_cast<std::size_t>(checkpoints);
+    if (reference.has_sand) errors.sand = percent_of(run, reference, count, &Surfaces::sand);
+    if (reference.has_water) errors.water = percent_of(run, reference, count, &Surfaces::surface);
     return errors;
 }
 

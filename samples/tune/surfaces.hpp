@@ -15,7 +15,8 @@ struct Errors {
 std::vector<float> averaged(const std::vector<float>& field, int nx, int ny, int to_nx, int to_ny);
 
 /// Mean absolute difference, over all cells and checkpoints, of how far a surface has moved since the start: what a grid makes of
-/// walls and edges that stand still is no error of its steps. Both runs must have kept their surfaces at the same times.
-Errors errors_against(const Run& run, const Run& reference);
+/// walls and edges that stand still is no error of its steps. Both runs must have kept their surfaces at the same times, of which
+/// the first `checkpoints` count.
+Errors errors_against(const Run& run, const Run& reference, int checkpoints = CHECKPOINTS);
 
 } // namespace tune

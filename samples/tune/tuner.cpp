@@ -13,8 +13,16 @@ constexpr double WANTED_PIECE = 0.5;                 // of the level's duration,
 constexpr int COARSE_SIDE = 40, LEAST_SIDE = 48;     // cells along the shorter side: of the probe, of the largest measured grid
 constexpr double LADDER[] = {0.35, 0.5, 0.71};       // of the largest measured grid's cells along x
 constexpr double REFERENCES[] = {4, 3, 2.5, 2, 1.6}; // likewise
-constexpr double LEAST_H = 1.15;                     // cells of a run that is compared, in units of the reference's
-constexpr double FINER[] = {1.6, 1.3}, FINER_TIME = 0.4; // cells along x over the chosen settings'; share of the time, beyond it
+constexpr double KIN[] = {0.5, 0.354, 0.25, 0.177};  // cells along x of the reference's coarser kin, over its own
+constexpr double KIN_TIME = 1.2;                     // time of a reference with its kin, over its own
+constexpr int LEAST_KIN_SIDE = 8;
+// The order at which kin must come closer to each other, the same as that of errors. It falls with time: on castle it stays above
+// for all of the piece, on flush and letters mostly for a quarter of it at most.
+constexpr double LEAST_CLOSING = 0.2;
+constexpr double TOLD_H = 1.4;   // cells of settings whose error is told, in units of the reference's
+constexpr double LEAST_H = 1.15; // cells of a run that is compared, in units of the reference's
+constexpr double FINER[] = {1.6, TOLD_H},
+                 FINER_TIME = 0.4; // cells along x over the chosen settings'; share of the time, beyond it
 constexpr int ATTEMPTS = 4;
 constexpr double ENOUGH = 0.9; // of the budget
 
@@ -22,6 +30,12 @@ constexpr double ENOUGH = 0.9; // of the budget
 double usual_cost(const Way& way) {
     return (0.35 + 0.325 * way.substeps) * (way.water_order == 2 ? 1.35 : 1) * (way.sand_order == 2 ? 1.35 : 1);
 }
+
+/// Ways whose errors fall alike with cells.
+bool alike(const Way& a, const Way& b) {
+    return a.water_order == b.water_order && a.sand_order == b.sand_order && a.half_storage == b.half_storage;
+}
+bool same_but_tiles(const Way& a, const Way& b) { return alike(a, b) && a.substeps == b.substeps; }
 
 class Tuner {
   public:
@@ -43,7 +57,7 @@ class Tuner {
     std::vector<Run> ladder_;
     std::vector<WayModel> models_;
     std::optional<Run> reference_;
-    ErrorFit sand_fit_, water_fit_; // of the reference's way, cells in units of the reference's
+    double scale_ = 1; // of the models' times
 
     double seconds() const { return 60 * request_.minutes; }
     double spent() const { return now(request_.device) - start_; }
@@ -62,9 +76,16 @@ class Tuner {
     void fit_times();
     void try_tiles();
     std::pair<Way, const WayModel*> finest_way() const;
+    void run_kin(int parts);
     void refer();
+    const Run* nearest_kin(double nx) const;
+    std::optional<double> closing(bool sand, int checkpoints) const;
+    Told told_until(bool sand, int checkpoints) const;
     void fit_errors();
-    template <class Wanted> std::vector<ErrorPoint> differences(bool sand, const Wanted& wanted) const;
+    template <class Wanted> std::vector<ErrorPoint> differences(bool sand, int checkpoints, const Wanted& wanted) const;
+    std::vector<Candidate> model_frontier() const {
+        return frontier(candidates(level_, models_, reference_->settings.nx, request_.frames, scale_));
+    }
     void choose();
     [[noreturn]] void refuse(const Candidate& cheapest) const;
     void confirm(const Candidate& candidate);
@@ -215,6 +236,17 @@ std::pair<Way, const WayModel*> Tuner::finest_way() const {
     return {way, model};
 }
 
+/// Coarser runs that differ from the reference in nothing but cells: what else differs would pass for an effect of theirs.
+void Tuner::run_kin(int parts) {
+    for (const double share : KIN) {
+        const Settings settings = sized(share * reference_->settings.nx, reference_->settings.way);
+        const bool known =
+            std::any_of(ladder_.begin(), ladder_.end(), [&](const Run& other) { return other.settings == settings; });
+        if (!known && std::min(settings.nx, settings.ny) >= LEAST_KIN_SIDE)
+            ladder_.push_back(run(settings, {piece_, true, 1e9, parts}));
+    }
+}
+
 /// The finest run that the time allows.
 void Tuner::refer() {
     const auto finest = finest_way();
@@ -224,10 +256,9 @@ void Tuner::refer() {
     const auto try_with = [&](double times, int parts) {
         const Settings settings = sized(std::min(times * measured_nx_, 16384.0), way);
         const double simulated = piece_ * parts / PARTS;
-        if (times > 1 && simulated / level_.dt(settings) * model->time.step(settings.cells()) > room) return false;
+        if (times > 1 && KIN_TIME * simulated / level_.dt(settings) * model->time.step(settings.cells()) > room) return false;
         reference_ = run(settings, {piece_, true, 1e9, parts});
-        const Settings between = sized(0.5 * settings.nx, way);
-        if (between.nx > ladder_.front().settings.nx) ladder_.push_back(run(between, {piece_, true, 1e9, parts}));
+        run_kin(parts);
         outcome_.piece = simulated;
         outcome_.checkpoints = CHECKPOINTS * parts / PARTS;
         return true;
@@ -241,42 +272,78 @@ void Tuner::refer() {
     outcome_.reference = reference_->settings;
 }
 
-/// Differences of ladder runs whose way is wanted from the reference.
-template <class Wanted> std::vector<ErrorPoint> Tuner::differences(bool sand, const Wanted& wanted) const {
+/// Differences of ladder runs whose way is wanted from the reference, at its first checkpoints.
+template <class Wanted> std::vector<ErrorPoint> Tuner::differences(bool sand, int checkpoints, const Wanted& wanted) const {
     std::vector<ErrorPoint> points;
     for (const Run& run : ladder_) {
         const double h = static_cast<double>(reference_->settings.nx) / run.settings.nx;
         if (h < LEAST_H || !wanted(run.settings.way)) continue;
-        const Errors errors = errors_against(run, *reference_);
+        const Errors errors = errors_against(run, *reference_, checkpoints);
         const std::optional<double>& difference = sand ? errors.sand : errors.water;
         if (difference && *difference > 0) points.push_back({h, *difference});
     }
     return points;
 }
 
-/// How an error falls with cells follows from the orders of transport, so that ways of all substeps share it with that of two.
+/// Of the reference's coarser kin the one with cells along x nearest to these.
+const Run* Tuner::nearest_kin(double nx) const {
+    const Run* nearest = nullptr;
+    for (const Run& run : ladder_) {
+        if (run.settings.way != reference_->settings.way || run.settings.nx >= reference_->settings.nx) continue;
+        if (!nearest || std::abs(std::log(run.settings.nx / nx)) < std::abs(std::log(nearest->settings.nx / nx))) nearest = &run;
+    }
+    return nearest;
+}
+
+/// The order at which the reference and its kin of half and a quarter of its cells along x come closer to each other: differences
+/// from one run fall towards it on every level, those among runs only where it is near the truth.
+std::optional<double> Tuner::closing(bool sand, int checkpoints) const {
+    const double nx = reference_->settings.nx;
+    const Run *const middle = nearest_kin(nx / 2), *const coarse = nearest_kin(nx / 4);
+    if (!middle || middle == coarse) return {};
+    const Errors first = errors_against(*coarse, *middle, checkpoints),
+                 second = errors_against(*middle, *reference_, checkpoints);
+    const auto &from = sand ? first.sand : first.water, &to = sand ? second.sand : second.water;
+    if (!from || !to || !(*from > 0) || !(*to > 0)) return {};
+    return order_among(nx / coarse->settings.nx, nx / middle->settings.nx, *from, *to);
+}
+
+/// What the reference and its kin tell of an error in so much of the piece.
+Told Tuner::told_until(bool sand, int checkpoints) const {
+    Told told;
+    told.exists = (sand ? outcome_.sand : outcome_.water).exists;
+    const Way& finest = reference_->settings.way;
+    told.differences = differences(sand, checkpoints, [&](const Way& way) { return same_but_tiles(way, finest); });
+    told.moved = told.exists && !told.differences.empty();
+    if (!told.moved) return told;
+    const ErrorFit fit = fit_own(told.differences);
+    const std::optional<double> closer = closing(sand, checkpoints);
+    told.order = fit.order;
+    told.scatter = fit.scatter;
+    told.closing = closer.value_or(0);
+    told.converges = told.differences.size() > 1 && fit.converges() && told.closing > LEAST_CLOSING;
+    told.reference = told.converges ? fit.at(1) : 0;
+    return told;
+}
+
+/// How errors fall with cells follows from the orders of transport, so that ways of all substeps share it with that of two. Small
+/// differences grow with time, until runs on any grid are as far apart: where that is so at the end, an earlier part may be told.
 void Tuner::fit_errors() {
-    const int usual = ladder_.front().settings.way.substeps;
-    const auto alike = [](const Way& a, const Way& b) {
-        return a.water_order == b.water_order && a.sand_order == b.sand_order && a.half_storage == b.half_storage;
-    };
+    const int usual = ladder_.front().settings.way.substeps, all = outcome_.checkpoints;
     for (const bool sand : {true, false}) {
         Told& told = sand ? outcome_.sand : outcome_.water;
-        const Way& finest = reference_->settings.way;
-        const std::vector<ErrorPoint> own = differences(sand, [&](const Way& way) {
-            return alike(way, finest) && (way.substeps == usual || way.substeps == finest.substeps);
-        });
-        told.moved = told.exists && !own.empty();
+        told = told_until(sand, all);
+        for (int checkpoints = all - 1; checkpoints > 0 && !told.converges && told.early == 0; --checkpoints) {
+            const Told shorter = told_until(sand, checkpoints);
+            if (!shorter.converges) continue;
+            told.early = checkpoints;
+            told.early_reference = shorter.reference;
+        }
         if (!told.moved) continue;
-        const ErrorFit fit = fit_own(own);
-        (sand ? sand_fit_ : water_fit_) = fit;
-        told.order = fit.order;
-        told.converges = own.size() > 1 && fit.converges();
-        told.reference = told.converges ? fit.at(1) : 0;
         for (WayModel& model : models_) {
-            const auto kin = differences(sand, [&](const Way& way) { return alike(way, model.way) && way.substeps == usual; });
-            const auto same =
-                differences(sand, [&](const Way& way) { return alike(way, model.way) && way.substeps == model.way.substeps; });
+            const auto kin =
+                differences(sand, all, [&](const Way& way) { return alike(way, model.way) && way.substeps == usual; });
+            const auto same = differences(sand, all, [&](const Way& way) { return same_but_tiles(way, model.way); });
             if (kin.empty() || same.empty()) continue;
             (sand ? model.sand : model.water) = fit_other(same, told.reference, fit_other(kin, told.reference, 0).order);
         }
@@ -285,10 +352,10 @@ void Tuner::fit_errors() {
 
 /// Measures what the model says is best, corrects the model's times by it, and again, until the budget is nearly used up.
 void Tuner::choose() {
-    double scale = outcome_.load;
+    scale_ = outcome_.load;
     std::optional<Outcome> fitting;
     for (int attempt = 1; attempt <= ATTEMPTS; ++attempt) {
-        outcome_.frontier = frontier(candidates(level_, models_, reference_->settings.nx, request_.frames, scale));
+        outcome_.frontier = model_frontier();
         const std::optional<Candidate> best = best_within(outcome_.frontier, request_.budget_ms);
         if (!best && fitting) break;
         if (!best) refuse(outcome_.frontier.front());
@@ -301,7 +368,7 @@ void Tuner::choose() {
         if (fitting &&
             (fitting->chosen.frame_ms > ENOUGH * request_.budget_ms || outcome_.frontier.back().frame_ms < request_.budget_ms))
             break;
-        scale *= ratio > 1 ? 1.02 * ratio : ratio;
+        scale_ *= ratio > 1 ? 1.02 * ratio : ratio;
     }
     if (fitting) {
         fitting->frontier = outcome_.frontier;
@@ -353,20 +420,21 @@ bool Tuner::refer_finer() {
     const Way& way = finest.first;
     const WayModel* const model = finest.second;
     const int whole = static_cast<int>(reference_->parts.size());
-    for (const int parts : {whole, whole / 2}) {
+    const double room = std::max(FINER_TIME * seconds(), seconds() - spent());
+    for (const int parts : {whole, whole / 2, whole / 4}) {
         if (parts < PARTS / CHECKPOINTS) break;
         for (const double times : FINER) {
             const Settings settings = sized(times * outcome_.chosen.settings.nx, way);
             const double simulated = piece_ * parts / PARTS;
-            if (simulated / level_.dt(settings) * model->time.step(settings.cells()) > FINER_TIME * seconds()) continue;
-            const double h = static_cast<double>(reference_->settings.nx) / settings.nx;
+            if (simulated / level_.dt(settings) * model->time.step(settings.cells()) > room) continue;
             Run finer = run(settings, {piece_, true, 1e9, parts});
+            if (reference_->settings.way == way) ladder_.push_back(std::move(*reference_)); // now one of its kin
             reference_ = std::move(finer);
             outcome_.reference = settings;
             outcome_.piece = simulated;
             outcome_.checkpoints = CHECKPOINTS * parts / PARTS;
-            if (outcome_.sand.converges) outcome_.sand.reference = sand_fit_.at(h);
-            if (outcome_.water.converges) outcome_.water.reference = water_fit_.at(h);
+            fit_errors();
+            outcome_.frontier = model_frontier();
             return true;
         }
     }
@@ -375,12 +443,23 @@ bool Tuner::refer_finer() {
 
 /// Of the chosen settings themselves.
 void Tuner::measure_errors() {
-    if (reference_->settings.nx < LEAST_H * outcome_.chosen.settings.nx && !refer_finer()) return;
-    const Errors apart = errors_against(
-        run(outcome_.chosen.settings, {piece_, true, 1e9, static_cast<int>(reference_->parts.size())}), *reference_);
-    outcome_.errors_measured = true;
-    if (apart.sand) outcome_.chosen.errors.sand = error_of(*apart.sand, outcome_.sand.reference);
-    if (apart.water) outcome_.chosen.errors.water = error_of(*apart.water, outcome_.water.reference);
+    const auto finer_by = [&] { return static_cast<double>(reference_->settings.nx) / outcome_.chosen.settings.nx; };
+    const bool far = finer_by() >= 0.99 * TOLD_H || refer_finer(); // grids come in whole cells
+    outcome_.errors_measured = far || finer_by() >= LEAST_H;
+    for (Told* told : {&outcome_.sand, &outcome_.water}) {
+        if (!far) told->early = 0;
+        if (!far && outcome_.errors_measured) told->converges = false;
+    }
+    if (!outcome_.errors_measured) return;
+    const Run chosen = run(outcome_.chosen.settings, {piece_, true, 1e9, static_cast<int>(reference_->parts.size())});
+    const Errors apart = errors_against(chosen, *reference_);
+    Errors& errors = outcome_.chosen.errors;
+    if (apart.sand) errors.sand = error_of(*apart.sand, outcome_.sand.converges ? outcome_.sand.reference : 0);
+    if (apart.water) errors.water = error_of(*apart.water, outcome_.water.converges ? outcome_.water.reference : 0);
+    const Errors sand = errors_against(chosen, *reference_, outcome_.sand.early);
+    const Errors water = errors_against(chosen, *reference_, outcome_.water.early);
+    if (sand.sand) outcome_.sand.early_percent = error_of(*sand.sand, outcome_.sand.early_reference);
+    if (water.water) outcome_.water.early_percent = error_of(*water.water, outcome_.water.early_reference);
 }
 
 /// What happens in a level decides what its steps cost, on some grids more than on others: a run over all of it tells what the

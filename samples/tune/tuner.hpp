@@ -18,9 +18,14 @@ struct Request {
 struct Told {
     bool exists = false;    // the level has it
     bool moved = false;     // in the piece of its time
-    bool converges = false; // differences fall with smaller cells so that an error can be told from them
+    bool converges = false; // runs come closer to each other with smaller cells so that an error can be told from them
     double order = 0;       // of the error in the size of a cell, of the reference's way
+    double closing = 0;     // in which runs of a quarter, a half and all of the reference's cells come closer to each other
+    double scatter = 0;     // of the differences about that order
     double reference = 0;   // error of the reference itself [percent]
+    std::vector<ErrorPoint> differences;           // of coarser runs of the reference's way, from which all that follows
+    int early = 0;                                 // where it does not converge: the checkpoints until which it does, or none
+    double early_reference = 0, early_percent = 0; // as reference, and the error of the chosen settings until then
 };
 
 struct Outcome {

@@ -65,6 +65,9 @@ TEST_CASE("errors are percent of the range over which the finer run moved a surf
     CHECK(*errors_against(coarse, fine).water == doctest::Approx(100 * 0.5 / CHECKPOINTS / 0.5));
     for (float& value : coarse.at.back().surface) value = 2.4f;
     CHECK(*errors_against(coarse, fine).water == doctest::Approx(100 * 0.1 / CHECKPOINTS / 0.5));
+    CHECK_FALSE(errors_against(coarse, fine, CHECKPOINTS - 1).water); // nothing moved until then
+    for (float& value : fine.at[1].surface) value = 2.25f;
+    CHECK(*errors_against(coarse, fine, 1).water == doctest::Approx(100));
     fine.has_water = false;
     CHECK_FALSE(errors_against(coarse, fine).water);
 }
@@ -93,7 +96,8 @@ TEST_CASE("errors of known size are found again from differences alone") {
             CHECK(fit.at(2.5) < 0.3 * std::pow(2.5, order) * 1.5);
         }
     }
-    CHECK(error_of(0.5, 0) == doctest::Approx(0.5));
+    CHECK(error_of(0.5, 0) == doctest::Approx(0.25)); // of a reference that nothing is known of
+    CHECK(error_of(0.5, 1e-6) == doctest::Approx(0.5));
     CHECK(error_of(0.5, 0.1) > 0.5);
 }
 
@@ -101,6 +105,20 @@ TEST_CASE("differences that do not fall are told as such") {
     CHECK_FALSE(fit_own({{2, 1.0}, {3, 1.0}, {4, 1.0}, {6, 1.0}}).converges());
     CHECK_FALSE(fit_own({{2, 1.0}, {3, 0.9}, {4, 0.8}, {6, 0.7}}).converges());
     CHECK_FALSE(fit_own({{2, 1.0}, {3, 0.2}, {4, 2.0}, {6, 0.3}}).converges());
+}
+
+TEST_CASE("the order at which runs come closer to each other, on any three grids, and where they come apart") {
+    const auto difference = [](double a, double b) { return std::sqrt(a * a + b * b - 1.5 * a * b); };
+    for (const double order : {-0.5, 0.0, 0.3, 1.0}) {
+        for (const auto& [coarse, middle] : {std::pair{4.0, 2.0}, {5.7, 1.8}, {3.2, 2.1}}) {
+            const double far = std::pow(coarse, order), near = std::pow(middle, order);
+            CAPTURE(order);
+            CAPTURE(coarse);
+            CHECK(order_among(coarse, middle, difference(far, near), difference(near, 1)) ==
+                  doctest::Approx(order).epsilon(0.02));
+        }
+    }
+    CHECK(order_among(4, 2, 1, 3) < -1); // as far apart as the range of orders goes
 }
 
 TEST_CASE("the frontier has rising time and falling error; the best within a budget is its last below it") {
