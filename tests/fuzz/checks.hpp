@@ -11,11 +11,11 @@ namespace wadi::fuzz {
 
 /// The devices of one job, opened once: pipelines are kept from case to case.
 struct Devices {
-    std::unique_ptr<conformance::Session> plain; // the CPU's plainest form, against which all others are compared
+    std::unique_ptr<conformance::Session> plain; // one thread of the CPU, against which all others are compared
     std::vector<std::unique_ptr<conformance::Session>> others;
 };
-/// Errors: not_found for a backend that is not there.
-Result<Devices> open_devices(const std::vector<std::string>& backends);
+/// `plain_set`: instruction set of the plain one. Errors: not_found for a backend that is not there.
+Result<Devices> open_devices(const std::vector<std::string>& backends, const std::string& plain_set);
 
 /// Names of all checks (README.md).
 const std::vector<std::string>& check_names();

@@ -18,7 +18,7 @@ struct Options {
     std::uint64_t scenes = 0, seed = 1;
     int jobs = 0, most_failures = 5;
     std::vector<std::string> backends;
-    std::string out = "fuzz-failures", csv, level, check;
+    std::string out = "fuzz-failures", csv, level, check, plain_set = "base";
     Weaken weaken = Weaken::nothing;
 };
 
@@ -51,7 +51,7 @@ class Campaign {
     Campaign& operator=(const Campaign&) = delete;
 
     void work() {
-        auto devices = open_devices(options_.backends);
+        auto devices = open_devices(options_.backends, options_.plain_set);
         if (!devices) {
             std::fprintf(stderr, "%s\n", devices.status().message.c_str());
             broken_ = true;
@@ -138,7 +138,7 @@ class Campaign {
 
 int replay(const Options& options) {
     auto c = read_level(options.level);
-    auto devices = open_devices(options.backends);
+    auto devices = open_devices(options.backends, options.plain_set);
     for (const auto& status : {c.status(), devices.status()}) {
         if (status) continue;
         std::fprintf(stderr, "%s\n", status.message.c_str());
@@ -167,6 +167,8 @@ int main(int argc, char** argv) {
     app.add_option("--jobs", options.jobs, "threads, each with devices of its own; 0 = all cores")->check(CLI::Range(0, 256));
     app.add_option("--backend", options.backends, "backends to compare with the plain CPU; default: all that have a device")
         ->delimiter(',');
+    app.add_option("--plain-set", options.plain_set,
+                   "instruction set of the plain CPU: base, or a quicker one (base costs most of the time)");
     app.add_option("--check", options.check, "this check alone, in every scene")->check(CLI::IsMember(check_names()));
     app.add_option("--level", options.level, "runs a level that a failure left, instead of random scenes");
     app.add_option("--out", options.out, "folder for the levels of failures");

@@ -43,13 +43,16 @@ std::uint64_t hash(Run& run) {
     return value ? *value : 0;
 }
 
+bool stays_finite(const Settings& s) {
+    const auto& m = s.method;
+    return m.name == "robust" &&
+           (m.diffusion != Diffusion::laplacian_ahead || s.material.diffusion_rate * s.dt <= 0.25 * s.grid.dx * s.grid.dx);
+}
+
 // Where the ledger is exact: a quantum, a limiter, and no column that could have passed the declared largest height.
 std::string check_books(Run& run, const Case& c, const WorldStats& s, double raised) {
     const auto& m = c.scene.settings.method;
-    if (m.name != "robust") return {}; // the paper's promise none of this: no quanta, no caps
-    const auto& all = c.scene.settings;
-    if (m.diffusion == Diffusion::laplacian_ahead && all.material.diffusion_rate * all.dt > 0.25 * all.grid.dx * all.grid.dx)
-        return {}; // not stable
+    if (!stays_finite(c.scene.settings)) return {}; // nor has the paper quanta or caps
     if (s.not_finite > 0) return std::to_string(s.not_finite) + " values are not finite";
     double ground = 0;
     for (const float h : c.scene.fields.terrain) ground = std::max(ground, std::fabs(static_cast<double>(h)));

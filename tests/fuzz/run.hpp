@@ -25,6 +25,9 @@ void queue(Run& run, const Case& c, std::uint64_t from = 0);
 void step(Run& run, int count);
 std::uint64_t hash(Run& run);
 
+/// Whether runs must stay finite: the paper's methods may blow up, and so does diffusion beyond its stable step.
+bool stays_finite(const Settings& settings);
+
 /// What is wrong with the state of a run; empty where nothing is. For every step: what piles up may be gone in the next.
 /// `raised`: metres by which others than the case's edits may have raised the ground.
 std::string check_books(Run& run, const Case& c, const WorldStats& stats, double raised = 0);

@@ -49,6 +49,10 @@ std::string check_values(const Case& c, const Case& twin, Session& session, Sess
             const bool nothing = std::all_of(values.begin(), values.end(), [](float v) { return v <= 0; });
             if (!nothing || same_values.code != Code::bad_argument) device.note("write_values", same_values);
         }
+        auto stats = host.world->reader().stats();
+        host.note("stats", stats.status());
+        if (!stats) break;
+        if (stats->not_finite > 0 && !stays_finite(c.scene.settings)) return {};
         const std::uint64_t expected = hash(host);
         if (!host.good()) break;
         if (auto wrong = same(device, hash(device), expected); !wrong.empty())
