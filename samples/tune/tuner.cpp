@@ -17,7 +17,7 @@ constexpr double KIN[] = {0.5, 0.354, 0.25, 0.177};  // cells along x of the ref
 constexpr double KIN_TIME = 1.2;                     // time of a reference with its kin, over its own
 constexpr int LEAST_KIN_SIDE = 8;
 // The order at which kin must come closer to each other, the same as that of errors. Of the levels that the tuner's constants
-// rest on those above this are told well (flush and letters go down to -0.2); below it is only spring, which is not.
+// rest on flush and letters go down to -0.2 and are told well; spring, which is not, goes further down.
 constexpr double LEAST_CLOSING = -0.25;
 constexpr double TOLD_H = 1.4;   // cells of settings whose error is told, in units of the reference's
 constexpr double LEAST_H = 1.15; // cells of a run that is compared, in units of the reference's
@@ -321,7 +321,7 @@ Told Tuner::told_until(bool sand, int checkpoints) const {
     told.order = fit.order;
     told.scatter = fit.scatter;
     told.closing = closer.value_or(0);
-    told.converges = told.differences.size() > 1 && fit.converges() && told.closing > LEAST_CLOSING;
+    told.converges = told.differences.size() > 1 && fit.converges() && closer && *closer > LEAST_CLOSING;
     told.reference = told.converges ? fit.at(1) : 0;
     return told;
 }
