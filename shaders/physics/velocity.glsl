@@ -74,11 +74,18 @@ struct Compression {
     float low, own, high;
 };
 
-// The flux of the faster of a cell's two faces, without its sign.
+// The flux of the faster of a cell's two faces, without its sign; where the other is nearly as fast that one's comes in, so that no
+// rounding says which of two equally fast ones (both at the velocity clamp, say) counts: of their fluxes the larger one does then.
 FN float faster_flux(float u_low, float u_high, float flux_low, float flux_high) {
-    float low = wabs(u_low) >= wabs(u_high) ? wabs(flux_low) : 0.0f;
-    float high = wabs(u_high) >= wabs(u_low) ? wabs(flux_high) : 0.0f;
-    return wmax(low, high);
+    float speed_low = wabs(u_low);
+    float speed_high = wabs(u_high);
+    float fast = wmax(speed_low, speed_high);
+    float low = speed_low >= speed_high ? wabs(flux_low) : 0.0f;
+    float high = speed_high >= speed_low ? wabs(flux_high) : 0.0f;
+    float faster = wmax(low, high); // of both for equal speeds: the same for a scene and for its image
+    float larger = wmax(wabs(flux_low), wabs(flux_high));
+    float nearly = lean_divide_or_zero(wmax(4.0f * wmin(speed_low, speed_high) - 3.0f * fast, 0.0f), fast);
+    return faster + nearly * (larger - faster);
 }
 
 // Viscous flux of a cell (NUMERICS 2.3, after von Neumann and Richtmyer 1950, limited after Christensen 1990): of what the neighbours'

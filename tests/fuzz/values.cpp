@@ -41,13 +41,19 @@ std::string check_values(const Case& c, const Case& twin, Session& session, Sess
             region.ny = random.whole(1, grid.ny - region.j0);
             const EditLayer layer = random.pick({EditLayer::terrain, EditLayer::sand, EditLayer::water});
             const auto values = draw(random, region.cells(), c.scene.settings.method);
+            // Where nothing is left of the values by rounding the host leaves out a material that the device then has.
+            const double half = height_quantum(c.scene.settings.method) / 2;
+            const bool nothing =
+                std::all_of(values.begin(), values.end(), [&](float v) { return static_cast<double>(v) <= half; });
+            const std::uint32_t material = layer == EditLayer::terrain ? 0
+                                           : layer == EditLayer::sand  ? EFFECT_SAND
+                                                                       : EFFECT_WATER;
+            if (nothing && (host.world->plan().effects & material) != material) continue;
             const auto written = host.world->commands().write_region(layer, region, values);
             if (!written && written.code != Code::bad_argument) host.note("write_region", written);
             if (!written) continue; // what the device would cut
             const auto same_values = device.world->commands().write_values(layer, region, source_of(values, region.nx));
-            // It refuses a forbidden material though the values be 0.
-            const bool nothing = std::all_of(values.begin(), values.end(), [](float v) { return v <= 0; });
-            if (!nothing || same_values.code != Code::bad_argument) device.note("write_values", same_values);
+            device.note("write_values", same_values);
         }
         auto stats = host.world->reader().stats();
         host.note("stats", stats.status());

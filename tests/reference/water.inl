@@ -156,9 +156,14 @@ template <class Real> void Solver<Real>::damp_shocks(const Faces<Real>& before) 
             const std::size_t W = ax.face(cell, b);
             const std::size_t E = ax.face(cell + 1, b);
             const Field<Real>& moved = pure_flux.along(ax);
-            Real carried = Real(0); // by the faster face
-            if (std::abs(u[W]) >= std::abs(u[E])) carried = std::abs(moved[W]);
-            if (std::abs(u[E]) >= std::abs(u[W])) carried = std::max(carried, std::abs(moved[E]));
+            const bool from_west = std::abs(u[W]) >= std::abs(u[E]);
+            const std::size_t fast = from_west ? W : E;
+            const std::size_t slow = from_west ? E : W;
+            Real carried = std::abs(moved[fast]);
+            if (u[fast] != Real(0)) { // from three quarters of its speed on the other face counts, too
+                const Real nearly = std::max(Real(1) - Real(4) * (Real(1) - std::abs(u[slow] / u[fast])), Real(0));
+                carried = std::lerp(carried, std::max(carried, std::abs(moved[slow])), nearly);
+            }
             return -std::min(number * depth, Real(4) * carried) * rest;
         };
         const Real depth = mean(pure_predicted[ax.cell(a - 1, b)], pure_predicted[ax.cell(a, b)]);
