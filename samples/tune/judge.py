@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Holds wadi-tune to what the recorder then measures. Usage: judge.py BIN [LEVEL ...] [options]; needs numpy.
 
-For each level: tunes a copy of it, records the variant that was written (time: least of three whole recordings), and compares its surfaces
+Levels are shipped ones, or with --drawn N --seed S N that drawn_levels.py draws, or both. For each level: tunes a copy of it, records the variant that was written (time: least of three whole recordings), and compares its surfaces
 with those of a run that is finer than any the tuner made. Prints a table in Markdown; exit code 1 where a time is off by more than 15 %
-or an error by more than a factor of 1.5, or where more than a third of the errors are not told."""
+or an error by more than a factor of 1.5, where more than a third of the errors are not told, or where a program fails."""
 import argparse
 import json
 import pathlib
@@ -14,6 +14,8 @@ import sys
 import tempfile
 
 import numpy
+
+import drawn_levels
 
 LEVELS = pathlib.Path(__file__).resolve().parents[1] / "levels"
 JUDGED = ("beach", "canyon", "seepage", "piles")  # the model's constants are from dam_break and castle
@@ -64,15 +66,20 @@ def error(run, truth, name, checkpoints):
     return 100 * numpy.mean([numpy.abs(field - run[name][0] - truth).mean() for field, truth in zip(run[name][1:], moved)]) / span
 
 
-def judge(arguments, name, scratch):
+def judge(arguments, name, source, scratch):
+    """source: the level's folder."""
     folder = scratch / name
-    shutil.copytree(LEVELS / name, folder)
+    shutil.copytree(source, folder)
     level = folder / "level.json"
     device = ["--backend", arguments.backend, "--threads", arguments.threads]
-    command = [arguments.bin / "wadi-tune", level, "--budget-ms", arguments.budget_ms, "--minutes", arguments.minutes, "--write", "--quiet", "--json", scratch / "tune.json",
+    command = [arguments.bin / "wadi-tune", level, "--budget-ms", arguments.budget_ms, "--minutes", arguments.minutes, "--write", "--json", scratch / "tune.json",
                *device, *(["--processor-time"] if arguments.processor_time else [])]
-    subprocess.run([str(word) for word in command], check=True, capture_output=True, text=True)
+    done = subprocess.run([str(word) for word in command], check=True, capture_output=True, text=True)
     tuned = json.loads((scratch / "tune.json").read_text())
+    if arguments.keep:
+        shutil.copytree(folder, arguments.keep / name)
+        shutil.copy(scratch / "tune.json", arguments.keep / name)
+        (arguments.keep / name / "tune.txt").write_text(done.stderr + done.stdout)
 
     key = "processor_seconds" if arguments.processor_time else "stepping_seconds"
     duration = json.loads(strip_comments(level.read_text())).get("duration", 10)
@@ -88,7 +95,7 @@ def judge(arguments, name, scratch):
     nx, ny = (round(arguments.finer * tuned["reference"][axis]) for axis in ("nx", "ny"))
     finest["dt"] = finest["dt"] * finest["grid"]["nx"] / nx
     finest["grid"] = {"nx": nx, "ny": ny, "dx": extent / nx}
-    finest["method"] = {"substeps": 3, "water_transport_order": 2, "sand_transport_order": 2}
+    finest["method"] = {"substeps": 3, "water_transport_order": 2, "sand_transport_order": 2, "half_storage": False}
     text["variants"]["finest"] = finest
     level.write_text(json.dumps(text))
     checkpoints = [tuned["piece_seconds"] * k / tuned["checkpoints"] for k in range(tuned["checkpoints"] + 1)]
@@ -127,10 +134,21 @@ def cell(tuned, kind, judged, early):
     return f"{whole}; first {seconds:.3g} s {tuned[kind]['early_percent']:.2f}, {early:.2f}"
 
 
+def draw(arguments, number, scratch):
+    """The folder of a drawn level, named after its kind, seed, number and try."""
+    level = drawn_levels.drawn(arguments.bin / "wadi-recorder", arguments.seed, number, lambda line: print(line, file=sys.stderr, flush=True))
+    folder = scratch / "drawn" / level["name"].lower().removeprefix("drawn ").replace(" ", "_")
+    drawn_levels.write(level, folder)
+    return folder
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("bin", type=pathlib.Path, help="folder of wadi-tune and wadi-recorder")
-    parser.add_argument("levels", nargs="*", default=JUDGED)
+    parser.add_argument("levels", nargs="*", help=f"shipped levels; without --drawn {', '.join(JUDGED)} unless said")
+    parser.add_argument("--drawn", type=int, default=0, metavar="N", help="draw N levels")
+    parser.add_argument("--seed", type=int, help="to draw from")
+    parser.add_argument("--keep", type=pathlib.Path, help="a new folder for the levels with their variants and what the tuner said of them")
     parser.add_argument("--backend", default="cpu")
     parser.add_argument("--threads", default="1")
     parser.add_argument("--wall-time", dest="processor_time", action="store_false")
@@ -138,20 +156,33 @@ def main():
     parser.add_argument("--minutes", default="1")
     parser.add_argument("--finer", type=float, default=1.6, help="cells along x of the run that judges, over those of the tuner's finest")
     arguments = parser.parse_args()
+    if arguments.drawn and arguments.seed is None:
+        parser.error("--drawn wants --seed")
     off, left = [], []
     print("| level | settings | model [ms] | said [ms] | recorder [ms] | sand: said, judged [%] | water: said, judged [%] | judged against |")
-    print("| --- | --- | ---: | ---: | ---: | ---: | ---: | --- |")
-    for name in arguments.levels:
+    print("| --- | --- | ---: | ---: | ---: | ---: | ---: | --- |", flush=True)
+    names = arguments.levels or ([] if arguments.drawn else JUDGED)
+    jobs = [(name, lambda _, name=name: LEVELS / name) for name in names]
+    jobs += [(None, lambda scratch, number=number: draw(arguments, number, scratch)) for number in range(arguments.drawn)]
+    for name, find in jobs:
         with tempfile.TemporaryDirectory() as scratch:
-            tuned, ms, finest, errors, early = judge(arguments, name, pathlib.Path(scratch))
+            source = find(pathlib.Path(scratch))
+            name = name or source.name
+            try:
+                tuned, ms, finest, errors, early = judge(arguments, name, source, pathlib.Path(scratch))
+            except subprocess.CalledProcessError as failure:
+                print(f"| `{name}` | failed |", flush=True)
+                off.append(f"{name}: {pathlib.Path(failure.cmd[0]).name}: {(failure.stderr or '').strip()[-300:]}")
+                continue
         off += [f"{name}: {line}" for line in offences(tuned, ms, errors, early)]
         left += untold(tuned, errors)
         chosen, model = tuned["chosen"], tuned["predicted"]
         cells = [cell(tuned, kind, errors[kind], early[kind]) for kind in KINDS]
         orders = "".join(str(chosen[f"{kind}_transport_order"]) for kind in ("water", "sand"))
-        print(f"| `{name}` | {chosen['nx']} x {chosen['ny']}, orders {orders}, T {chosen['substeps']} | {model['ms_per_frame']:.2f} | {chosen['ms_per_frame']:.2f} | {ms:.2f} | "
+        way = f"orders {orders}, T {chosen['substeps']}{', half' if chosen['half_storage'] else ''}{', tiles' if chosen['active_tiles'] == 1 else ''}"
+        print(f"| `{name}` | {chosen['nx']} x {chosen['ny']}, {way} | {model['ms_per_frame']:.2f} | {chosen['ms_per_frame']:.2f} | {ms:.2f} | "
               f"{cells[0]} | {cells[1]} | {finest[0]} x {finest[1]}, {tuned['piece_seconds']:.3g} s |", flush=True)
-    if len(arguments.levels) > 1 and sum(left) > MOST_UNTOLD * len(left):
+    if len(jobs) > 1 and sum(left) > MOST_UNTOLD * len(left):
         off.append(f"{sum(left)} of {len(left)} errors are not told")
     print("\n".join(off))
     return 1 if off else 0
