@@ -172,7 +172,7 @@ def main():
                 tuned, ms, finest, errors, early = judge(arguments, name, source, pathlib.Path(scratch))
             except subprocess.CalledProcessError as failure:
                 print(f"| `{name}` | failed |", flush=True)
-                off.append(f"{name}: {pathlib.Path(failure.cmd[0]).name}: {(failure.stderr or '').strip()[-300:]}")
+                off.append(f"{name}: {(failure.stderr.strip().splitlines() or ['?'])[-1]}")
                 continue
         off += [f"{name}: {line}" for line in offences(tuned, ms, errors, early)]
         left += untold(tuned, errors)

@@ -24,10 +24,11 @@ LEVEL = """{
 QUICK = ("--backend", "cpu", "--threads", "1", "--processor-time", "--quiet", "--minutes", "0.04")
 
 
-def run(program, *arguments, code=0):
+def run(program, *arguments, code=0, stderr=True):
+    """Its standard output, or where it fails its standard error."""
     done = subprocess.run([str(program), *map(str, arguments)], capture_output=True, text=True, timeout=300)
     assert done.returncode == code, f"{arguments}: exit code {done.returncode}, not {code}\n{done.stdout}{done.stderr}"
-    return done.stdout if code == 0 else done.stderr
+    return done.stderr if code != 0 and stderr else done.stdout
 
 
 def test_refusals(tune, level):
@@ -90,6 +91,15 @@ def test_judge_objects():
     assert len(judge.offences(tuned, 1, good, no_early | {"water": 1.6})) == len(judge.offences(tuned, 1, good, no_early | {"water": 0.6})) == 1
 
 
+def test_judge_goes_on(folder):
+    """A level on which a program fails is a row and a line of its own, and the sitting goes on; drawn levels want a seed."""
+    command = [sys.executable, judge.__file__, folder, "--drawn", "2", "--budget-ms", "1e-5", "--minutes", "0.02"]
+    assert "--seed" in run(*command, code=2)
+    said = run(*command, "--seed", "4", code=1, stderr=False).strip().splitlines()
+    assert len(said) == 6 and all("| failed |" in line for line in said[2:4]), said
+    assert all("wadi-tune: a budget of 1e-05 ms a frame is too small" in line for line in said[4:]), said
+
+
 def test_judged(folder, level):
     """What is said of a level that the model's constants are not from holds."""
     for attempt in range(ATTEMPTS):
@@ -114,6 +124,7 @@ def main():
             test(*arguments, file)
         print(f"{test.__name__}: ok", flush=True)
     test_judge_objects()
+    test_judge_goes_on(folder)
     test_judged(folder, level)
 
 
