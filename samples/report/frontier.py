@@ -45,7 +45,7 @@ def level_of(case, n, method):
 
 def measure(recorder, key, n, method):
     """A row. error None: the state is no number any more, or was refused, `why` says it."""
-    case = CASES[key]
+    case, preset = CASES[key], METHODS[method][0]
     level = level_of(case, n, method)
     files = {name: (n, n, np.ascontiguousarray(values, "f4").ravel()) for name, values in case.files(n).items()}
     row = {"case": key, "n": n, "method": method, "dt": level["dt"], "error": None}
@@ -59,6 +59,9 @@ def measure(recorder, key, n, method):
             "ms_per_frame": 1000 * summary["stepping_seconds"] / summary["simulated_seconds"] / FRAMES}
     if summary["counts"]["not_finite"]["largest"] or not np.isfinite(now).all():
         return {**row, "why": "ends in values that are no numbers"}
+    capped = summary["counts"]["capped_faces"]["largest"]
+    if capped and preset == "robust":
+        return {**row, "why": f"gravity is capped at {capped} faces: the case's time step is too long for what it shows"}
     error = case.error(now, run.dx, summary["simulated_seconds"])
     return {**row, "error": error} if math.isfinite(error) else {**row, "why": "its error is no number"}
 

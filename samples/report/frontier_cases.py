@@ -102,7 +102,7 @@ def mound():
                        material={"friction": 0.6, "young_modulus": 0, "exchange_rate": exchange, "diffusion_rate": 0})
         return scene.override(plain, {key: value for key, value in scene.NEUTRAL.items() if key.startswith("material.")})
 
-    return Case("A mound of water seeps through sand at rest", "water in sand", "Barenblatt 1952, exact", length, round(2 * (end - start) / darcy, 6), 0.2, "W", level,
+    return Case("A mound of water seeps through sand at rest", "water in sand", "Barenblatt 1952, exact", length, round(2 * (end - start) / darcy, 6), 0.15, "W", level,
                 lambda now, dx, t: of_truth(now[now.shape[0] // 2], depth(now.shape[1], start + darcy * t / 2)), lambda n: {"water.npy": along_x(depth(n, start), n)})
 
 

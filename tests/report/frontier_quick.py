@@ -1,5 +1,5 @@
-"""samples/report/frontier.py on small grids: its page answers, and what it measures has the order that theory and experience give it. Control:
-an exact solution for another depth ahead of the dam must fail. Needs numpy.
+"""samples/report/frontier.py on small grids: its page answers, and what it measures has the order that theory and experience give it.
+Controls: an exact solution for another depth ahead of the dam must fail, and a time step at which gravity is capped makes no row. Needs numpy.
 
 usage: frontier_quick.py FRONTIER BIN_FOLDER"""
 import csv
@@ -62,7 +62,10 @@ with tempfile.TemporaryDirectory() as folder:
     frontier.CASES["bore"] = wrong
     with recordings.Recorder(f"{programs}/wadi-recorder", "cpu", 1, True) as recorder:
         row = frontier.measure(recorder, "bore", 48, "order 1")
+        frontier.CASES["mound"] = dataclasses.replace(frontier.CASES["mound"], step=0.2)  # whose error would be that of the cap
+        capped = frontier.measure(recorder, "mound", 48, "order 1")
     assert row["error"] > 3 * error["bore", 48, "order 1"], row
+    assert capped["error"] is None and "gravity is capped" in capped["why"], capped
     for refused in (("--sizes", "8", "16"), ("--sizes", "64"), ("--only", "bores"), ("--backend", "vulkan"), ("--page",)):
         done = run(*refused, "--out", folder)
         assert done.returncode == 2 and "error: " in done.stderr, done
