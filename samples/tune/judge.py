@@ -92,7 +92,7 @@ def judge(arguments, name, source, scratch):
     text = json.loads(strip_comments(level.read_text()))
     finest = json.loads(json.dumps(text["variants"]["budget"]))
     extent = finest["grid"]["nx"] * finest["grid"]["dx"]
-    nx, ny = (round(arguments.finer * tuned["reference"][axis]) for axis in ("nx", "ny"))
+    nx, ny = (round(arguments.finer * max(tuned["reference"][axis], tuned["chosen"][axis])) for axis in ("nx", "ny"))
     finest["dt"] = finest["dt"] * finest["grid"]["nx"] / nx
     finest["grid"] = {"nx": nx, "ny": ny, "dx": extent / nx}
     finest["method"] = {"substeps": 3, "water_transport_order": 2, "sand_transport_order": 2, "half_storage": False}
@@ -148,6 +148,7 @@ def main():
     parser.add_argument("levels", nargs="*", help=f"shipped levels; without --drawn {', '.join(JUDGED)} unless said")
     parser.add_argument("--drawn", type=int, default=0, metavar="N", help="draw N levels")
     parser.add_argument("--seed", type=int, help="to draw from")
+    parser.add_argument("--first", type=int, default=0, help="number of the first of them")
     parser.add_argument("--keep", type=pathlib.Path, help="a new folder for the levels with their variants and what the tuner said of them")
     parser.add_argument("--backend", default="cpu")
     parser.add_argument("--threads", default="1")
@@ -163,7 +164,7 @@ def main():
     print("| --- | --- | ---: | ---: | ---: | ---: | ---: | --- |", flush=True)
     names = arguments.levels or ([] if arguments.drawn else JUDGED)
     jobs = [(name, lambda _, name=name: LEVELS / name) for name in names]
-    jobs += [(None, lambda scratch, number=number: draw(arguments, number, scratch)) for number in range(arguments.drawn)]
+    jobs += [(None, lambda scratch, number=number: draw(arguments, number, scratch)) for number in range(arguments.first, arguments.first + arguments.drawn)]
     for name, find in jobs:
         with tempfile.TemporaryDirectory() as scratch:
             source = find(pathlib.Path(scratch))

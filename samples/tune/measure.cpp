@@ -134,7 +134,9 @@ Run Runner::run(const Settings& settings, const RunRequest& request) const {
             const double start = now(device_);
             world.step(count);
             world.wait();
-            spent += now(device_) - start;
+            const double taken = now(device_) - start;
+            spent += taken;
+            run.stepping += taken;
             run.steps += count;
         }
     };

@@ -28,6 +28,7 @@ struct Run {
     double dt = 0;        // [s]
     double simulated = 0; // [s]
     std::uint64_t steps = 0;
+    double stepping = 0;                      // time of all of them [s]
     std::vector<double> parts;                // time of each part [s]; fewer than PARTS where the limit ended the run
     std::vector<double> part_ends;            // simulated [s]
     std::vector<Surfaces> at;                 // the start, then each checkpoint; empty where not asked for

@@ -31,6 +31,18 @@ double usual_cost(const Way& way) {
     return (0.35 + 0.325 * way.substeps) * (way.water_order == 2 ? 1.35 : 1) * (way.sand_order == 2 ? 1.35 : 1);
 }
 
+/// Two runs of one piece, and what they are apart in its first checkpoints.
+struct Pair {
+    Settings run, reference;
+    std::size_t run_times = 0, reference_times = 0;
+    int checkpoints = 0;
+    Errors errors;
+    bool same(const Pair& other) const {
+        return run == other.run && reference == other.reference && run_times == other.run_times &&
+               reference_times == other.reference_times && checkpoints == other.checkpoints;
+    }
+};
+
 /// Ways whose errors fall alike with cells.
 bool alike(const Way& a, const Way& b) {
     return a.water_order == b.water_order && a.sand_order == b.sand_order && a.half_storage == b.half_storage;
@@ -58,9 +70,12 @@ class Tuner {
     std::vector<WayModel> models_;
     std::optional<Run> reference_;
     double scale_ = 1; // of the models' times
+    mutable std::vector<Pair> pairs_;
+    mutable double aside_ = 0; // [s] on making worlds and comparing surfaces, which the plan of what to run does not count
 
     double seconds() const { return 60 * request_.minutes; }
-    double spent() const { return now(request_.device) - start_; }
+    double elapsed() const { return now(request_.device) - start_; }
+    double spent() const { return elapsed() - aside_; } // on steps
     void tell(const std::string& text) const {
         if (request_.tell) request_.tell(text);
     }
@@ -78,6 +93,7 @@ class Tuner {
     std::pair<Way, const WayModel*> finest_way() const;
     void run_kin(int parts);
     void refer();
+    Errors errors_of(const Run& run, const Run& reference, int checkpoints) const;
     const Run* nearest_kin(double nx) const;
     std::optional<double> closing(bool sand, int checkpoints) const;
     Told told_until(bool sand, int checkpoints) const;
@@ -96,11 +112,14 @@ class Tuner {
 
 Run Tuner::run(const Settings& settings, const RunRequest& request) {
     char text[160];
-    std::snprintf(text, sizeof text, "%3.0f s: %d x %d cells, %s, %.3g s", spent(), settings.nx, settings.ny,
+    std::snprintf(text, sizeof text, "%3.0f s: %d x %d cells, %s, %.3g s", elapsed(), settings.nx, settings.ny,
                   describe(settings.way).c_str(), request.seconds);
     tell(text);
     ++outcome_.runs;
-    return runner_.run(settings, request);
+    const double before = elapsed();
+    Run done = runner_.run(settings, request);
+    aside_ += elapsed() - before - done.stepping;
+    return done;
 }
 
 double Tuner::cost(const Settings& settings) const {
@@ -272,13 +291,25 @@ void Tuner::refer() {
     outcome_.reference = reference_->settings;
 }
 
+/// As errors_against, each pair once: means of fields as large as a GPU's cost more than its steps.
+Errors Tuner::errors_of(const Run& run, const Run& reference, int checkpoints) const {
+    Pair pair{run.settings, reference.settings, run.at.size(), reference.at.size(), checkpoints, {}};
+    const auto known = std::find_if(pairs_.begin(), pairs_.end(), [&](const Pair& other) { return pair.same(other); });
+    if (known != pairs_.end()) return known->errors;
+    const double before = elapsed();
+    pair.errors = errors_against(run, reference, checkpoints);
+    aside_ += elapsed() - before;
+    pairs_.push_back(pair);
+    return pair.errors;
+}
+
 /// Differences of ladder runs whose way is wanted from the reference, at its first checkpoints.
 template <class Wanted> std::vector<ErrorPoint> Tuner::differences(bool sand, int checkpoints, const Wanted& wanted) const {
     std::vector<ErrorPoint> points;
     for (const Run& run : ladder_) {
         const double h = static_cast<double>(reference_->settings.nx) / run.settings.nx;
         if (h < LEAST_H || !wanted(run.settings.way)) continue;
-        const Errors errors = errors_against(run, *reference_, checkpoints);
+        const Errors errors = errors_of(run, *reference_, checkpoints);
         const std::optional<double>& difference = sand ? errors.sand : errors.water;
         if (difference && *difference > 0) points.push_back({h, *difference});
     }
@@ -301,8 +332,7 @@ std::optional<double> Tuner::closing(bool sand, int checkpoints) const {
     const double nx = reference_->settings.nx;
     const Run *const middle = nearest_kin(nx / 2), *const coarse = nearest_kin(nx / 4);
     if (!middle || middle == coarse) return {};
-    const Errors first = errors_against(*coarse, *middle, checkpoints),
-                 second = errors_against(*middle, *reference_, checkpoints);
+    const Errors first = errors_of(*coarse, *middle, checkpoints), second = errors_of(*middle, *reference_, checkpoints);
     const auto &from = sand ? first.sand : first.water, &to = sand ? second.sand : second.water;
     if (!from || !to || !(*from > 0) || !(*to > 0)) return {};
     return order_among(nx / coarse->settings.nx, nx / middle->settings.nx, *from, *to);
@@ -486,7 +516,7 @@ Outcome Tuner::tune() {
     fit_errors();
     choose();
     measure_errors();
-    outcome_.seconds = spent();
+    outcome_.seconds = elapsed();
     return std::move(outcome_);
 }
 
