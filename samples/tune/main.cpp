@@ -65,7 +65,9 @@ int run(int argc, char** argv) {
     app.add_option("level", name, "level name, level file (.json) or level folder")->required();
     app.add_option("--budget-ms", request.budget_ms, "milliseconds of each frame")->capture_default_str();
     app.add_option("--frames", request.frames, "frames per second")->capture_default_str();
-    app.add_option("--minutes", request.minutes, "of steps to measure with, about (making worlds comes on top); fewer give coarser errors")->capture_default_str();
+    app.add_option("--minutes", request.minutes,
+                   "of steps to measure with, about (making worlds comes on top); fewer give coarser errors")
+        ->capture_default_str();
     app.add_option("--backend", request.device.backend, "auto, or a backend of wadi-recorder --list-backends")
         ->capture_default_str();
     app.add_option("--device", request.device.device, "device number within the backend; -1 = best")->capture_default_str();
