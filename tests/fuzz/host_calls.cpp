@@ -144,7 +144,7 @@ std::string check_calls(const Case& c, const Case& twin, Session& session) {
         auto stats = run.world->reader().stats();
         run.note("stats", stats.status());
         if (!stats) break;
-        if (stats->not_finite > 0 && !stays_finite(c.scene.settings)) return {};
+        if (blown_up(c.scene.settings, *stats)) return {};
         run.failure = check_books(run, c, *stats, host.raised());
         if (!run.failure.empty()) run.failure = "after step " + std::to_string(done) + " " + run.failure;
     }

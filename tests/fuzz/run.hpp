@@ -28,6 +28,10 @@ std::uint64_t hash(Run& run);
 /// Whether runs must stay finite: the paper's methods may blow up, and so does diffusion beyond its stable step.
 bool stays_finite(const Settings& settings);
 
+/// Whether a run whose method does not keep it from that is lost: NaN, or depths whose products leave the range in which GPUs
+/// divide exactly (a million times the declared largest height). From there on bits say nothing.
+bool blown_up(const Settings& settings, const WorldStats& stats);
+
 /// What is wrong with the state of a run; empty where nothing is. For every step: what piles up may be gone in the next.
 /// `raised`: metres by which others than the case's edits may have raised the ground.
 std::string check_books(Run& run, const Case& c, const WorldStats& stats, double raised = 0);
@@ -36,7 +40,7 @@ std::string check_books(Run& run, const Case& c, const WorldStats& stats, double
 struct Base {
     Run run;
     std::uint64_t hash = 0, hash_before = 0; // after the last step, and one ahead of it
-    bool finite = true;
+    bool blown_up = false;
 };
 
 /// Why a run did not come to `expected`; empty where it did.

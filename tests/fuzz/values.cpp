@@ -58,7 +58,7 @@ std::string check_values(const Case& c, const Case& twin, Session& session, Sess
         auto stats = host.world->reader().stats();
         host.note("stats", stats.status());
         if (!stats) break;
-        if (stats->not_finite > 0 && !stays_finite(c.scene.settings)) return {};
+        if (blown_up(c.scene.settings, *stats)) return {};
         const std::uint64_t expected = hash(host);
         if (!host.good()) break;
         if (auto wrong = same(device, hash(device), expected); !wrong.empty())

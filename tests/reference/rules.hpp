@@ -5,6 +5,12 @@
 
 namespace wadi::reference {
 
+/// 2.2: a depth after its fluxes; what is too small to count is 0, so that a drained cell is dry.
+template <class Real> Real filled(Real h, Real gained) {
+    const Real now = std::max(h + gained, Real(0));
+    return now < Real(1e-20) ? Real(0) : now;
+}
+
 /// 2.4c: a velocity of pure water that would draw from a dry cell is 0.
 template <class Real> Real leaving_wet(Real u, Real h_left, Real h_right, Real eps) {
     const Real donor = u > Real(0) ? h_left : h_right;

@@ -16,7 +16,7 @@ template <class Real> void Solver<Real>::integrate_sand_height() {
     for (int j = 0; j < x.ny; ++j)
         for (int i = 0; i < x.nx; ++i) {
             Real& h = sand[x.cell(i, j)];
-            h = std::max(h + gain(sand_flux, i, j), Real(0));
+            h = filled(h, gain(sand_flux, i, j));
         }
     split_water();
     if (!has(EFFECT_OPEN_SIDES)) return;

@@ -68,9 +68,9 @@ template <class Real> void Solver<Real>::integrate_water_height() {
     for (int j = 0; j < x.ny; ++j) {
         for (int i = 0; i < x.nx; ++i) {
             const std::size_t c = x.cell(i, j);
-            pure_predicted[c] = std::max(pure[c] + gain(pure_flux, i, j), Real(0));
+            pure_predicted[c] = filled(pure[c], gain(pure_flux, i, j));
             mixed_predicted[c] = Real(0);
-            if (has(EFFECT_MIXTURE)) mixed_predicted[c] = std::max(mixed[c] + gain(mixed_flux, i, j), Real(0));
+            if (has(EFFECT_MIXTURE)) mixed_predicted[c] = filled(mixed[c], gain(mixed_flux, i, j));
             water[c] = pure_predicted[c] + mixed_predicted[c];
         }
     }
