@@ -173,6 +173,8 @@ void Tuner::plan() {
         piece_ = std::min(level_.duration(), PLANNED * seconds() / work);
         if (piece_ >= WANTED_PIECE * level_.duration() || 0.92 * nx < least) break;
     }
+    // A step at least in each part: what holds none has no time to go by.
+    piece_ = std::max(piece_, std::min(level_.duration(), PARTS * level_.dt(sized(LADDER[0] * nx, way))));
     measured_nx_ = nx;
 }
 

@@ -76,6 +76,13 @@ def test_nothing_moves(tune, level):
     assert tuned["chosen"]["water_percent"] is None and "unknown, since nothing of it moves" in tuned["conclusion"], tuned["conclusion"]
 
 
+def test_hardly_any_time(tune, level):
+    """Too short for a step of the coarsest grids: takes longer than asked, and has numbers."""
+    run(tune, "dam_break", *QUICK[:-1], "0.0003", "--budget-ms", "2", "--json", level.parent / "tune.json")
+    tuned = json.loads((level.parent / "tune.json").read_text())
+    assert 0 < tuned["chosen"]["ms_per_frame"] < 4 and tuned["tiles_gain"] > 0, tuned
+
+
 def test_judge_objects():
     """The check below fails on numbers that are off, and on those alone."""
     tuned = {"chosen": {"ms_per_frame": 1, "sand_percent": 1, "water_percent": 2}, "sand": {"converges": True, "early_checkpoints": 0, "early_percent": 0},
@@ -117,7 +124,7 @@ def main():
     folder = pathlib.Path(sys.argv[1]).resolve()
     tune, recorder = folder / "wadi-tune", folder / "wadi-recorder"
     level = sys.argv[3] if sys.argv[2:3] == ["--judge"] else "piles"
-    for test, arguments in ((test_refusals, (tune,)), (test_writing, (tune, recorder)), (test_nothing_moves, (tune,))):
+    for test, arguments in ((test_refusals, (tune,)), (test_writing, (tune, recorder)), (test_nothing_moves, (tune,)), (test_hardly_any_time, (tune,))):
         with tempfile.TemporaryDirectory() as scratch:
             file = pathlib.Path(scratch) / "level.json"
             file.write_text(LEVEL)
