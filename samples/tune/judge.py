@@ -163,8 +163,8 @@ def main():
     print("| level | settings | model [ms] | said [ms] | recorder [ms] | sand: said, judged [%] | water: said, judged [%] | judged against |")
     print("| --- | --- | ---: | ---: | ---: | ---: | ---: | --- |", flush=True)
     names = arguments.levels or ([] if arguments.drawn else JUDGED)
-    jobs = [(name, lambda _, name=name: LEVELS / name) for name in names]
-    jobs += [(None, lambda scratch, number=number: draw(arguments, number, scratch)) for number in range(arguments.first, arguments.first + arguments.drawn)]
+    jobs = [(None, lambda scratch, number=number: draw(arguments, number, scratch)) for number in range(arguments.first, arguments.first + arguments.drawn)]
+    jobs += [(name, lambda _, name=name: LEVELS / name) for name in names]
     for name, find in jobs:
         with tempfile.TemporaryDirectory() as scratch:
             source = find(pathlib.Path(scratch))
