@@ -6,6 +6,7 @@ with those of a run that is finer than any the tuner made. Prints a table in Mar
 or an error by more than a factor of 1.5, where more than a third of the errors are not told, or where a program fails."""
 import argparse
 import json
+import math
 import pathlib
 import re
 import shutil
@@ -66,6 +67,13 @@ def error(run, truth, name, checkpoints):
     return 100 * numpy.mean([numpy.abs(field - run[name][0] - truth).mean() for field, truth in zip(run[name][1:], moved)]) / span
 
 
+def proportional(grid, nx):
+    """Cells of a grid of the same extent along both axes, about nx along x: half a cell along y too many shows as an error."""
+    common = math.gcd(grid["nx"], grid["ny"])
+    times = max(round(nx / grid["nx"] * common), 1)
+    return grid["nx"] // common * times, grid["ny"] // common * times
+
+
 def judge(arguments, name, source, scratch):
     """source: the level's folder."""
     folder = scratch / name
@@ -92,7 +100,7 @@ def judge(arguments, name, source, scratch):
     text = json.loads(strip_comments(level.read_text()))
     finest = json.loads(json.dumps(text["variants"]["budget"]))
     extent = finest["grid"]["nx"] * finest["grid"]["dx"]
-    nx, ny = (round(arguments.finer * max(tuned["reference"][axis], tuned["chosen"][axis])) for axis in ("nx", "ny"))
+    nx, ny = proportional(text["grid"], arguments.finer * max(tuned["reference"]["nx"], tuned["chosen"]["nx"]))
     finest["dt"] = finest["dt"] * finest["grid"]["nx"] / nx
     finest["grid"] = {"nx": nx, "ny": ny, "dx": extent / nx}
     finest["method"] = {"substeps": 3, "water_transport_order": 2, "sand_transport_order": 2, "half_storage": False}

@@ -458,10 +458,11 @@ bool Tuner::refer_finer() {
         for (const double times : FINER) {
             const Settings settings = sized(times * outcome_.chosen.settings.nx, way);
             const double simulated = piece_ * parts / PARTS;
-            if (simulated / level_.dt(settings) * model->time.step(settings.cells()) > room) continue;
+            if (KIN_TIME * simulated / level_.dt(settings) * model->time.step(settings.cells()) > room) continue;
             Run finer = run(settings, {piece_, true, 1e9, parts});
             if (reference_->settings.way == way) ladder_.push_back(std::move(*reference_)); // now one of its kin
             reference_ = std::move(finer);
+            run_kin(parts); // those that there are may be far coarser, and come closer faster
             outcome_.reference = settings;
             outcome_.piece = simulated;
             outcome_.checkpoints = CHECKPOINTS * parts / PARTS;
