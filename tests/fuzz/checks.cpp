@@ -132,11 +132,12 @@ std::string check_fused(const Case& c, Session& session, const Base& base) {
     return same(run, hash(run), base.hash);
 }
 
-// Not where steps may turn F inside out (no gradient clamp): the angle of an inverted F that stays on its axes is +pi, and its
-// image's as well, though it should be -pi.
+// Not where steps may turn F inside out (no gradient clamp below 1/2): the angle of an inverted F that stays on its axes is +pi,
+// and its image's as well, though it should be -pi.
 std::string check_image(const Case& c, Session& session, Base& base, Image image) {
     const auto& method = c.scene.settings.method;
-    if (method.gradient_clamp <= 0 && method.strain_transport != StrainTransport::left_stretch) return {};
+    const bool may_invert = method.gradient_clamp <= 0 || method.gradient_clamp >= 0.5;
+    if (may_invert && method.strain_transport != StrainTransport::left_stretch) return {};
     const Case turned = image_of(c, image);
     Run run = open(turned, session);
     queue(run, turned);
@@ -278,6 +279,10 @@ Outcome run_case(const Case& c, Devices& devices, Weaken weaken, const std::stri
     if (base.blown_up) {
         ++outcome.count["blown up"];
         return outcome;
+    }
+    for (auto& session : devices.others) { // told, since nothing is compared there
+        auto device = session->device();
+        if (device && !(*device)->capabilities().exact_float) ++outcome.count[session->target().label() + " not exact"];
     }
     made("bits", 1, [&](Random&) {
         std::string failure;
