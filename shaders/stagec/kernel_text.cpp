@@ -58,7 +58,7 @@ std::string shared_macros() {
            "lowest) {\n    int most = last < lowest ? lowest : last;\n    return at < 0 ? 0 : at > most ? most : at;\n}\n";
 }
 
-std::string tile_part(const std::string& m) {
+std::string tile_part(const std::string& m, const std::string& skip) {
     std::string text;
     for (const auto& [axis, place, size, part] : {std::array{"i", "tile % P.tile_columns", "FUSED_COLUMNS", "part % across"},
                                                   std::array{"j", "tile / P.tile_columns", "FUSED_ROWS", "part / across"}}) {
@@ -67,7 +67,7 @@ std::string tile_part(const std::string& m) {
                 ") * " + size + ";\n        " + high + " = " + low + " + " + size + " < " + first + " + P.tile_size ? " + low +
                 " + " + size + " : " + first + " + P.tile_size;\n";
     }
-    return text;
+    return text + "        if (" + m + "own_i0 > P.nx || " + m + "own_j0 > P.ny) " + skip + ";\n";
 }
 
 std::string rim_place(const Stage& s) {

@@ -14,8 +14,8 @@ std::string length(const std::string& extent);
 bool marks(const Stage& stage);
 /// Runs the kernel and, where `look`, notes in `changed` whether a bit of what it writes is another than before.
 std::string marking(const Stage& stage, const std::string& member);
-/// Stamps the tile with the step. Once a tile has its stamp nobody looks any more. Threads of one tile store the same value, so that
-/// their order does not matter.
+/// Stamps the tile with the step. Once a tile has its stamp nobody looks any more. Threads of one tile store the same value, so
+/// that their order does not matter.
 inline constexpr const char* marked = "    if (changed) activity[tile] = uint(S.step);\n";
 /// The place of a rim kernel: its face, the cell outside it where that is written, the tile that holds the face.
 std::string rim_place(const Stage& stage);
@@ -34,8 +34,9 @@ std::string shared_macros();
 inline std::string element_type(const Binding& binding, const std::string& effects) {
     return binding.narrow() ? "Stored<" + effects + ">" : binding.type;
 }
-/// Where group `part` of an active tile begins and ends: own_i0 ... own_j1, members of `member`.
-std::string tile_part(const std::string& member);
+/// Where group `part` of an active tile begins and ends: own_i0 ... own_j1, members of `member`. `skip` leaves out a group that
+/// lies beyond the grid, as the last ones of a tile at the rim may: what it read would lie behind the end of fields.
+std::string tile_part(const std::string& member, const std::string& skip);
 
 std::string write_glsl(const Stage& stage);
 std::string write_glsl(const FusedStage& fused, const Effects& effects);
