@@ -38,7 +38,8 @@ std::string cuda_active(const Stage& s) {
       << "    for (int row = static_cast<int>(threadIdx.y); row < P.tile_size; row += static_cast<int>(blockDim.y)) {\n"
       << "    const int j = (tile / P.tile_columns) * P.tile_size + row;\n    if (!(" << guard(s.extent)
       << ")) continue;\n    const int at = IDX(i, j);\n"
-      << marking(s, "stage.") << "    }\n" << marked << "    }\n}\n";
+      << marking(s, "stage.") << "    }\n"
+      << marked << "    }\n}\n";
     return o.str();
 }
 
@@ -211,7 +212,8 @@ std::string write_cuda(const FusedStage& f, const Effects& effects, bool all_mas
       << "        stage.own_i1 = stage.own_i0 + FUSED_COLUMNS;\n        stage.own_j1 = stage.own_j0 + FUSED_ROWS;\n"
       << "        volatile uint* activity = active.activity;\n        if (!all) {\n"
       << "        const int tile = static_cast<int>(active.list[n / parts]), part = n % parts;\n"
-      << tile_part("stage.", "continue") << "        activity += tile;\n        stage.tile_looked_at = *activity != uint(input->step);\n"
+      << tile_part("stage.", "continue")
+      << "        activity += tile;\n        stage.tile_looked_at = *activity != uint(input->step);\n"
       << "        stage.changed = false;\n        }\n        stage.window();\n"
       << "        if (!all && stage.changed) *activity = uint(input->step);\n        BARRIER;\n    }\n}\n#undef look\n} // "
          "namespace "
