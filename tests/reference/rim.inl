@@ -47,7 +47,7 @@ template <class Real> void Solver<Real>::apply_source(const Source& source, doub
         int covered = 0;
         for (int j = 0; j < x.ny; ++j)
             for (int i = 0; i < x.nx; ++i) covered += covers(i, j) ? 1 : 0;
-        rate = covered > 0 ? sample(source.discharge, time()) / (covered * dx * dx) : 0;
+        rate = covered > 0 ? std::clamp(sample(source.discharge, time()) / (covered * dx * dx), -1e4, 1e4) : 0;
     }
     const Real amount = static_cast<Real>(quanta(total, rate * settings.dt));
     const bool is_water = source.material == SourceMaterial::water;
