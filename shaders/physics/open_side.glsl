@@ -3,8 +3,8 @@
 #define PHYSICS_OPEN_SIDE
 #include "../physics/scalar.glsl"
 
-// Outward velocity of an outflow side (NUMERICS 2.9): next is that of the next face inside, rise how much higher the water stands in the
-// last cell than in the one before, gravity as the scheme may use it. The incoming characteristic u - 2 sqrt(g h) has no gradient, so that
+// Outward velocity of an outflow side (NUMERICS 2.9): next is that of the next face inside, depth the water above the sand, rise how much
+// higher it stands in the last cell than in the one before, gravity as the scheme may use it. The incoming characteristic u - 2 sqrt(g h) has no gradient, so that
 // waves leave; in fast flow, which no wave runs up, next alone.
 FN float radiated(float next, float depth, float rise, float gravity) {
     float wave = wsqrt(gravity * depth);
@@ -13,7 +13,6 @@ FN float radiated(float next, float depth, float rise, float gravity) {
     float share = wclamp(2.0f - 2.0f * froude, 0.0f, 1.0f);
     return next + share * (2.0f * (wave - before));
 }
-
 
 // What the outward velocity of a side that holds a level gains in a step (NUMERICS 2.9) beside water about as deep: u - 2 sqrt(g h) changes
 // only with the level. lag: the face's last velocity where fluxes take the upwind cell's depth, 0 where they take the face's; gained: what

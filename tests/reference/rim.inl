@@ -196,8 +196,8 @@ template <class Real> void Solver<Real>::leave(Faces<Real>& velocity, const Axis
     u[ax.face(far_end ? ax.along() : 0, b)] = outward * std::clamp(outward * next, Real(0), fastest);
 }
 
-/// Outflow of pure water: u - 2 sqrt(g h) is the same at the outer face, with the depth of the last cell, as at the next face
-/// inside.
+/// Outflow of pure water: u - 2 sqrt(g h), h the water above the sand, is the same at the outer face, with the depth of the last
+/// cell, as at the next face inside.
 template <class Real> void Solver<Real>::radiate(const Axis& ax, bool far_end, int b) {
     if (ax.along() < 2) return;
     const std::size_t N = ax.cell(far_end ? ax.along() - 1 : 0, b);
@@ -208,9 +208,9 @@ template <class Real> void Solver<Real>::radiate(const Axis& ax, bool far_end, i
     const Real g = water_gravity(std::abs(next), std::max(water[N], water[M]));
     const Real fall = (terrain[N] + water[N]) - (terrain[M] + water[M]);
     const bool rests = std::abs(fall) <= P.rest_surface && std::abs(next) <= P.rest_velocity;
-    const Real rise = rests ? Real(0) : minmod(water[N] - water[M], fall);
-    const Real c_N = std::sqrt(g * water[N]);
-    const Real c_M = std::sqrt(g * std::max(water[N] - rise, Real(0)));
+    const Real rise = rests ? Real(0) : minmod(pure[N] - pure[M], fall);
+    const Real c_N = std::sqrt(g * pure[N]);
+    const Real c_M = std::sqrt(g * std::max(pure[N] - rise, Real(0)));
     const Real subcritical = c_N > Real(0) ? std::clamp(Real(2) * (Real(1) - std::abs(next) / c_N), Real(0), Real(1)) : Real(1);
     const Real u = next + subcritical * Real(2) * (c_N - c_M);
     const std::size_t f = ax.face(far_end ? ax.along() : 0, b);

@@ -8,15 +8,19 @@ using namespace wadi::test;
 
 namespace {
 
-/// A channel 20 m long whose west end feeds a stream of that Froude number, or `times` as long; water 1 m deep, and a wave of 2
-/// cm that runs east, 1 m wide at 0.6 of its height.
-Scene pulse_channel(double froude, int times, int order) {
+/// A channel 20 m long whose west end feeds a stream of that Froude number, or `times` as long; water 1 m deep above `sand` [m]
+/// that does not move, and a wave of 2 cm that runs east, 1 m wide at 0.6 of its height.
+Scene pulse_channel(double froude, int times, int order, double sand) {
     auto scene = flat_scene(200 * times, 1, 0.1, 0.01);
+    scene.settings.material.young_modulus = 0;
+    scene.settings.material.friction = 2;
+    scene.settings.material.exchange_rate = 1e7; // and lets no water through
+    scene.fill(scene.fields.sand, [&](double, double) { return sand; });
     scene.settings.method.water_transport_order = order;
     scene.settings.method.rest_rule = false;
     const double speed = froude * std::sqrt(9.81);
     const auto wave = [](double x) { return 0.02 * std::exp(-std::pow(x - 10, 2) / 2); };
-    scene.fill(scene.fields.water, [&](double x, double) { return 1 + wave(x); });
+    scene.fill(scene.fields.water, [&](double x, double) { return sand + 1 + wave(x); });
     scene.fill(scene.fields.velocity_x, [&](double x, double) { return speed + std::sqrt(9.81) * wave(x); });
     if (froude > 0) scene.settings.sides[SIDE_WEST] = {SideKind::discharge, 0, 1e30, {{{0, speed * 0.1}}}};
     return scene;
@@ -24,25 +28,26 @@ Scene pulse_channel(double froude, int times, int order) {
 
 /// What of the wave comes back from an end of that kind, as a share of its height: how far the channel differs, once the wave has
 /// met the end, from one that goes on.
-double comes_back(double froude, const Side& end, int order) {
-    auto ending = pulse_channel(froude, 1, order);
+double comes_back(double froude, const Side& end, int order, double sand = 0) {
+    auto ending = pulse_channel(froude, 1, order, sand);
     ending.settings.sides[SIDE_EAST] = end;
-    auto world = make_world(ending), longer = make_world(pulse_channel(froude, 3, order));
+    auto world = make_world(ending), longer = make_world(pulse_channel(froude, 3, order, sand));
     const double c = std::sqrt(9.81);
     const int steps = static_cast<int>((10 / (c * (1 + froude)) + 8 / (c * (1 - froude))) / 0.01);
     step(*world, steps), step(*longer, steps);
     const auto h = cells_of(*world, "water_height"), free = cells_of(*longer, "water_height");
     double most = 0;
     for (int i = 0; i < 200; ++i) most = std::max(most, static_cast<double>(std::abs(h.at(i, 0) - free.at(i, 0))));
-    MESSAGE("order " << order << ", Froude " << froude << ", side " << static_cast<int>(end.kind) << ": " << most / 0.02);
+    MESSAGE("order " << order << ", Froude " << froude << ", sand " << sand << " m, side " << static_cast<int>(end.kind) << ": " << most / 0.02);
     return most / 0.02;
 }
 
 } // namespace
 
-TEST_CASE("an outflow side lets a wave out, in still water and in streams, at both orders; a wall sends it back") {
+TEST_CASE("an outflow side lets a wave out, in still water, in streams and above sand, at both orders; a wall sends it back") {
     for (const int order : {1, 2}) {
         for (const double froude : {0.0, 0.3, 0.6}) CHECK(comes_back(froude, {SideKind::outflow, 0, 1e30, {}}, order) < 0.02);
+        for (const double sand : {0.5, 3.0}) CHECK(comes_back(0, {SideKind::outflow, 0, 1e30, {}}, order, sand) < 0.02);
         CHECK(comes_back(0, {}, order) > 0.9);
     }
 }
