@@ -72,6 +72,7 @@ FN float lean_quotient(float a, float b) {
     q = fused(fused(-b, q, a), reciprocal, q);
     return in_range(a) && in_range(b) && in_range(a / b) ? a / b : q;
 }
+FN float lean_reciprocal(float b) { return lean_quotient(1.0f, b); }
 FN float lean_root(float x) { return in_range(x) && x != 0.0f ? __builtin_sqrtf(x) : root_of(x); }
 FN float wdiv(float a, float b) {
     float reciprocal = reciprocal_of(b);
@@ -90,6 +91,7 @@ FN float wsqrt(float x) {
 FN float wdiv(float a, float b) { return a / b; }
 FN float wsqrt(float x) { return __builtin_sqrtf(x); }
 FN float lean_quotient(float a, float b) { return a / b; }
+FN float lean_reciprocal(float b) { return lean_quotient(1.0f, b); }
 FN float lean_root(float x) { return __builtin_sqrtf(x); }
 #endif
 FN float wabs(float x) { return __builtin_fabsf(x); }

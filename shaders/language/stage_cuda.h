@@ -38,6 +38,7 @@ typedef unsigned int uint;
 FN float wdiv(float a, float b) { return a / b; }
 FN float wsqrt(float x) { return sqrtf(x); }
 FN float lean_quotient(float a, float b) { return a / b; }
+FN float lean_reciprocal(float b) { return 1.0f / b; }
 FN float lean_root(float x) { return sqrtf(x); }
 #else
 // As __fdiv_rn and __fsqrt_rn round, without their branches: a sixth of a fused stage's code. A reciprocal and a quotient, each
@@ -72,6 +73,7 @@ FN float lean_quotient(float a, float b) {
     q = fmaf(fmaf(-b, q, a), reciprocal, q);
     return fmaf(fmaf(-b, q, a), reciprocal, q);
 }
+FN float lean_reciprocal(float b) { return lean_quotient(1.0f, b); }
 FN float lean_root(float x) {
     float inverse;
     asm("rsqrt.approx.ftz.f32 %0, %1;" : "=f"(inverse) : "f"(x));
