@@ -54,20 +54,19 @@ std::string marking(const Stage& s, const std::string& member) {
 
 std::string shared_macros() {
     return "#define SHARED_PITCH " + std::to_string(shared_pitch) + "\n#define SHARED_BESIDE " + std::to_string(shared_beside) +
-           "\n#define NEAREST(AT, LAST, LOWEST) nearest_index(AT, LAST, LOWEST)\nFN int nearest_index(int at, int last, int "
-           "lowest) {\n    int most = last < lowest ? lowest : last;\n    return at < 0 ? 0 : at > most ? most : at;\n}\n";
+           "\nFN int nearest_index(int at, int last) { return at < 0 ? 0 : at > last ? last : at; }\n";
 }
 
-std::string tile_part(const std::string& m, const std::array<const char*, 4>& places) {
+std::string tile_part(const std::string& m, const std::string& skip, const std::array<const char*, 4>& places) {
     std::string text;
-    for (const auto& [axis, place, size, part] : {std::array{"i", places[0], "FUSED_COLUMNS", places[1]},
-                                                  std::array{"j", places[2], "FUSED_ROWS", places[3]}}) {
+    for (const auto& [axis, place, size, part] :
+         {std::array{"i", places[0], "FUSED_COLUMNS", places[1]}, std::array{"j", places[2], "FUSED_ROWS", places[3]}}) {
         const std::string low = m + "own_" + axis + "0", high = m + "own_" + axis + "1", first = std::string("first_") + axis;
         text += "        int " + first + " = (" + place + ") * P.tile_size;\n        " + low + " = " + first + " + (" + part +
                 ") * " + size + ";\n        " + high + " = " + low + " + " + size + " < " + first + " + P.tile_size ? " + low +
                 " + " + size + " : " + first + " + P.tile_size;\n";
     }
-    return text;
+    return text + "        if (" + m + "own_i0 > P.nx || " + m + "own_j0 > P.ny) " + skip + ";\n";
 }
 
 std::string rim_place(const Stage& s) {

@@ -12,8 +12,8 @@ struct CudaGroup {
 };
 const CudaGroup cuda_groups[] = {{64, 4}, {256, 1}, {0, 0}};
 
-// A division takes as long as a tenth of a kernel: what a tile's number is divided by becomes a reciprocal once, ahead of the loop over
-// tiles, one too small at most.
+// A division takes as long as a tenth of a kernel: what a tile's number is divided by becomes a reciprocal once, ahead of the
+// loop over tiles, one too small at most.
 const char* const active_argument = R"(struct Active { const uint* list; const uint* count; uint* activity; };
 struct TilePlace { int column, row; };
 __device__ __forceinline__ TilePlace tile_place(int tile, int columns, uint per_column) {
@@ -52,7 +52,8 @@ std::string cuda_active(const Stage& s) {
       << "    for (int row = static_cast<int>(threadIdx.y); row < P.tile_size; row += static_cast<int>(blockDim.y)) {\n"
       << "    const int j = place.row * P.tile_size + row;\n    if (!(" << guard(s.extent)
       << ")) continue;\n    const int at = IDX(i, j);\n"
-      << marking(s, "stage.") << "    }\n" << marked << "    }\n}\n";
+      << marking(s, "stage.") << "    }\n"
+      << marked << "    }\n}\n";
     return o.str();
 }
 
@@ -186,7 +187,8 @@ std::string write_cuda(const FusedStage& f, const Effects& effects, bool all_mas
       << physics_includes(f) << "struct Place { int x, y; };\n#define PLACE(X, Y) Place{X, Y}\n"
       << index_macros << shared_macros() << four_at_once << "#define LANE static_cast<int>(threadIdx.y * " << fused_group_x
       << " + threadIdx.x)\n#define LANES " << fused_group_x * fused_group_y
-      << "\n#define BARRIER __syncthreads()\n#define ANY(X) __syncthreads_or(X)\n#define ROLLED _Pragma(\"unroll 1\")\n#define APART(X) asm(\"\" : \"+r\"(X))\n#define "
+      << "\n#define BARRIER __syncthreads()\n#define ANY(X) __syncthreads_or(X)\n#define ROLLED _Pragma(\"unroll 1\")\n#define "
+         "APART(X) asm(\"\" : \"+r\"(X))\n#define "
          "PART_FUNCTION __device__ "
          "__forceinline__\n#define NOT_KEPT(X) (void)(X)\n"
       << keep_stored << active_argument << "struct Slots { void* at[" << s.bindings.size() << "]; };\n"
@@ -229,7 +231,8 @@ std::string write_cuda(const FusedStage& f, const Effects& effects, bool all_mas
       << "        volatile uint* activity = active.activity;\n        if (!all) {\n"
       << "        const int tile = static_cast<int>(active.list[n >> part_bits]), part = n & (parts - 1);\n"
       << "        const TilePlace place = tile_place(tile, P.tile_columns, per_column);\n"
-      << tile_part("stage.", {"place.column", "(part & (across - 1))", "place.row", "(part >> across_bits)"}) << "        activity += tile;\n        stage.tile_looked_at = *activity != uint(input->step);\n"
+      << tile_part("stage.", "continue", {"place.column", "(part & (across - 1))", "place.row", "(part >> across_bits)"})
+      << "        activity += tile;\n        stage.tile_looked_at = *activity != uint(input->step);\n"
       << "        stage.changed = false;\n        }\n        stage.window();\n"
       << "        if (!all && stage.changed) *activity = uint(input->step);\n        BARRIER;\n    }\n}\n#undef look\n} // "
          "namespace "

@@ -124,7 +124,7 @@ std::string write_glsl(const FusedStage& whole, const Effects& effects) {
       << "    if (ACTIVE_TILES != 0u) {\n        tile = int(active_list[gl_WorkGroupID.x]);\n        int part = "
          "int(gl_WorkGroupID.y);\n"
          "        int across = (P.tile_size + FUSED_COLUMNS - 1) / FUSED_COLUMNS;\n"
-      << tile_part("") << "        look = activity[tile] != uint(S.step);\n    }\n"
+      << tile_part("", "return") << "        look = activity[tile] != uint(S.step);\n    }\n"
       << phase_loops(f, effects) << "    if (changed) activity[tile] = uint(S.step);\n}\n";
     return o.str();
 }

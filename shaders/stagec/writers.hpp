@@ -15,13 +15,13 @@ std::string length(const std::string& extent);
 bool marks(const Stage& stage);
 /// Runs the kernel and, where `look`, notes in `changed` whether a bit of what it writes is another than before.
 std::string marking(const Stage& stage, const std::string& member);
-/// Stamps the tile with the step. Once a tile has its stamp nobody looks any more. Threads of one tile store the same value, so that
-/// their order does not matter.
+/// Stamps the tile with the step. Once a tile has its stamp nobody looks any more. Threads of one tile store the same value, so
+/// that their order does not matter.
 inline constexpr const char* marked = "    if (changed) activity[tile] = uint(S.step);\n";
 /// The place of a rim kernel: its face, the cell outside it where that is written, the tile that holds the face.
 std::string rim_place(const Stage& stage);
-/// KEEP_STORED of a fused stage: stores where OWN, and notes whether that changed a bit where ASKED. What was there is loaded without
-/// a branch: with one per store every field would wait for the load of the one before it.
+/// KEEP_STORED of a fused stage: stores where OWN, and notes whether that changed a bit where ASKED. What was there is loaded
+/// without a branch: with one per store every field would wait for the load of the one before it.
 inline constexpr const char* keep_stored =
     "#define KEEP_STORED(FIELD, AT, TYPE, OWN, ASKED) { float was = stored; if (ASKED) was = float(FIELD[AT]); "
     "changed = changed || float_bits(was) != float_bits(stored); if (OWN) FIELD[AT] = TYPE(stored); }\n";
@@ -31,17 +31,18 @@ inline constexpr const char* one_by_one =
     "#define HOLDS(FIELD, AT) float(FIELD[AT]) != 0.0f\n#define LOAD(FIELD, AT) float(FIELD[AT])\n"
     "#define KEEP_ZEROS(FIELD, AT, TYPE) { float stored = 0.0f; KEEP_STORED(FIELD, AT, TYPE, true, look) }\n"
     "#define KEEP_COPY(FIELD, AT, TYPE, FROM) { float stored = float(FROM[AT]); KEEP_STORED(FIELD, AT, TYPE, true, look) }\n";
-/// SHARED_PITCH and SHARED_BESIDE, and NEAREST: the index in 0 ... LAST that is nearest, or LOWEST where that is beyond LAST.
+/// SHARED_PITCH and SHARED_BESIDE, and nearest_index: the one in 0 ... last that is nearest.
 std::string shared_macros();
 /// The type of a buffer's elements in C++ and CUDA, where `effects` names the mask.
 inline std::string element_type(const Binding& binding, const std::string& effects) {
     return binding.narrow() ? "Stored<" + effects + ">" : binding.type;
 }
-/// Where group `part` of an active tile begins and ends: own_i0 ... own_j1, members of `member`. places: the tile's column, the group's
-/// column in the tile, and both rows.
-std::string tile_part(const std::string& member,
-                      const std::array<const char*, 4>& places = {"tile % P.tile_columns", "part % across", "tile / P.tile_columns",
-                                                                  "part / across"});
+/// Where group `part` of an active tile begins and ends: own_i0 ... own_j1, members of `member`. places: the tile's column, the
+/// group's column in the tile, and both rows. `skip` leaves out a group that lies beyond the grid, as the last ones of a tile at
+/// the rim may.
+std::string tile_part(const std::string& member, const std::string& skip,
+                      const std::array<const char*, 4>& places = {"tile % P.tile_columns", "part % across",
+                                                                  "tile / P.tile_columns", "part / across"});
 
 std::string write_glsl(const Stage& stage);
 std::string write_glsl(const FusedStage& fused, const Effects& effects);
