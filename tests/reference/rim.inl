@@ -85,64 +85,71 @@ template <class Real> void Solver<Real>::apply_rain() {
     }
 }
 
-/// A face beside a reservoir whose surface stands at `level`, and stood at `level_before` a step ago. Waves run out through it,
-/// d/dt (u - sqrt(g/h) eta) being what the level does; where one depth is under half of the other the reservoir is a neighbour as
-/// any cell is.
-template <class Real> void Solver<Real>::level_face(const Axis& ax, int a, int b, Real level, Real level_before) {
+/// A face beside a reservoir whose surface stands at `level`, and stood at `level_before` a step ago, over sand as high as inside.
+/// Waves run out through it, d/dt (u - sqrt(g/h) eta) being what the level does; where one depth of pure water is under half of the
+/// other the reservoir is a neighbour as any cell is. Returns what the outward velocity gains.
+template <class Real> Real Solver<Real>::level_face(const Axis& ax, int a, int b, Real level, Real level_before) {
     const bool far_end = a != 0;
     const Real outward = far_end ? Real(1) : Real(-1);
     const int cells = ax.along();
     const std::size_t f = ax.face(a, b);
     const std::size_t N = ax.cell(far_end ? cells - 1 : 0, b);
     const std::size_t M = ax.cell(far_end ? std::max(cells - 2, 0) : std::min(1, cells - 1), b);
-    const Real ghost = std::max(level - terrain[N], Real(0));
+    const Real outside = std::max(level - terrain[N], Real(0));
+    const auto above_sand = [&](Real depth) { return has(EFFECT_MIXTURE) ? std::max(depth - sand[N], Real(0)) : depth; };
+    const Real ghost = above_sand(outside);
     ghost_water.along(ax)[f] = ghost;
     const Real eta_in = terrain[N] + water[N];
-    const Real eta_out = terrain[N] + ghost;
+    const Real eta_out = terrain[N] + outside;
     Real& velocity = pure_velocity.along(ax)[f];
     const Real next = outward * pure_velocity.along(ax)[ax.face(far_end ? cells - 1 : 1, b)];
     const Real own = step_index > 0 || cells == 1 ? outward * velocity : next;
-    const Real deeper = std::max(water[N], ghost);
-    const Real g = water_gravity(std::abs(own), deeper);
-    const Real held = own + P.k * g * (eta_in - eta_out);
-    Real u = held;
+    const Real g = water_gravity(std::abs(own), std::max(water[N], outside));
+    const Real push = P.k * g * (eta_in - eta_out);
+    const Real deeper = std::max(pure[N], ghost);
+    Real gain = push;
     const Real alike =
-        deeper > Real(0) ? std::clamp(std::min(water[N], ghost) / deeper * Real(4) - Real(2), Real(0), Real(1)) : Real(0);
+        deeper > Real(0) ? std::clamp(std::min(pure[N], ghost) / deeper * Real(4) - Real(2), Real(0), Real(1)) : Real(0);
     if (cells > 1 && alike > Real(0)) {
         const Real h = pure[N];
         const Real c = std::sqrt(g * h);
         const auto upwind = [&](Real speed, Real behind, Real ahead) { return P.k * speed * (speed > Real(0) ? behind : ahead); };
-        const Field<Real>& v = pure_velocity.across(ax);
         const int inner = far_end ? cells - 1 : 0;
-        Real low{}, high{};
-        if (b > 0) low = upwind(v[ax.cross(inner, b)], pure[ax.cell(inner, b - 1)], h);
-        if (b + 1 < ax.across()) high = upwind(v[ax.cross(inner, b + 1)], h, pure[ax.cell(inner, b + 1)]);
         velocity = outward * own; // for face_depth
         const bool second = has(EFFECT_SECOND_ORDER_WATER);
-        const auto leaves = [&](int face, Real speed, Real behind, Real ahead) {
-            // Of two cells the further one lies beside the other side and counts as flat.
-            const bool flat = cells == 2 && face != a && speed > Real(0);
-            if (!second || flat) return upwind(speed, behind, ahead);
-            return P.k * speed * face_depth(Layer::pure, ax, face, b, outward * speed);
+        const auto enters = [&](Layer layer, const Field<Real>& depth, Real beyond) {
+            const Field<Real>& v = velocity_of(layer).across(ax);
+            Real low{}, high{};
+            if (b > 0) low = upwind(v[ax.cross(inner, b)], depth[ax.cell(inner, b - 1)], depth[N]);
+            if (b + 1 < ax.across()) high = upwind(v[ax.cross(inner, b + 1)], depth[N], depth[ax.cell(inner, b + 1)]);
+            const auto leaves = [&](int face, Real behind, Real ahead) {
+                const Real speed = outward * velocity_of(layer).along(ax)[ax.face(face, b)];
+                // Of two cells the further one lies beside the other side and counts as flat.
+                const bool flat = cells == 2 && face != a && speed > Real(0);
+                if (!second || flat) return upwind(speed, behind, ahead);
+                return P.k * speed * face_depth(layer, ax, face, b, outward * speed);
+            };
+            Real out = leaves(a, depth[N], beyond);
+            if (second) out = whole_quanta(out, P.quantum, false);
+            return (leaves(far_end ? cells - 1 : 1, depth[M], depth[N]) - out) + (low - high);
         };
-        Real out = leaves(a, own, h, ghost);
-        if (second) out = whole_quanta(out, P.quantum, false);
-        const Real along = leaves(far_end ? cells - 1 : 1, next, pure[M], h) - out;
-        const Real enters = along + (low - high);
-        const Real risen = ghost - std::max(level_before - terrain[N], Real(0));
-        const Real pull = P.k * g * (eta_in - eta_out) / (Real(4) * Real(cells));
-        const Real incoming = pull + (h > Real(0) ? c / h : Real(0)) * (enters - Real(2) * risen);
-        u += alike * (own + incoming / (Real(1) + P.k * std::max(second ? c : c + own, Real(0))) - held);
+        Real gained = enters(Layer::pure, pure, ghost);
+        if (has(EFFECT_MIXTURE)) gained += enters(Layer::mixed, mixed, Real(0));
+        const Real risen = ghost - above_sand(std::max(level_before - terrain[N], Real(0)));
+        const Real incoming = push / (Real(4) * Real(cells)) + (h > Real(0) ? c / h : Real(0)) * (gained - Real(2) * risen);
+        gain += alike * (incoming / (Real(1) + P.k * std::max(second ? c : c + own, Real(0))) - push);
     }
+    Real u = own + gain;
     if (std::abs(eta_in - eta_out) <= P.rest_surface && std::abs(u) <= P.rest_velocity) u = Real(0);
     if (blocked(pure[N], ghost, eta_in, eta_out, P.eps)) u = Real(0);
     velocity = clamped(outward * u, P.clamp);
+    return gain;
 }
 
-/// The water inside the sand of the cell beside such a reservoir (2.4b, e, c, d) with the drag of sand at rest, implicit over the
-/// step. The part that comes in where no pure water stands over the sand outside is brought by the pure layer, which alone has
-/// depth there.
-template <class Real> void Solver<Real>::seep(const Axis& ax, int a, int b, Real level) {
+/// The water inside the sand of the cell beside such a reservoir (2.4e, c, d) gains as much as the water above it, less the drag of
+/// sand at rest, implicit over the step. Where no pure water stands over the sand outside, the part that comes in is brought by the
+/// pure layer, which alone has depth there.
+template <class Real> void Solver<Real>::seep(const Axis& ax, int a, int b, Real level, Real gain) {
     const bool far_end = a != 0;
     const Real outward = far_end ? Real(1) : Real(-1);
     const std::size_t f = ax.face(a, b);
@@ -151,7 +158,7 @@ template <class Real> void Solver<Real>::seep(const Axis& ax, int a, int b, Real
     const Real rise = (terrain[N] + water[N]) - (terrain[N] + outside);
     Real& um = mixed_velocity.along(ax)[f];
     const Real own = outward * um;
-    const Real pushed = own + P.k * water_gravity(std::abs(own), std::max(water[N], outside)) * rise;
+    const Real pushed = own + gain;
     Real free(1);
     if (has(EFFECT_RETENTION)) {
         const auto through = [&](Real depth) {
@@ -169,6 +176,7 @@ template <class Real> void Solver<Real>::seep(const Axis& ax, int a, int b, Real
     if (blocked(mixed[N], std::min(outside, sand[N]), terrain[N] + water[N], terrain[N] + outside, P.eps)) u = Real(0);
     um = clamped(outward * u, P.clamp);
     if (outside - sand[N] > P.eps || sand[N] <= P.eps) return;
+    ghost_water.along(ax)[f] = outside;
     Real& uw = pure_velocity.along(ax)[f];
     uw = outward * (std::max(outward * uw, Real(0)) + std::min(outward * um, Real(0)));
 }
@@ -242,8 +250,9 @@ template <class Real> void Solver<Real>::update_side(const Side& side, const Axi
             ghost_water.along(ax)[f] = depth;
             if (depth > Real(0)) pure_velocity.along(ax)[f] = -outward * given / depth;
         } else if (side.kind == SideKind::level) {
-            level_face(ax, a, b, static_cast<Real>(value), static_cast<Real>(sample(side.value, time() - settings.dt)));
-            if (has(EFFECT_MIXTURE)) seep(ax, a, b, static_cast<Real>(value));
+            const Real gain =
+                level_face(ax, a, b, static_cast<Real>(value), static_cast<Real>(sample(side.value, time() - settings.dt)));
+            if (has(EFFECT_MIXTURE)) seep(ax, a, b, static_cast<Real>(value), gain);
         } else {
             radiate(ax, far_end, b);
             if (has(EFFECT_MIXTURE)) leave(mixed_velocity, ax, far_end, b, P.clamp);

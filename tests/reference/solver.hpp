@@ -214,9 +214,9 @@ template <class Real> class Solver {
     bool in_span(const Side& side, int b) const;
     void leave(Faces<Real>& velocity, const Axis& axis, bool far_end, int b, Real fastest) const;
     void radiate(const Axis& axis, bool far_end, int b);
-    void seep(const Axis& axis, int a, int b, Real level);
+    void seep(const Axis& axis, int a, int b, Real level, Real gain);
     void update_side(const Side& side, const Axis& axis, bool far_end);
-    void level_face(const Axis& axis, int a, int b, Real level, Real level_before);
+    Real level_face(const Axis& axis, int a, int b, Real level, Real level_before);
 
     std::vector<double> source_totals_; // depth given so far, before rounding to quanta [m]
     double rain_total_ = 0;
