@@ -26,8 +26,8 @@ FN float absorbed(float lag, float depth, float gained, float push, float wave_i
     return wdiv(change, 1.0f + k * wmax(wave + lag, 0.0f));
 }
 
-// Outward velocity of the water inside sand at such a side: push is what the water above it gains in a step, free the relative permeability
-// of what it leaves, exchange what drag takes in a step from water of that density beside sand at rest. Implicit, as in the sand.
+// Outward velocity of the water inside sand at such a side: push is what the water above it gains in a step, free the relative permeability of
+// what it leaves, exchange what drag takes in a step from water of that density beside sand at rest. Implicit, as in the sand.
 FN float seeped(float own, float push, float free, float water_density, float exchange) {
     float weight = water_density * free;
     return (own + push) * divide_or_zero(weight, weight + exchange);

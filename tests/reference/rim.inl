@@ -47,7 +47,7 @@ template <class Real> void Solver<Real>::apply_source(const Source& source, doub
         int covered = 0;
         for (int j = 0; j < x.ny; ++j)
             for (int i = 0; i < x.nx; ++i) covered += covers(i, j) ? 1 : 0;
-        rate = covered > 0 ? sample(source.discharge, time()) / (covered * dx * dx) : 0;
+        rate = covered > 0 ? std::clamp(sample(source.discharge, time()) / (covered * dx * dx), -1e4, 1e4) : 0;
     }
     const Real amount = static_cast<Real>(quanta(total, rate * settings.dt));
     const bool is_water = source.material == SourceMaterial::water;
@@ -85,9 +85,9 @@ template <class Real> void Solver<Real>::apply_rain() {
     }
 }
 
-/// A face beside a reservoir whose surface stands at `level`, and stood at `level_before` a step ago, over sand as high as inside.
-/// Waves run out through it, d/dt (u - sqrt(g/h) eta) being what the level does; where one depth of pure water is under half of the
-/// other the reservoir is a neighbour as any cell is. Returns what the outward velocity gains.
+/// A face beside a reservoir whose surface stands at `level`, and stood at `level_before` a step ago, over sand as high as
+/// inside. Waves run out through it, d/dt (u - sqrt(g/h) eta) being what the level does; where one depth of pure water is under
+/// half of the other the reservoir is a neighbour as any cell is. Returns what the outward velocity gains.
 template <class Real> Real Solver<Real>::level_face(const Axis& ax, int a, int b, Real level, Real level_before) {
     const bool far_end = a != 0;
     const Real outward = far_end ? Real(1) : Real(-1);
@@ -146,9 +146,9 @@ template <class Real> Real Solver<Real>::level_face(const Axis& ax, int a, int b
     return gain;
 }
 
-/// The water inside the sand of the cell beside such a reservoir (2.4e, c, d) gains as much as the water above it, less the drag of
-/// sand at rest, implicit over the step. Where no pure water stands over the sand outside, the part that comes in is brought by the
-/// pure layer, which alone has depth there.
+/// The water inside the sand of the cell beside such a reservoir (2.4e, c, d) gains as much as the water above it, less the drag
+/// of sand at rest, implicit over the step. Where no pure water stands over the sand outside, the part that comes in is brought
+/// by the pure layer, which alone has depth there.
 template <class Real> void Solver<Real>::seep(const Axis& ax, int a, int b, Real level, Real gain) {
     const bool far_end = a != 0;
     const Real outward = far_end ? Real(1) : Real(-1);

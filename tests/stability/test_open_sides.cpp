@@ -164,8 +164,8 @@ std::pair<double, double> swing(double dx, double sand, double exchange, int ord
         const double rise = (cells_of(*world, "water_height").at(static_cast<int>(2 / dx), 0) - 4 - sand) / 0.1;
         high = std::max(high, rise), low = std::min(low, rise);
     }
-    MESSAGE("order " << order << ", cells of " << dx << " m, " << sand << " m of sand, exchange " << exchange << ": " << low << " to "
-                     << high);
+    MESSAGE("order " << order << ", cells of " << dx << " m, " << sand << " m of sand, exchange " << exchange << ": " << low
+                     << " to " << high);
     return {low, high};
 }
 
