@@ -60,8 +60,8 @@ struct Rewriter {
             const Kept& k = kept->second;
             const std::string rim = k.rim ? " && (i == 0 || j == 0 || i == P.nx || j == P.ny)" : "";
             const std::string on = k.condition != 0 ? " && HAS(" + std::to_string(k.condition) + "u)" : "";
-            out += " KEEP_STORED(" + field + ", IN_MEMORY(" + at + "), " + (narrow ? "float_or_half" : "float") + ", owned" +
-                   rim + on + ", asked" + rim + on + ");";
+            out += " if (owned" + rim + on + ") KEEP_STORED(" + field + ", IN_MEMORY(" + at + "), " +
+                   (narrow ? "float_or_half" : "float") + ");";
         }
         return out + " }";
     }
@@ -191,8 +191,7 @@ const char* const index_macros =
     "#define IN_MEMORY(C) (C).x\n#define IN_ROWS(SOUTH, C) ((C).y + (SOUTH) * SHARED_PITCH + SHARED_BESIDE)\n";
 
 std::string own_variables(const FusedStage& fused) {
-    std::string out =
-        "int own_i0 = 0, own_j0 = 0, own_i1 = 0, own_j1 = 0, outside = 0;\nbool owned = false, asked = false, changed = false;\n";
+    std::string out = "int own_i0 = 0, own_j0 = 0, own_i1 = 0, own_j1 = 0, outside = 0;\nbool owned = false, changed = false;\n";
     for (const auto& [field, keeping] : fused.fields)
         if (keeping != Keeping::nowhere) out += "float own_" + field + " = 0.0f;\n";
     return out;
@@ -215,9 +214,8 @@ std::string cell_text(const FusedStage& fused, const Phase& phase, const std::st
     std::string out;
     for (const auto* part : phase.parts) {
         const std::string at = part->stage.extent == "FACES" ? "face" : "cell", in = "in_" + at;
-        out += "        " + effects_on(part->condition) + "{\n            owned = own && " + in +
-               ";\n            asked = look && owned && !changed;\n            outside = (" + at + "_j - j) * P.pitch + " + at +
-               "_i - i;\n            " + prefix + part->stage.name + "_kernel(i, j);\n";
+        out += "        " + effects_on(part->condition) + "{\n            owned = own && " + in + ";\n            outside = (" +
+               at + "_j - j) * P.pitch + " + at + "_i - i;\n            " + prefix + part->stage.name + "_kernel(i, j);\n";
         for (const auto& [name, field] : part->writes) {
             const auto found = fused.fields.find(field);
             if (found == fused.fields.end() || found->second == Keeping::nowhere) continue;

@@ -57,10 +57,10 @@ std::string shared_macros() {
            "\nFN int nearest_index(int at, int last) { return at < 0 ? 0 : at > last ? last : at; }\n";
 }
 
-std::string tile_part(const std::string& m, const std::string& skip, const std::array<const char*, 4>& places) {
+std::string tile_part(const std::string& m, const std::string& skip) {
     std::string text;
-    for (const auto& [axis, place, size, part] :
-         {std::array{"i", places[0], "FUSED_COLUMNS", places[1]}, std::array{"j", places[2], "FUSED_ROWS", places[3]}}) {
+    for (const auto& [axis, place, size, part] : {std::array{"i", "tile % P.tile_columns", "FUSED_COLUMNS", "part % across"},
+                                                  std::array{"j", "tile / P.tile_columns", "FUSED_ROWS", "part / across"}}) {
         const std::string low = m + "own_" + axis + "0", high = m + "own_" + axis + "1", first = std::string("first_") + axis;
         text += "        int " + first + " = (" + place + ") * P.tile_size;\n        " + low + " = " + first + " + (" + part +
                 ") * " + size + ";\n        " + high + " = " + low + " + " + size + " < " + first + " + P.tile_size ? " + low +

@@ -12,20 +12,7 @@ struct CudaGroup {
 };
 const CudaGroup cuda_groups[] = {{64, 4}, {256, 1}, {0, 0}};
 
-// A division takes as long as a tenth of a kernel: what a tile's number is divided by becomes a reciprocal once, ahead of the
-// loop over tiles, one too small at most.
-const char* const active_argument = R"(struct Active { const uint* list; const uint* count; uint* activity; };
-struct TilePlace { int column, row; };
-__device__ __forceinline__ TilePlace tile_place(int tile, int columns, uint per_column) {
-    int row = static_cast<int>(__umulhi(static_cast<uint>(tile), per_column));
-    int column = tile - row * columns;
-    if (column >= columns) {
-        column -= columns;
-        ++row;
-    }
-    return {column, row};
-}
-)";
+const char* const active_argument = "struct Active { const uint* list; const uint* count; uint* activity; };\n";
 
 // As C++ and GLSL have them, but members of `stage` stand behind a dot.
 std::string cuda_active(const Stage& s) {
@@ -44,13 +31,12 @@ std::string cuda_active(const Stage& s) {
           << rim_place(s) << look << marking(s, "stage.") << marked << "}\n";
         return o.str();
     }
-    o << "    const uint count = *tiles.count, per_column = ~0u / static_cast<uint>(P.tile_columns);\n"
+    o << "    const uint count = *tiles.count;\n"
       << "    for (uint n = blockIdx.x; n < count; n += gridDim.x) {\n    const int tile = static_cast<int>(tiles.list[n]);\n"
       << look // ahead of the rows, so that none of them waits for it
-      << "    const TilePlace place = tile_place(tile, P.tile_columns, per_column);\n"
-      << "    const int i = place.column * P.tile_size + static_cast<int>(threadIdx.x);\n"
+      << "    const int i = (tile % P.tile_columns) * P.tile_size + static_cast<int>(threadIdx.x);\n"
       << "    for (int row = static_cast<int>(threadIdx.y); row < P.tile_size; row += static_cast<int>(blockDim.y)) {\n"
-      << "    const int j = place.row * P.tile_size + row;\n    if (!(" << guard(s.extent)
+      << "    const int j = (tile / P.tile_columns) * P.tile_size + row;\n    if (!(" << guard(s.extent)
       << ")) continue;\n    const int at = IDX(i, j);\n"
       << marking(s, "stage.") << "    }\n"
       << marked << "    }\n}\n";
@@ -220,18 +206,14 @@ std::string write_cuda(const FusedStage& f, const Effects& effects, bool all_mas
     o << "};\n    constexpr bool all = !ACTIVE;\n"
       << "    const int across = (P.tile_size + FUSED_COLUMNS - 1) / FUSED_COLUMNS;\n"
       << "    const int parts = across * ((P.tile_size + FUSED_ROWS - 1) / FUSED_ROWS);\n"
-      << "    // Sides of tiles and of groups are powers of two.\n"
-      << "    const int part_bits = 31 - __clz(parts), across_bits = 31 - __clz(across);\n"
-      << "    const uint per_column = all ? 0u : ~0u / static_cast<uint>(P.tile_columns);\n"
       << "    const int count = all ? 1 : static_cast<int>(*active.count) * parts;\n"
       << "    for (int n = all ? 0 : static_cast<int>(blockIdx.x); n < count; n += static_cast<int>(gridDim.x)) {\n"
       << "        stage.own_i0 = static_cast<int>(blockIdx.x) * FUSED_COLUMNS;\n"
       << "        stage.own_j0 = static_cast<int>(blockIdx.y) * FUSED_ROWS;\n"
       << "        stage.own_i1 = stage.own_i0 + FUSED_COLUMNS;\n        stage.own_j1 = stage.own_j0 + FUSED_ROWS;\n"
       << "        volatile uint* activity = active.activity;\n        if (!all) {\n"
-      << "        const int tile = static_cast<int>(active.list[n >> part_bits]), part = n & (parts - 1);\n"
-      << "        const TilePlace place = tile_place(tile, P.tile_columns, per_column);\n"
-      << tile_part("stage.", "continue", {"place.column", "(part & (across - 1))", "place.row", "(part >> across_bits)"})
+      << "        const int tile = static_cast<int>(active.list[n / parts]), part = n % parts;\n"
+      << tile_part("stage.", "continue")
       << "        activity += tile;\n        stage.tile_looked_at = *activity != uint(input->step);\n"
       << "        stage.changed = false;\n        }\n        stage.window();\n"
       << "        if (!all && stage.changed) *activity = uint(input->step);\n        BARRIER;\n    }\n}\n#undef look\n} // "

@@ -2,7 +2,6 @@
 #pragma once
 #include "fused_file.hpp"
 #include "stage_file.hpp"
-#include <array>
 
 namespace stagec {
 
@@ -20,29 +19,25 @@ std::string marking(const Stage& stage, const std::string& member);
 inline constexpr const char* marked = "    if (changed) activity[tile] = uint(S.step);\n";
 /// The place of a rim kernel: its face, the cell outside it where that is written, the tile that holds the face.
 std::string rim_place(const Stage& stage);
-/// KEEP_STORED of a fused stage: stores where OWN, and notes whether that changed a bit where ASKED. What was there is loaded
-/// without a branch: with one per store every field would wait for the load of the one before it.
-inline constexpr const char* keep_stored =
-    "#define KEEP_STORED(FIELD, AT, TYPE, OWN, ASKED) { float was = stored; if (ASKED) was = float(FIELD[AT]); "
-    "changed = changed || float_bits(was) != float_bits(stored); if (OWN) FIELD[AT] = TYPE(stored); }\n";
+/// KEEP_STORED of a fused stage: stores, and notes whether that changed a bit where somebody looks. Behind a branch of its own: a store
+/// that follows a load from its own place which is still under way holds up a multiprocessor's whole memory (an H100: three times the time).
+inline constexpr const char* keep_stored = "#define KEEP_STORED(FIELD, AT, TYPE) { if (look) changed = changed || "
+                                           "float_bits(float(FIELD[AT])) != float_bits(stored); FIELD[AT] = TYPE(stored); }\n";
 /// Copies, looks and stores of fused stages where a thread takes one element at a time.
 inline constexpr const char* one_by_one =
     "#define WIDE 1\n#define COPY(TO, T, FROM, F) TO[T] = float(FROM[F])\n#define ZERO(TO, T) TO[T] = 0.0f\n#define COPIED\n"
     "#define HOLDS(FIELD, AT) float(FIELD[AT]) != 0.0f\n#define LOAD(FIELD, AT) float(FIELD[AT])\n"
-    "#define KEEP_ZEROS(FIELD, AT, TYPE) { float stored = 0.0f; KEEP_STORED(FIELD, AT, TYPE, true, look) }\n"
-    "#define KEEP_COPY(FIELD, AT, TYPE, FROM) { float stored = float(FROM[AT]); KEEP_STORED(FIELD, AT, TYPE, true, look) }\n";
+    "#define KEEP_ZEROS(FIELD, AT, TYPE) { float stored = 0.0f; KEEP_STORED(FIELD, AT, TYPE) }\n"
+    "#define KEEP_COPY(FIELD, AT, TYPE, FROM) { float stored = float(FROM[AT]); KEEP_STORED(FIELD, AT, TYPE) }\n";
 /// SHARED_PITCH and SHARED_BESIDE, and nearest_index: the one in 0 ... last that is nearest.
 std::string shared_macros();
 /// The type of a buffer's elements in C++ and CUDA, where `effects` names the mask.
 inline std::string element_type(const Binding& binding, const std::string& effects) {
     return binding.narrow() ? "Stored<" + effects + ">" : binding.type;
 }
-/// Where group `part` of an active tile begins and ends: own_i0 ... own_j1, members of `member`. places: the tile's column, the
-/// group's column in the tile, and both rows. `skip` leaves out a group that lies beyond the grid, as the last ones of a tile at
-/// the rim may.
-std::string tile_part(const std::string& member, const std::string& skip,
-                      const std::array<const char*, 4>& places = {"tile % P.tile_columns", "part % across",
-                                                                  "tile / P.tile_columns", "part / across"});
+/// Where group `part` of an active tile begins and ends: own_i0 ... own_j1, members of `member`. `skip` leaves out a group that
+/// lies beyond the grid, as the last ones of a tile at the rim may: what it read would lie behind the end of fields.
+std::string tile_part(const std::string& member, const std::string& skip);
 
 std::string write_glsl(const Stage& stage);
 std::string write_glsl(const FusedStage& fused, const Effects& effects);
