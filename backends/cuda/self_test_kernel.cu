@@ -30,9 +30,9 @@ __device__ bool wrong_quotient(float a, float b) {
     return differs(lean_quotient(a, b), wanted) || differs(wdiv(a, b), wanted) || differs(wdiv(-a, b), -wanted);
 }
 
-// Quotients a/b = (q + c/b)/2^e of significands b and a, q/2^e being in the middle between two floats and 0 < |c| <= furthest.
-// What lies further away no correction by a residual rounds wrongly, whose error is at most 3 2^-24 of the last place (c = 6) if
-// the reciprocal is rounded correctly. With b = 2^t odd, 2^t divides c, and q is found by the inverse of odd modulo 2^(e - t).
+// Quotients a/b = (q + c/b)/2^e of significands b and a, q/2^e being in the middle between two floats and 0 < |c| <= furthest:
+// what lies further away an error of 3 2^-24 of the last place cannot round wrongly (c = 6; stage_cuda.h). With b = 2^t odd, 2^t
+// divides c, and q is found by the inverse of odd modulo 2^(e - t).
 __device__ unsigned wrong_quotients_by(uint b) {
     constexpr int furthest = 8;
     const int t = __ffs(static_cast<int>(b)) - 1;
@@ -60,7 +60,7 @@ __global__ void run_significands(unsigned* wrong) {
     const uint b = (1u << 23) + blockIdx.x * blockDim.x + threadIdx.x;
     const float value = static_cast<float>(b), twice = 2.0f * value;
     unsigned mine = wrong_quotients_by(b);
-    mine += differs(lean_quotient(1.0f, value), __frcp_rn(value)) ? 1u : 0u;
+    mine += differs(lean_reciprocal(value), __frcp_rn(value)) ? 1u : 0u;
     mine += differs(lean_root(value), __fsqrt_rn(value)) || differs(lean_root(twice), __fsqrt_rn(twice)) ? 1u : 0u;
     mine += differs(wsqrt(value), __fsqrt_rn(value)) || differs(wsqrt(twice), __fsqrt_rn(twice)) ? 1u : 0u;
     if (mine > 0) atomicAdd(wrong, mine);

@@ -37,6 +37,7 @@ float lean_quotient(float a, float b) {
     q = fma(fma(-b, q, a), reciprocal, q);
     return fma(fma(-b, q, a), reciprocal, q);
 }
+float lean_reciprocal(float b) { return lean_quotient(1.0f, b); }
 float lean_root(float x) {
     if (CORRECTED_DIVISION == 0) return sqrt(x);
     float inverse = inversesqrt(x);

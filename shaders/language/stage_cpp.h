@@ -61,24 +61,22 @@ FN float reciprocal_of(float b) {
 FN float root_of(float x) {
     float inverse = 1.0f / __builtin_sqrtf(no_denormal(x));
     float s = x * inverse;
-    s = fused(fused(-s, s, x), 0.5f * inverse, s);
     return fused(fused(-s, s, x), 0.5f * inverse, s);
 }
 FN bool in_range(float x) { return x == 0.0f || (__builtin_fabsf(x) > 1.0e-30f && __builtin_fabsf(x) < 1.0e30f); }
 FN float lean_quotient(float a, float b) {
     float reciprocal = reciprocal_of(b);
-    float q = a * reciprocal;
-    q = fused(fused(-b, q, a), reciprocal, q);
-    q = fused(fused(-b, q, a), reciprocal, q);
+    float near = a * reciprocal;
+    float q = fused(fused(-b, near, a), reciprocal, near);
     return in_range(a) && in_range(b) && in_range(a / b) ? a / b : q;
 }
+FN float lean_reciprocal(float b) { return in_range(b) ? 1.0f / b : reciprocal_of(b); }
 FN float lean_root(float x) { return in_range(x) && x != 0.0f ? __builtin_sqrtf(x) : root_of(x); }
 FN float wdiv(float a, float b) {
     float reciprocal = reciprocal_of(b);
     float scaled = a * 1048576.0f;
     float near = scaled * reciprocal;
     float q = fused(fused(-b, near, scaled), reciprocal, near);
-    q = fused(fused(-b, q, scaled), reciprocal, q);
     q = (__builtin_fabsf(q) < 3.0e38f && q != 0.0f ? q : near) * 9.53674316e-7f;
     return in_range(a) && in_range(b) && in_range(a / b) ? a / b : q;
 }
@@ -90,6 +88,7 @@ FN float wsqrt(float x) {
 FN float wdiv(float a, float b) { return a / b; }
 FN float wsqrt(float x) { return __builtin_sqrtf(x); }
 FN float lean_quotient(float a, float b) { return a / b; }
+FN float lean_reciprocal(float b) { return lean_quotient(1.0f, b); }
 FN float lean_root(float x) { return __builtin_sqrtf(x); }
 #endif
 FN float wabs(float x) { return __builtin_fabsf(x); }

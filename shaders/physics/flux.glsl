@@ -49,6 +49,9 @@ struct FacePair {
     float low, high;
 };
 
+// What upwind_flux takes out of a cell through one face; outward: the face's velocity.
+FN float leaving(float outward, float height, float k) { return k * (wmax(outward, 0.0f) * height); }
+
 // What leaves a cell through its four faces; fluxes through low faces leave where negative.
 FN float outflow(FacePair x, FacePair y) { return (wmax(-x.low, 0.0f) + wmax(x.high, 0.0f)) + (wmax(-y.low, 0.0f) + wmax(y.high, 0.0f)); }
 

@@ -3,6 +3,15 @@
 #define PHYSICS_LOG_STRAIN
 #include "../physics/strain.glsl"
 
+// 0.5 ln(1 + x) for 1 + x clamped to [e^-1, e]: the log-strain of a squared stretch, within +-0.5.
+FN float half_log(float x) {
+    float y = wclamp(x, -0.632120559f, 1.71828183f);
+    float s = lean_quotient(y, (2.0f + y) + 2.0f * lean_root(1.0f + y)); // (sqrt(1+y)-1)/(sqrt(1+y)+1), |s| <= 0.245
+    float t = s * s;
+    float series = 0.333333333f + t * (0.2f + t * (0.142857143f + t * (0.111111111f + t * (0.0909090909f + t * 0.0769230769f))));
+    return 2.0f * s + 2.0f * s * t * series;
+}
+
 // 0.5 ln(1 + y) for any 1 + y above 0. Near 1 the argument keeps the digits of y.
 FN float half_log_far(float y) {
     float x = 1.0f + y;

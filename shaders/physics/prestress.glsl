@@ -39,7 +39,7 @@ FN float in_balance(WorldParams world, float height, float water, bool cohesive)
     float pushed = balancing_tension(height, divide_or_zero(wmin(water, height), height),
                                      relative_permeability(water, height, world.retained, world.inv_drainable), world.drag_kd > 0.0f,
                                      sand_gravity(world.gravity, height, world.sand_gravity_cap), world.sand_density, world.density_ratio);
-    float least = least_cliff_push(cohesive_share_of(c, height, world.cliff_share), world.wedge_weight);
+    float least = least_cliff_push(cohesive_share_of(c, lean_reciprocal_or_zero(height), world.cliff_share), world.wedge_weight);
     return stretch_under(wmin(pushed * least, c * world.tip_pressure), world.inv_bulk, c * world.inv_yield_slope);
 }
 

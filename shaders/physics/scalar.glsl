@@ -31,6 +31,11 @@ FN float lean_divide_or_zero(float a, float b) {
     return b > 0.0f ? q : 0.0f;
 }
 
+FN float lean_reciprocal_or_zero(float b) {
+    float q = lean_reciprocal(b > 0.0f ? b : 1.0f);
+    return b > 0.0f ? q : 0.0f;
+}
+
 // Minmod: the smaller of two slopes where they agree in sign, else 0. All of it minima and maxima: where a condition chose, g++ would
 // sink the loads of a and b behind it, and the row would not vectorise.
 FN float minmod(float a, float b) { return wmax(wmin(a, b), 0.0f) + wmin(wmax(a, b), 0.0f); }

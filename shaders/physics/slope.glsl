@@ -7,14 +7,11 @@
 FN float rise_room(float sand, float dry) { return sand > dry ? 1.0e15f : 0.0f; }
 
 // Rise of the sand's surface between two cells; 0 where the wet/dry rule blocks the face between them, so that sand along a steep
-// dry wall is not lightened by the wall's slope, and 0 where one lies outside the grid. room_*: rise_room of both.
-FN float free_rise(float top_low, float top_high, float room_low, float room_high, bool inside) {
-    float rise = wmax(wmin(top_high - top_low, room_high), -room_low);
-    return inside ? rise : 0.0f;
-}
+// dry wall is not lightened by the wall's slope. room_*: rise_room of both.
+FN float free_rise(float top_low, float top_high, float room_low, float room_high) { return wmax(wmin(top_high - top_low, room_high), -room_low); }
 
 // Share of the cohesion that a cliff of this height needs to push as hydrostatic sand does against its own tension.
-FN float cohesive_share_of(float cohesion, float height, float per_cohesion) { return wmin(1.0f, lean_divide_or_zero(per_cohesion * cohesion, height)); }
+FN float cohesive_share_of(float cohesion, float inv_height, float per_cohesion) { return wmin(1.0f, per_cohesion * cohesion * inv_height); }
 
 // Of the deeper cell; of two that are as deep the larger one.
 FN float of_deeper(float height_low, float height_high, float low, float high) {
@@ -32,12 +29,14 @@ struct SlopeShares {
 // rise along the face's axis, cross_rise across it, sand's depth on the higher side [m]; held: cohesive share.
 FN SlopeShares slope_shares(float rise, float cross_rise, float depth, float inv_dx, float chi, float wedge_slope, float wedge_slope2,
                             float wedge_weight, float held) {
-    float slope2 = square(rise * inv_dx) + square(cross_rise * inv_dx);
+    float along = rise * inv_dx;
+    float across = cross_rise * inv_dx;
+    float slope2 = along * along + across * across; // counts beside 1 alone
     bool steep = slope2 > wedge_slope2;
     // One quotient for both: C where the wedge does not count, r where it does.
     float root = 1.0f;
     if (UNIFORM(steep)) root = lean_root(slope2);
-    float quotient = lean_quotient(1.0f, steep ? root : 1.0f + chi * slope2);
+    float quotient = lean_reciprocal(steep ? root : 1.0f + chi * slope2);
     float plane = wedge_slope * quotient;
     float cliff = wmin(depth * inv_dx * quotient, 1.0f); // a step in the ground counts no more than the sand upon it
     float weight = steep ? wedge_weight : quotient;

@@ -15,13 +15,9 @@ struct Gradient {
     float xx, xy, yx, yy; // dts grad v: xy = d(vx)/dy
 };
 
-// 0.5 ln(1 + x) for 1 + x clamped to [e^-1, e]: the log-strain of a squared stretch, within +-0.5.
-FN float half_log(float x) {
-    float y = wclamp(x, -0.632120559f, 1.71828183f);
-    float s = lean_quotient(y, (2.0f + y) + 2.0f * lean_root(1.0f + y)); // (sqrt(1+y)-1)/(sqrt(1+y)+1), |s| <= 0.245
-    float t = s * s;
-    float series = 0.333333333f + t * (0.2f + t * (0.142857143f + t * (0.111111111f + t * (0.0909090909f + t * 0.0769230769f))));
-    return 2.0f * s + 2.0f * s * t * series;
+// artanh(x)/x from x^2 <= tanh(1/2)^2, relative error below 1e-7.
+FN float arc_tanh_over(float t) {
+    return 1.0f + t * (0.333334923f + t * (0.199896812f + t * (0.144998029f + t * (0.0921641961f + t * 0.162671462f))));
 }
 
 // e^x - 1 for |x| <= 0.5: Taylor series to the ninth power, relative error below 1e-7.
@@ -44,24 +40,25 @@ FN float sinh_over(float hh) {
     return 1.0f + hh * (1.66666667e-1f + hh * (8.33333333e-3f + hh * (1.98412698e-4f + hh * 2.75573192e-6f)));
 }
 
-// One-sided at the rim of the sand (NUMERICS 2.6): dry neighbours say nothing about the velocity gradient.
-FN float across_gradient(float low, float centre, float high, bool wet_low, bool wet_high, float k, float other) {
-    float both_sides = 0.5f * k * (high - low);
-    float upper = k * (high - centre);
-    float lower = k * (centre - low);
-    float one = wet_high ? upper : (wet_low ? lower : -other);
-    return both(wet_low, wet_high) ? both_sides : one;
+// One-sided at the rim of the sand (NUMERICS 2.6): dry neighbours say nothing about the velocity gradient. half_k: k/2 for twice the
+// velocities.
+FN float across_gradient(float low, float centre, float high, bool wet_low, bool wet_high, float half_k, float other) {
+    float both_sides = 0.5f * (high - low);
+    float one = wet_high ? high - centre : centre - low;
+    float gradient = half_k * (both(wet_low, wet_high) ? both_sides : one);
+    return either(wet_low, wet_high) ? gradient : -other;
 }
 
-// dts grad v of a cell: velocities of its four faces, mean velocities of the cells around along the other axis.
+// dts grad v of a cell: velocities of its four faces, twice the mean velocities of the cells around along the other axis.
 FN Gradient velocity_gradient(float u_w, float u_e, float v_s, float v_n, float u_s, float u_n, float v_w, float v_e, bool wet_w, bool wet_e, bool wet_s,
                               bool wet_n, float k, float limit) {
-    float u_c = 0.5f * (u_w + u_e);
-    float v_c = 0.5f * (v_s + v_n);
+    float u_c = u_w + u_e;
+    float v_c = v_s + v_n;
+    float half_k = 0.5f * k;
     bool any_y = either(wet_s, wet_n);
     bool any_x = either(wet_w, wet_e);
-    float yx_alone = across_gradient(v_w, v_c, v_e, wet_w, wet_e, k, 0.0f);
-    float xy = across_gradient(u_s, u_c, u_n, wet_s, wet_n, k, any_x ? yx_alone : 0.0f);
+    float yx_alone = across_gradient(v_w, v_c, v_e, wet_w, wet_e, half_k, 0.0f);
+    float xy = across_gradient(u_s, u_c, u_n, wet_s, wet_n, half_k, any_x ? yx_alone : 0.0f);
     float yx = any_x ? yx_alone : -(any_y ? xy : 0.0f);
     Gradient g;
     g.xx = wclamp(k * (u_e - u_w), -limit, limit);
@@ -75,28 +72,27 @@ FN Gradient velocity_gradient(float u_w, float u_e, float v_s, float v_n, float 
 FN Stretch evolve_stretch(Stretch v, Gradient g) {
     float ax = 1.0f - 0.5f * g.xx;
     float ay = 1.0f - 0.5f * g.yy;
-    float quarter = 0.25f * g.xy * g.yx;
-    float inv_det = lean_quotient(1.0f, ax * ay - quarter);
-    float mxx = (ay * g.xx + 0.5f * g.xy * g.yx) * inv_det; // M = (I - G/2)^-1 G
+    float half_cross = 0.5f * g.xy * g.yx;
+    float inv_det = lean_reciprocal(ax * ay - 0.5f * half_cross);
+    float mxx = (ay * g.xx + half_cross) * inv_det; // M = (I - G/2)^-1 G
     float mxy = g.xy * inv_det;
     float myx = g.yx * inv_det;
-    float myy = (ax * g.yy + 0.5f * g.xy * g.yx) * inv_det;
+    float myy = (ax * g.yy + half_cross) * inv_det;
     float exx = (v.xx + mxx) + (mxx * v.xx + mxy * v.xy); // N - I, N = (I + M) V
     float exy = (v.xy + mxy) + (mxx * v.xy + mxy * v.yy);
     float eyx = (v.xy + myx) + (myx * v.xx + myy * v.xy);
     float eyy = (v.yy + myy) + (myx * v.xy + myy * v.yy);
     float x = 2.0f + (exx + eyy);
     float y = eyx - exy;
-    float n = wsqrt(x * x + y * y);
-    float safe_n = n > 0.0f ? n : 1.0f;
-    float inv_n = lean_quotient(1.0f, safe_n);
-    float sn = y * inv_n;
-    float den = safe_n * (safe_n + x);
-    float safe_den = x > 0.0f ? den : 1.0f;
-    float small = -lean_quotient(y * y, safe_den);
-    float turned = n > 0.0f ? x * inv_n : 1.0f;
-    float cs = x > 0.0f ? 1.0f + small : turned;
-    float cs_less_one = x > 0.0f ? small : cs - 1.0f;
+    float n2 = x * x + y * y;
+    bool turns = n2 > 1.0e-28f;
+    float n = lean_root(turns ? n2 : 1.0f);
+    float inv_n = lean_reciprocal(n);
+    float sn = turns ? y * inv_n : 0.0f;
+    float half_turn = lean_quotient(y, x > 0.0f ? n + x : 1.0f); // tangent of half the angle
+    float turned = turns ? x * inv_n - 1.0f : 0.0f;
+    float cs_less_one = x > 0.0f ? -(half_turn * sn) : turned;
+    float cs = 1.0f + cs_less_one;
     Stretch r;
     r.xx = (exx * cs - exy * sn) + cs_less_one;
     r.yy = (eyx * sn + eyy * cs) + cs_less_one;
@@ -182,58 +178,73 @@ FN float bounded_viscosity(float viscous, float mean, float least, float largest
 // c: cohesion [Pa]; cap: passive pressure K rho_s g hs [Pa].
 FN void project_stretch(REF(Stretch) v, REF(Stress) stress, float c, float cap, float bulk, float inv_bulk, float two_shear, float inv_two_shear,
                         float yield_slope, float inv_yield_slope, float inv_friction_yield) {
-    float bxx = 2.0f * v.xx + (square(v.xx) + square(v.xy)); // V V^T - I
-    float byy = 2.0f * v.yy + (square(v.yy) + square(v.xy));
-    float bxy = 2.0f * v.xy + v.xy * (v.xx + v.yy);
-    float m = 0.5f * (bxx + byy);
-    float d = 0.5f * (bxx - byy);
-    float r = wsqrt(square(d) + square(bxy));
-    float det = (1.0f + v.xx) * (1.0f + v.yy) - v.xy * v.xy;
-    float e1 = half_log(m + r);
-    float e2 = half_log(m - r);
-    bool within = both(m + r <= 1.71828183f, m - r >= -0.632120559f); // half_log clamps neither
-    float tr = e1 + e2;
-    float along = lean_divide_or_zero(0.5f * (e1 - e2), r); // half-difference per unit of (d, bxy): no angle needed
-    float dd = along * d;
-    float dxy = along * bxy;
+    // The trace of ln V from det V, its deviator from the ratio of half difference to half sum of the principal stretches: by one series,
+    // without roots or angles. Stretches beyond e^+-1/2 count as these.
+    float sum = v.xx + v.yy;
+    float grown = sum + (v.xx * v.yy - v.xy * v.xy); // det V - 1
+    bool sound = both(grown > -0.999999f, both(sum > -2.0f, sum < 1000.0f));
+    float middle = 0.5f * sum; // of both stretches, less 1
+    float d = 0.5f * (v.xx - v.yy);
+    float xy = v.xy;
+    float apart2 = d * d + xy * xy;
+    float room = wmin(0.648725f - middle, middle + 0.393474f); // with as much slack as below
+    bool within = both(room >= 0.0f, apart2 <= room * room);
+    float volume = 1.0f + grown;
+    if (UNIFORM(!within)) {
+        float apart = lean_root(wclamp(apart2, 1.0e-28f, 1.0e28f));
+        float high = wclamp(middle + apart, -0.39346934f, 0.648721271f);
+        float low = wclamp(middle - apart, -0.39346934f, 0.648721271f);
+        float left_apart = lean_quotient(0.5f * (high - low), apart);
+        d = within ? d : d * left_apart;
+        xy = within ? xy : xy * left_apart;
+        middle = within ? middle : 0.5f * (high + low);
+        grown = within ? grown : (high + low) + high * low;
+    }
+    float s = lean_quotient(grown, 2.0f + grown); // tanh of half the trace
+    float tr = 2.0f * s * arc_tanh_over(s * s);
+    float inv_middle = lean_reciprocal(1.0f + middle);
+    float dd = d * inv_middle;
+    float dxy = xy * inv_middle;
+    float per_ratio = arc_tanh_over(dd * dd + dxy * dxy);
+    dd = dd * per_ratio;
+    dxy = dxy * per_ratio;
+    float size2 = 2.0f * (dd * dd + dxy * dxy);
 
-    Stretch before = v;
     float least_tr = -(cap + c * inv_friction_yield) * inv_bulk;
     // What was projected before comes back within rounding of the surface: it yields again only clearly beyond it.
     float slack = 1.0f + 4.0e-6f;
-    bool elastic = tr >= least_tr * slack;
-    tr = elastic ? tr : least_tr;
+    bool capped = tr < least_tr * slack;
+    tr = capped ? least_tr : tr;
     float y = yield_slope * tr - c;
-    bool tip = y >= 0.0f;
+    bool tip = y >= -1.0e-20f; // a denormal is 0 on some GPUs
     float limit = -y * inv_two_shear;
-    float size = 0.707106781f * (e1 - e2);
-    bool beyond = size > limit * slack;
-    float shrink = beyond ? lean_divide_or_zero(limit, size) : 1.0f;
-    shrink = tip ? 0.0f : shrink;
-    tr = tip ? c * inv_yield_slope : tr;
-    dd = dd * shrink;
-    dxy = dxy * shrink;
-
-    bool broken = !both(det > 1.0e-6f, m + r < 1.0e6f);
-    tr = broken ? 0.0f : tr;
-    dd = broken ? 0.0f : dd;
-    dxy = broken ? 0.0f : dxy;
-
-    elastic = both(both(both(elastic, within), !tip), both(!broken, !beyond));
-
-    float em = exp_minus_one(0.5f * tr);
-    float e = 1.0f + em;
+    float allowed = limit * slack;
+    bool beyond = size2 > wmax(allowed * allowed, 1.0e-28f);
+    bool elastic = both(both(both(sound, within), !capped), both(!tip, !beyond));
     // Where nothing yields V stays as it is: the way through log and exp would move it by rounding for ever, and a strained
     // pile at rest would not be a fixed point.
     if (UNIFORM(!elastic)) {
-        float hh = square(dd) + square(dxy);
-        float ch = cosh_minus_one(hh);
+        float shrink = lean_quotient(limit, lean_root(wmax(size2, 1.0e-28f)));
+        shrink = beyond ? shrink : 1.0f;
+        shrink = tip ? 0.0f : shrink;
+        float left = tip ? c * inv_yield_slope : tr;
+        left = sound ? left : 0.0f;
+        float left_dd = sound ? dd * shrink : 0.0f;
+        float left_dxy = sound ? dxy * shrink : 0.0f;
+        float em = exp_minus_one(0.5f * left);
+        float e = 1.0f + em;
+        float hh = left_dd * left_dd + left_dxy * left_dxy;
+        float grows = em + e * cosh_minus_one(hh);
         float sh = e * sinh_over(hh);
-        v.xx = elastic ? before.xx : (em + e * ch) + sh * dd;
-        v.yy = elastic ? before.yy : (em + e * ch) - sh * dd;
-        v.xy = elastic ? before.xy : sh * dxy;
+        v.xx = elastic ? v.xx : flush(grows + sh * left_dd);
+        v.yy = elastic ? v.yy : flush(grows - sh * left_dd);
+        v.xy = elastic ? v.xy : flush(sh * left_dxy);
+        tr = elastic ? tr : left;
+        dd = elastic ? dd : left_dd;
+        dxy = elastic ? dxy : left_dxy;
+        volume = elastic ? volume : e * e;
     }
-    float inv_j = lean_quotient(1.0f, e * e);
+    float inv_j = lean_reciprocal(volume);
     float mean = bulk * tr;
     stress.xx = (mean + two_shear * dd) * inv_j;
     stress.yy = (mean - two_shear * dd) * inv_j;

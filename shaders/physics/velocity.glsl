@@ -9,13 +9,14 @@ struct Around {
 };
 
 // Flux-form staggered upwind advection of one face velocity in increment form (NUMERICS 2.3, after Stelling and
-// Duinmeijer 2003): flux_* are the mean depths moved through the four sides of the face's own control volume,
-// low and high along its direction, left and right across it; height its mean new depth, inv_height 1 over it. A convex combination of the five velocities for any time step.
+// Duinmeijer 2003): flux_* are the depths moved through the four sides of the face's own control volume, each the sum of two faces',
+// low and high along its direction, left and right across it; height its mean new depth, inv_sum 1 over the sum of both cells': the halves
+// of both means cancel. A convex combination of the five velocities for any time step.
 FN float advect_velocity(float u, float u_low, float u_high, float u_left, float u_right, float flux_low, float flux_high, float flux_left,
-                         float flux_right, float height, float inv_height, float dry) {
+                         float flux_right, float height, float inv_sum, float dry) {
     float along = wmax(-flux_high, 0.0f) * (u_high - u) + wmax(flux_low, 0.0f) * (u_low - u);
     float across = wmax(-flux_right, 0.0f) * (u_right - u) + wmax(flux_left, 0.0f) * (u_left - u);
-    float moved = u + (along + across) * inv_height;
+    float moved = u + (along + across) * inv_sum;
     return height > dry ? moved : u;
 }
 
@@ -43,29 +44,30 @@ FN FaceLine face_line(float far_low, float low, float high, float far_high, bool
 }
 
 // What `inflow` through one side of u's control volume brings beyond u itself (NUMERICS 2.16): from `near`, whose other neighbour is
-// `far`, or, where negative, out of u's own slope towards `near`. near_courant: how many cells `near` moves in the step.
-FN float side_gain(float inflow, float u, float near, float far, float inside, float own_slope, float inv_height, float near_courant) {
-    float share = 0.5f * (1.0f - wmin(wabs(inflow) * inv_height, 1.0f));
+// `far`, or, where negative, out of u's own slope towards `near`. near_courant: how many cells `near` moves in the step. inflow, inv_sum:
+// as fluxes and inv_sum of advect_velocity.
+FN float side_gain(float inflow, float u, float near, float far, float inside, float own_slope, float inv_sum, float near_courant) {
+    float share = 0.5f * (1.0f - wmin(wabs(inflow) * inv_sum, 1.0f));
     float near_share = 0.5f * (1.0f - wmin(near_courant, 1.0f));
     float brought = (near - u) + near_share * (inside * central_slope(far, near, u));
     return wmax(inflow, 0.0f) * brought + wmin(inflow, 0.0f) * (share * own_slope);
 }
 
-FN float line_gain(float u, FaceLine at, float flux_low, float flux_high, float inv_height, float low_courant, float high_courant) {
+FN float line_gain(float u, FaceLine at, float flux_low, float flux_high, float inv_sum, float low_courant, float high_courant) {
     float own = central_slope(at.low, u, at.high);
-    return side_gain(flux_low, u, at.low, at.far_low, at.inside_low, -own, inv_height, low_courant) +
-           side_gain(-flux_high, u, at.high, at.far_high, at.inside_high, own, inv_height, high_courant);
+    return side_gain(flux_low, u, at.low, at.far_low, at.inside_low, -own, inv_sum, low_courant) +
+           side_gain(-flux_high, u, at.high, at.far_high, at.inside_high, own, inv_sum, high_courant);
 }
 
 // advect_velocity with limited slopes, kept between u and its four neighbours: no new extremum at any time step. `centered` and the lines
 // are the velocities that are advected, at the time of the height; u_*: the face's and its neighbours' own.
 FN float advect_velocity_second_order(float u, float u_low, float u_high, float u_left, float u_right, float centered, FaceLine along, FaceLine across,
-                                      float flux_low, float flux_high, float flux_left, float flux_right, float height, float inv_height, float k, float dry) {
-    float gain = line_gain(centered, along, flux_low, flux_high, inv_height, k * wabs(along.low), k * wabs(along.high)) +
-                 line_gain(centered, across, flux_left, flux_right, inv_height, wabs(flux_left) * inv_height, wabs(flux_right) * inv_height);
+                                      float flux_low, float flux_high, float flux_left, float flux_right, float height, float inv_sum, float k, float dry) {
+    float gain = line_gain(centered, along, flux_low, flux_high, inv_sum, k * wabs(along.low), k * wabs(along.high)) +
+                 line_gain(centered, across, flux_left, flux_right, inv_sum, wabs(flux_left) * inv_sum, wabs(flux_right) * inv_sum);
     float least = wmin(u, wmin(wmin(u_low, u_high), wmin(u_left, u_right)));
     float most = wmax(u, wmax(wmax(u_low, u_high), wmax(u_left, u_right)));
-    float moved = wclamp(u + gain * inv_height, least, most);
+    float moved = wclamp(u + gain * inv_sum, least, most);
     return height > dry ? moved : u;
 }
 
@@ -120,19 +122,28 @@ FN void exchange_split(REF(float) pure, REF(float) mixed, float gained_low, floa
     pure = pure_total > dry ? pure - to_pure_share : pure;
 }
 
+// The same, passed over where nothing is exchanged.
+FN void exchange_gained(REF(float) pure, REF(float) mixed, float gained_low, float gained_high, float pure_height, float mixed_height, float dry) {
+    if (UNIFORM(wabs(gained_low) + wabs(gained_high) > 0.0f)) exchange_split(pure, mixed, gained_low, gained_high, pure_height, mixed_height, dry);
+}
+
 // Gravity as a face may use it at this time step (NUMERICS 2.4b): the cap keeps the wave CFL number where the scheme
 // damps instead of ringing, and gets tighter the faster the water moves.
 FN float water_gravity(float gravity, float speed, float deepest, float k, float base, float least, float inv_k2) {
     float margin = wmax(least, base - k * speed);
     float cap = margin * margin * inv_k2; // of gravity times depth
-    float limited = lean_divide_or_zero(cap, deepest);
-    return gravity * deepest > cap ? limited : gravity;
+    bool over = gravity * deepest > cap;
+    float used = gravity;
+    if (UNIFORM(over)) used = over ? lean_quotient(cap, over ? deepest : 1.0f) : gravity; // hardly ever
+    return used;
 }
 
 // The same for sand (NUMERICS 2.7): cap = 0.25/ks^2.
 FN float sand_gravity(float gravity, float highest, float cap) {
-    float limited = lean_divide_or_zero(cap, highest);
-    return gravity * highest > cap ? limited : gravity;
+    bool over = gravity * highest > cap;
+    float used = gravity;
+    if (UNIFORM(over)) used = over ? lean_quotient(cap, over ? highest : 1.0f) : gravity; // hardly ever
+    return used;
 }
 
 // Wet/dry rule of sand and of water in it (NUMERICS 2.4c): true where a face must stand still, because both cells are dry, or because
@@ -157,7 +168,7 @@ FN float leaving_wet(float u, float height_low, float height_high, float dry) {
 // faster along the diagonals of the grid.
 FN float clamped_speed(float along, float across, float limit) {
     float finite = wclamp(along, -1.0e15f, 1.0e15f); // whose square is
-    float size2 = square(finite) + square(across);
+    float size2 = finite * finite + across * across;
     bool over = size2 > limit * limit;
     float shortened = finite;
     if (UNIFORM(over)) shortened = finite * divide_or_zero(limit, wsqrt(size2)); // hardly ever

@@ -158,12 +158,14 @@ static std::string functions_of(const FusedStage& fused, const Effects& effects,
 }
 
 std::string part_functions(const FusedStage& fused, const Effects& effects, const std::string& mask) {
-    std::string out = functions_of(fused, effects, "");
-    if (fused.lean.without.empty()) return out;
+    const std::string outside = "#undef OUTSIDE\n#define OUTSIDE outside\n", none = "#undef OUTSIDE\n#define OUTSIDE 0\n";
+    std::string out = outside + functions_of(fused, effects, "");
+    if (fused.lean.without.empty()) return out + none;
     const auto has = [](const std::string& bits) {
         return "#undef HAS\n#define HAS(BITS) ((" + bits + " & (BITS)) == (BITS))\n";
     };
-    return out + has(mask + " & ~" + std::to_string(fused.lean.less) + "u") + functions_of(fused, effects, "lean_") + has(mask);
+    return out + has(mask + " & ~" + std::to_string(fused.lean.less) + "u") + functions_of(fused, effects, "lean_") + has(mask) +
+           none;
 }
 
 std::string physics_includes(const FusedStage& fused) {
@@ -180,20 +182,24 @@ std::string physics_includes(const FusedStage& fused) {
     return out;
 }
 
-// Two numbers a place: compilers then see that neighbours lie at fixed distances, in memory as in shared rows.
+// Two numbers a place: compilers then see that neighbours lie at fixed distances, in memory as in shared rows. OUTSIDE: from a
+// cell beyond the grid to the nearest one in it, for memory alone: shared rows have room around the grid, and two cells of a
+// column are neighbours in them for compilers only if neither is moved.
 const char* const index_macros =
-    "#undef IDX\n#define IDX(I, J) PLACE(((J) + GHOST) * P.pitch + (I) + LEAD, ((J) - own_j0) * SHARED_PITCH + (I) - own_i0)\n"
+    "#undef IDX\n#define IDX(I, J) PLACE(((J) + GHOST) * P.pitch + (I) + LEAD + OUTSIDE, ((J) - own_j0) * SHARED_PITCH + (I) - "
+    "own_i0)\n#define OUTSIDE 0\n"
     "#define IN_MEMORY(C) (C).x\n#define IN_ROWS(SOUTH, C) ((C).y + (SOUTH) * SHARED_PITCH + SHARED_BESIDE)\n";
 
 std::string own_variables(const FusedStage& fused) {
-    std::string out = "int own_i0 = 0, own_j0 = 0, own_i1 = 0, own_j1 = 0;\nbool owned = false, changed = false;\n";
+    std::string out = "int own_i0 = 0, own_j0 = 0, own_i1 = 0, own_j1 = 0, outside = 0;\nbool owned = false, changed = false;\n";
     for (const auto& [field, keeping] : fused.fields)
         if (keeping != Keeping::nowhere) out += "float own_" + field + " = 0.0f;\n";
     return out;
 }
 
 // A thread computes one or two cells of a column at once, so that compilers load what both read once, and stores what it shares
-// behind both. Cells beyond the grid are computed like the nearest one in it, without a branch, and are 0, as ghosts are.
+// behind both. Cells beyond the grid are computed, too, without a branch, from the memory of the nearest one in it, and are 0, as
+// ghosts are.
 namespace {
 
 struct Phase {
@@ -208,8 +214,8 @@ std::string cell_text(const FusedStage& fused, const Phase& phase, const std::st
     std::string out;
     for (const auto* part : phase.parts) {
         const std::string at = part->stage.extent == "FACES" ? "face" : "cell", in = "in_" + at;
-        out += "        " + effects_on(part->condition) + "{\n            owned = own && " + in + ";\n            " + prefix +
-               part->stage.name + "_kernel(" + at + "_i, " + at + "_j);\n";
+        out += "        " + effects_on(part->condition) + "{\n            owned = own && " + in + ";\n            outside = (" +
+               at + "_j - j) * P.pitch + " + at + "_i - i;\n            " + prefix + part->stage.name + "_kernel(i, j);\n";
         for (const auto& [name, field] : part->writes) {
             const auto found = fused.fields.find(field);
             if (found == fused.fields.end() || found->second == Keeping::nowhere) continue;
@@ -233,6 +239,20 @@ std::map<std::string, unsigned> shared_by(const FusedStage& fused, const Phase& 
     return fields;
 }
 
+// Whether a thread's cells are computed as if they were no neighbours: what both read or share would be held in registers that a
+// phase which keeps many fields does not have. Lean groups (which have a prefix) hold less.
+bool apart(const FusedStage& fused, const Phase& phase, const std::string& prefix) {
+    if (!prefix.empty()) return false;
+    constexpr int many = 6;
+    int fields = 0;
+    for (const auto* part : phase.parts)
+        for (const auto& [name, field] : part->writes) {
+            const auto kept = fused.kept.find(field);
+            if (kept != fused.kept.end() && !kept->second.rim && &fused.parts[last_writer(fused, field)] == part) ++fields;
+        }
+    return fields >= many;
+}
+
 std::string phase_text(const FusedStage& fused, const Phase& phase, const std::string& prefix) {
     const Margins& m = phase.margins;
     const int width = FUSED_COLUMNS + m.west + m.east, height = FUSED_ROWS + m.south + m.north;
@@ -249,17 +269,17 @@ std::string phase_text(const FusedStage& fused, const Phase& phase, const std::s
     for (const auto& at : extents) {
         const std::string less = at == "face" ? "" : " - 1";
         o << "        int last_" << at << "_i = P.nx" << less << ", last_" << at << "_j = P.ny" << less << ";\n"
-          << "        int " << at << "_i = NEAREST(i, last_" << at << "_i, own_i0 - " << m.west << ");\n";
+          << "        int " << at << "_i = nearest_index(i, last_" << at << "_i);\n";
     }
     for (int row = 0; row < fused.cells_each; ++row) {
         const bool within = row == 0 || height % fused.cells_each == 0; // else the last row is computed twice
         o << "        int j_" << row << " = j0 + " << row
           << (within ? "" : " < " + top + " ? j0 + " + std::to_string(row) + " : j0") << ";\n        {\n        int j = j_" << row
-          << ";\n"
+          << (row > 0 && apart(fused, phase, prefix) ? ";\n        APART(j);\n" : ";\n")
           << "        bool own = own_column && j >= own_j0 && j < own_j1, inside = i >= 0 && j >= 0;\n";
         for (const auto& at : extents)
             o << "        bool in_" << at << " = inside && i <= last_" << at << "_i && j <= last_" << at << "_j;\n        int "
-              << at << "_j = NEAREST(j, last_" << at << "_j, own_j0 - " << m.south << ");\n";
+              << at << "_j = nearest_index(j, last_" << at << "_j);\n";
         o << cell_text(fused, phase, prefix) << "        }\n";
         for (const auto& [field, condition] : shared) o << "        float " << field << "_" << row << " = own_" << field << ";\n";
     }

@@ -54,8 +54,7 @@ std::string marking(const Stage& s, const std::string& member) {
 
 std::string shared_macros() {
     return "#define SHARED_PITCH " + std::to_string(shared_pitch) + "\n#define SHARED_BESIDE " + std::to_string(shared_beside) +
-           "\n#define NEAREST(AT, LAST, LOWEST) nearest_index(AT, LAST, LOWEST)\nFN int nearest_index(int at, int last, int "
-           "lowest) {\n    int most = last < lowest ? lowest : last;\n    return at < 0 ? 0 : at > most ? most : at;\n}\n";
+           "\nFN int nearest_index(int at, int last) { return at < 0 ? 0 : at > last ? last : at; }\n";
 }
 
 std::string tile_part(const std::string& m, const std::string& skip) {

@@ -83,7 +83,7 @@ std::string write_cpp(const FusedStage& f, const std::string& isa, const Effects
       << index_macros << shared_macros() << one_by_one
       << "#define LANE 0\n#define LANES 1\n#define BARRIER (void)0\n#define ANY(X) (X)\n#define ROLLED\n#define "
          "KEEP_STORED(FIELD, AT, TYPE) FIELD[AT] = TYPE(stored);\n"
-      << "#define PART_FUNCTION HELPER\n#define NOT_KEPT(X) (void)(X)\n"
+      << "#define PART_FUNCTION HELPER\n#define APART(X)\n#define NOT_KEPT(X) (void)(X)\n"
       << "template <unsigned FREE> struct " << s.struct_name << " {\n    static constexpr unsigned EFFECTS = FREE | " << f.needs
       << "u;\n    typedef Stored<EFFECTS> float_or_half;\n    const WorldParams& P;\n    const StepInput& S;\n";
     for (const auto& b : s.bindings)

@@ -174,6 +174,7 @@ std::string write_cuda(const FusedStage& f, const Effects& effects, bool all_mas
       << index_macros << shared_macros() << four_at_once << "#define LANE static_cast<int>(threadIdx.y * " << fused_group_x
       << " + threadIdx.x)\n#define LANES " << fused_group_x * fused_group_y
       << "\n#define BARRIER __syncthreads()\n#define ANY(X) __syncthreads_or(X)\n#define ROLLED _Pragma(\"unroll 1\")\n#define "
+         "APART(X) asm(\"\" : \"+r\"(X))\n#define "
          "PART_FUNCTION __device__ "
          "__forceinline__\n#define NOT_KEPT(X) (void)(X)\n"
       << keep_stored << active_argument << "struct Slots { void* at[" << s.bindings.size() << "]; };\n"

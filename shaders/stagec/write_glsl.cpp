@@ -107,7 +107,7 @@ std::string write_glsl(const FusedStage& whole, const Effects& effects) {
       << one_by_one << "#else\n"
       << four_floats << wide_names(s) << "#endif\n#define LANE int(gl_LocalInvocationIndex)\n#define LANES "
       << fused_group_x * fused_group_y
-      << "\n#define BARRIER barrier()\n#define ROLLED\n#define PART_FUNCTION\n#define NOT_KEPT(X)\n"
+      << "\n#define BARRIER barrier()\n#define ROLLED\n#define APART(X)\n#define PART_FUNCTION\n#define NOT_KEPT(X)\n"
       << keep_stored;
     for (const auto& b : s.bindings) o << b.access << "(" << b.slot << ", " << b.type << ", " << b.name << ")\n";
     o << tile_bindings(s);
