@@ -38,7 +38,8 @@ double comes_back(double froude, const Side& end, int order, double sand = 0) {
     const auto h = cells_of(*world, "water_height"), free = cells_of(*longer, "water_height");
     double most = 0;
     for (int i = 0; i < 200; ++i) most = std::max(most, static_cast<double>(std::abs(h.at(i, 0) - free.at(i, 0))));
-    MESSAGE("order " << order << ", Froude " << froude << ", sand " << sand << " m, side " << static_cast<int>(end.kind) << ": " << most / 0.02);
+    MESSAGE("order " << order << ", Froude " << froude << ", sand " << sand << " m, side " << static_cast<int>(end.kind) << ": "
+                     << most / 0.02);
     return most / 0.02;
 }
 
