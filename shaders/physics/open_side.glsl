@@ -4,8 +4,8 @@
 #include "../physics/scalar.glsl"
 
 // Outward velocity of an outflow side (NUMERICS 2.9): next is that of the next face inside, depth the water above the sand, rise how much
-// higher it stands in the last cell than in the one before, gravity as the scheme may use it. The incoming characteristic u - 2 sqrt(g h) has no gradient, so that
-// waves leave; in fast flow, which no wave runs up, next alone.
+// higher it stands in the last cell than in the one before, gravity as the scheme may use it. The incoming characteristic u - 2 sqrt(g h)
+// has no gradient, so that waves leave; in fast flow, which no wave runs up, next alone.
 FN float radiated(float next, float depth, float rise, float gravity) {
     float wave = wsqrt(gravity * depth);
     float before = wsqrt(gravity * wmax(depth - rise, 0.0f));
