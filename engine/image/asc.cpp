@@ -1,6 +1,6 @@
 // Esri ASCII grids: a header of "key value" lines, then values in rows from the north, separated by blanks or line ends.
 #include "engine/image/map.hpp"
-#include "engine/image/number_text.hpp"
+#include "engine/image/parse_number.hpp"
 #include <cmath>
 #include <cstddef>
 #include <limits>

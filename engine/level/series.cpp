@@ -1,5 +1,5 @@
 #include "engine/image/map.hpp"
-#include "engine/image/number_text.hpp"
+#include "engine/image/parse_number.hpp"
 #include "engine/level/settings_reader.hpp"
 #include <cstddef>
 #include <string_view>

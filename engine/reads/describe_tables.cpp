@@ -1,6 +1,5 @@
 #include "engine/reads/describe_tables.hpp"
 #include "engine/compute/stage_table.hpp"
-#include "engine/image/number_text.hpp"
 #include "engine/settings/effects.hpp"
 #include "engine/settings/messages.hpp"
 #include "engine/settings/setting_table.hpp"

@@ -22,7 +22,7 @@ RULES = {
     "engine/saves": ["engine/saves/", "engine/step/", "engine/settings/", "engine/compute/"],
     "engine/edits": ["engine/edits/", "engine/saves/", "engine/step/", "engine/settings/", "engine/compute/"],
     "engine/frames": ["engine/frames/", "engine/step/", "engine/settings/", "engine/compute/"],
-    "engine/reads": ["engine/reads/", "engine/step/", "engine/image/number_text.hpp", "engine/settings/", "engine/threads/", "engine/compute/"],
+    "engine/reads": ["engine/reads/", "engine/step/", "engine/settings/", "engine/threads/", "engine/compute/"],
     "backends": ["backends/", "engine/compute/"],
     "plugin": ["plugin/", "engine/", "wadi/", "backends/registry.hpp"],
     "plugin/godot": ["engine_methods.h"],

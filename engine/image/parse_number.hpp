@@ -1,4 +1,4 @@
-// Numbers in text files.
+// Numbers of text files.
 #pragma once
 #include <charconv>
 #include <string>
@@ -20,26 +20,6 @@ inline bool parse_number(std::string_view text, double& number) {
     std::istringstream words{std::string(text)};
     words.imbue(std::locale::classic());
     return (words >> number) && words.peek() == std::istringstream::traits_type::eof();
-#endif
-}
-
-/// The shortest text that parse_number gives the same number for, in whatever locale.
-inline std::string number_text(double number) {
-#if defined(__cpp_lib_to_chars)
-    char text[32];
-    return {text, std::to_chars(text, text + sizeof text, number).ptr};
-#else
-    std::string text;
-    double again = 0;
-    for (int digits = 1; digits <= 17; ++digits) {
-        std::ostringstream words;
-        words.imbue(std::locale::classic());
-        words.precision(digits);
-        words << number;
-        text = words.str();
-        if (parse_number(text, again) && again == number) break;
-    }
-    return text;
 #endif
 }
 
