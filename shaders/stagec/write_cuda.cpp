@@ -79,7 +79,7 @@ __device__ __forceinline__ bool keep(float* to, float4 value, bool look) {
         changed = float_bits(old.x) != float_bits(value.x) || float_bits(old.y) != float_bits(value.y) ||
                   float_bits(old.z) != float_bits(value.z) || float_bits(old.w) != float_bits(value.w);
     }
-    *place = value;
+    if (!look || changed) *place = value; // waits for what it looked at
     return changed;
 }
 __device__ __forceinline__ bool keep(Half* to, float4 value, bool look) {

@@ -19,11 +19,12 @@ std::string marking(const Stage& stage, const std::string& member);
 inline constexpr const char* marked = "    if (changed) activity[tile] = uint(S.step);\n";
 /// The place of a rim kernel: its face, the cell outside it where that is written, the tile that holds the face.
 std::string rim_place(const Stage& stage);
-/// KEEP_STORED of a fused stage: stores, and notes whether that changed a bit where somebody looks. Behind a branch of its own: a
-/// store that follows a load from its own place which is still under way holds up a multiprocessor's whole memory (an H100: three
-/// times the time).
-inline constexpr const char* keep_stored = "#define KEEP_STORED(FIELD, AT, TYPE) { if (look) changed = changed || "
-                                           "float_bits(float(FIELD[AT])) != float_bits(stored); FIELD[AT] = TYPE(stored); }\n";
+/// KEEP_STORED of a fused stage: stores, and notes whether that changed a bit where somebody looks; there, what is the same stays
+/// as it is. A store never follows a load from its own place which is still under way: that holds up a multiprocessor's whole
+/// memory (an H100: three times the time).
+inline constexpr const char* keep_stored =
+    "#define KEEP_STORED(FIELD, AT, TYPE) { bool same = false; if (look && !changed) { same = float_bits(float(FIELD[AT])) == "
+    "float_bits(stored); changed = !same; } if (!same) FIELD[AT] = TYPE(stored); }\n";
 /// Copies, looks and stores of fused stages where a thread takes one element at a time.
 inline constexpr const char* one_by_one =
     "#define WIDE 1\n#define COPY(TO, T, FROM, F) TO[T] = float(FROM[F])\n#define ZERO(TO, T) TO[T] = 0.0f\n#define COPIED\n"

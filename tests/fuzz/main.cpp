@@ -18,7 +18,7 @@ struct Options {
     std::uint64_t scenes = 0, seed = 1;
     int jobs = 0, most_failures = 5;
     std::vector<std::string> backends;
-    std::string out = "fuzz-failures", csv, level, check, plain_set = "base";
+    std::string out = "fuzz-failures", csv, level, check, plain_set = "base", sand_substep;
     Weaken weaken = Weaken::nothing;
 };
 
@@ -62,6 +62,8 @@ class Campaign {
             if (options_.scenes > 0 && seed >= options_.seed + options_.scenes) break;
             const double began = now();
             const Case c = make_case(seed);
+            const bool published = c.scene.settings.method.sand_substep == SandSubstep::algorithm_1;
+            if (!options_.sand_substep.empty() && published != (options_.sand_substep == "algorithm_1")) continue;
             const Outcome outcome = run_case(c, *devices, options_.weaken, options_.check);
             note(c, outcome, now() - began);
             if (outcome.failed() && failures_++ < options_.most_failures) report(c, outcome, *devices);
@@ -170,6 +172,8 @@ int main(int argc, char** argv) {
     app.add_option("--plain-set", options.plain_set,
                    "instruction set of the plain CPU: base, or a quicker one (base costs most of the time)");
     app.add_option("--check", options.check, "this check alone, in every scene")->check(CLI::IsMember(check_names()));
+    app.add_option("--sand-substep", options.sand_substep, "only scenes whose method has this one; --scenes counts the others as well")
+        ->check(CLI::IsMember({"own", "algorithm_1"}));
     app.add_option("--level", options.level, "runs a level that a failure left, instead of random scenes");
     app.add_option("--out", options.out, "folder for the levels of failures");
     app.add_option("--csv", options.csv, "a line per scene");
