@@ -172,7 +172,8 @@ int main(int argc, char** argv) {
     app.add_option("--plain-set", options.plain_set,
                    "instruction set of the plain CPU: base, or a quicker one (base costs most of the time)");
     app.add_option("--check", options.check, "this check alone, in every scene")->check(CLI::IsMember(check_names()));
-    app.add_option("--sand-substep", options.sand_substep, "only scenes whose method has this one; --scenes counts the others as well")
+    app.add_option("--sand-substep", options.sand_substep,
+                   "only scenes whose method has this one; --scenes counts the others as well")
         ->check(CLI::IsMember({"own", "algorithm_1"}));
     app.add_option("--level", options.level, "runs a level that a failure left, instead of random scenes");
     app.add_option("--out", options.out, "folder for the levels of failures");
