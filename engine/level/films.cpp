@@ -20,22 +20,33 @@ int cells_within(double from, double to, double dx, int cells) {
     return std::max(static_cast<int>(last - first) + 1, 0);
 }
 
+/// Cells that a source covers: along x and y, and in all.
+struct Covered {
+    double along = 1, across = 1, cells = 1;
+};
+
+Covered covered(const Source& source, const Grid& grid) {
+    const double dx = grid.dx;
+    Covered c;
+    if (source.shape == SourceShape::box) {
+        c.along = cells_within(source.box[0], source.box[2], dx, grid.nx);
+        c.across = cells_within(source.box[1], source.box[3], dx, grid.ny);
+        c.cells = c.along * c.across;
+    } else if (source.shape == SourceShape::disc) {
+        c.along = c.across = std::max(2 * source.radius / dx, 1.0);
+        c.cells = std::max(std::acos(-1.0) * source.radius * source.radius / (dx * dx), 1.0);
+    }
+    return c;
+}
+
 /// Depth [m] that a source adds to a cell in a step, times the cells that it covers the shorter way: what leaves downhill at
 /// least.
 double depth_below(const Source& source, const Settings& s) {
-    const double dx = s.grid.dx;
-    double along = 1, across = 1, covered = 1;
-    if (source.shape == SourceShape::box) {
-        along = cells_within(source.box[0], source.box[2], dx, s.grid.nx);
-        across = cells_within(source.box[1], source.box[3], dx, s.grid.ny);
-        covered = along * across;
-    } else if (source.shape == SourceShape::disc) {
-        along = across = std::max(2 * source.radius / dx, 1.0);
-        covered = std::max(std::acos(-1.0) * source.radius * source.radius / (dx * dx), 1.0);
-    }
+    const Covered over = covered(source, s.grid);
     const bool by_volume = !source.discharge.samples.empty();
-    const double rate = by_volume && covered > 0 ? largest(source.discharge) / (covered * dx * dx) : largest(source.rate);
-    return rate * s.dt * std::min(along, across);
+    const double rate =
+        by_volume && over.cells > 0 ? largest(source.discharge) / (over.cells * s.grid.dx * s.grid.dx) : largest(source.rate);
+    return rate * s.dt * std::min(over.along, over.across);
 }
 
 } // namespace
@@ -68,6 +79,19 @@ void warn_films(const Settings& s, const FilmGround& ground, std::vector<std::st
     for (std::size_t n = 0; n < s.sources.size(); ++n)
         if (s.sources[n].material == SourceMaterial::water)
             warn("sources[" + std::to_string(n) + "]", depth_below(s.sources[n], s), "");
+}
+
+void warn_discharges(const Settings& s, std::vector<std::string>& warnings) {
+    for (std::size_t n = 0; n < s.sources.size(); ++n) {
+        const double area = covered(s.sources[n], s.grid).cells * s.grid.dx * s.grid.dx;
+        double most = 0; // drains as well
+        for (const auto& [time, value] : s.sources[n].discharge.samples) most = std::max(most, std::fabs(value));
+        if (area > 0 && most > RATE_MOST * area)
+            warnings.push_back("sources[" + std::to_string(n) + "].discharge: " + number_text(most) + " m3/s on " +
+                               number_text(area) + " m2 is more than " + number_text(RATE_MOST) +
+                               " m/s of depth, and what is beyond does not flow; use at most " + at_most(RATE_MOST * area) +
+                               " m3/s, or a larger shape");
+    }
 }
 
 } // namespace wadi

@@ -1,4 +1,4 @@
-// Advice on flows thinner than the quantum of height can carry.
+// Advice on flows thinner than the quantum of height can carry, and on sources that bring more than a cell takes.
 #pragma once
 #include "engine/settings/settings.hpp"
 #include <string>
@@ -15,5 +15,8 @@ struct FilmGround {
 /// Warns of rain, discharges and sources of water that bring less than one quantum through a face in a step (NUMERICS 2.2). All
 /// of it enters and nothing is lost, but a film waits on dry ground until it is deep enough to move a whole one.
 void warn_films(const Settings& settings, const FilmGround& ground, std::vector<std::string>& warnings);
+
+/// Warns of sources whose discharge, shared by the cells that they cover, is beyond RATE_MOST.
+void warn_discharges(const Settings& settings, std::vector<std::string>& warnings);
 
 } // namespace wadi

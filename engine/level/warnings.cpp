@@ -348,6 +348,7 @@ std::vector<std::string> level_warnings(const Settings& settings, const InitialF
     warn_sand(settings, survey, warnings);
     const auto cells = static_cast<std::size_t>(settings.grid.nx) * static_cast<std::size_t>(settings.grid.ny);
     warn_films(settings, {survey.highest_column, 2 * survey.dry_cells > cells}, warnings);
+    warn_discharges(settings, warnings);
     for (std::size_t n = 0; n < settings.sources.size(); ++n)
         if (!covers_a_cell(settings.sources[n], settings.grid))
             warnings.push_back("sources[" + std::to_string(n) +

@@ -123,6 +123,19 @@ TEST_CASE("level warnings: speed of a source, diffusion") {
              "material.diffusion_rate: 1 m2/s acts like 0.222222 m2/s"));
 }
 
+TEST_CASE("level warnings: a source that brings more than a cell takes") {
+    const auto point = [](const char* discharge) {
+        return warnings(std::string(R"("sources": [{"shape": "point", "center": [1, 1], "discharge": )") + discharge + "}]");
+    };
+    CHECK_MESSAGE(says(point("120"),
+                       "sources[0].discharge: 120 m3/s on 0.01 m2 is more than 10000 m/s of depth, and what is beyond does "
+                       "not flow; use at most 100 m3/s, or a larger shape"),
+                  point("120"));
+    CHECK(says(point("-120"), "sources[0].discharge: 120 m3/s on 0.01 m2"));
+    CHECK(point("99").empty());
+    CHECK(warnings(R"("sources": [{"shape": "disc", "center": [1, 1], "radius": 0.2, "discharge": 120}])").empty());
+}
+
 TEST_CASE("level warnings: flows of less than a quantum a step") {
     // 2^-20 m in cells of 0.1 m and steps of 0.009 s is 1.06e-5 m2/s, half of a grid of 4 m of rain 5.3e-6 m/s.
     const auto west = [](const char* value) {
