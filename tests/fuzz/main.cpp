@@ -1,12 +1,16 @@
 // wadi-fuzz: random worlds against invariants, backends, the reference solver and themselves. docs: tests/fuzz/README.md.
 #include "tests/fuzz/checks.hpp"
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <mutex>
 #include <set>
+#include <stop_token>
 #include <thread>
+#include <vector>
 
 using namespace wadi;
 using namespace wadi::fuzz;
@@ -14,7 +18,7 @@ using namespace wadi::fuzz;
 namespace {
 
 struct Options {
-    double seconds = 20, shrink_seconds = 60;
+    double seconds = 20, shrink_seconds = 60, stuck_seconds = 300;
     std::uint64_t scenes = 0, seed = 1;
     int jobs = 0, most_failures = 5;
     std::vector<std::string> backends;
@@ -31,9 +35,16 @@ std::vector<std::string> all_backends() {
     return {names.begin(), names.end()};
 }
 
+/// What a thread is at.
+struct Place {
+    std::atomic<std::uint64_t> seed{0};
+    std::atomic<double> since{0}; // 0: at nothing that has to end
+};
+
 class Campaign {
   public:
-    explicit Campaign(const Options& options) : options_(options), start_(now()), next_(options.seed) {
+    explicit Campaign(const Options& options)
+        : options_(options), start_(now()), next_(options.seed), places_(static_cast<std::size_t>(options.jobs)) {
         if (options_.csv.empty()) return;
         csv_ = std::fopen(options_.csv.c_str(), "w");
         broken_ = csv_ == nullptr;
@@ -50,7 +61,8 @@ class Campaign {
     Campaign(const Campaign&) = delete;
     Campaign& operator=(const Campaign&) = delete;
 
-    void work() {
+    /// Of thread `n`.
+    void work(std::size_t n) {
         auto devices = open_devices(options_.backends, options_.plain_set);
         if (!devices) {
             std::fprintf(stderr, "%s\n", devices.status().message.c_str());
@@ -64,9 +76,30 @@ class Campaign {
             const Case c = make_case(seed);
             const bool published = c.scene.settings.method.sand_substep == SandSubstep::algorithm_1;
             if (!options_.sand_substep.empty() && published != (options_.sand_substep == "algorithm_1")) continue;
+            places_[n].seed = seed;
+            places_[n].since = began;
             const Outcome outcome = run_case(c, *devices, options_.weaken, options_.check);
+            places_[n].since = 0;
             note(c, outcome, now() - began);
             if (outcome.failed() && failures_++ < options_.most_failures) report(c, outcome, *devices);
+        }
+    }
+
+    /// Ends the program with 3 where a scene does not end; a device that stands still would otherwise hold it for good.
+    void watch(const std::stop_token& stop) const {
+        while (!stop.stop_requested()) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+            const auto stuck = [this](const Place& place) {
+                return place.since > 0 && now() - place.since > options_.stuck_seconds;
+            };
+            if (std::none_of(places_.begin(), places_.end(), stuck)) continue;
+            for (const Place& place : places_) {
+                if (place.since > 0)
+                    std::printf("FAILED seed %llu runs for %.1f s and has not ended\n",
+                                static_cast<unsigned long long>(place.seed), now() - place.since);
+            }
+            std::fflush(nullptr);
+            std::_Exit(3);
         }
     }
 
@@ -129,6 +162,7 @@ class Campaign {
     const Options& options_;
     const double start_;
     std::atomic<std::uint64_t> next_;
+    std::vector<Place> places_; // one per thread
     std::atomic<int> failures_{0};
     std::atomic<bool> broken_{false};
     std::mutex mutex_;
@@ -180,6 +214,8 @@ int main(int argc, char** argv) {
     app.add_option("--csv", options.csv, "a line per scene");
     app.add_option("--failures", options.most_failures, "stops after so many")->check(CLI::Range(1, 1000));
     app.add_option("--shrink-seconds", options.shrink_seconds, "time for making a failure small")->check(CLI::Range(0.0, 1e4));
+    app.add_option("--stuck-seconds", options.stuck_seconds, "a scene that takes longer ends the program, with exit status 3")
+        ->check(CLI::Range(0.001, 1e6));
     app.add_option("--weaken", weaken, "breaks something on purpose, which must then be found")
         ->check(CLI::IsMember({"nothing", "limiter", "bits", "rings"}));
     CLI11_PARSE(app, argc, argv);
@@ -192,8 +228,9 @@ int main(int argc, char** argv) {
     if (!options.level.empty()) return replay(options);
     Campaign campaign(options);
     std::vector<std::thread> threads;
-    for (int n = 1; n < options.jobs; ++n) threads.emplace_back([&] { campaign.work(); });
-    campaign.work();
+    std::jthread watcher([&](const std::stop_token& stop) { campaign.watch(stop); });
+    for (int n = 1; n < options.jobs; ++n) threads.emplace_back([&, n] { campaign.work(static_cast<std::size_t>(n)); });
+    campaign.work(0);
     for (auto& thread : threads) thread.join();
     return campaign.summary();
 }

@@ -37,6 +37,8 @@ def main():
     # NaN on the way that is gone in the end is no run to compare.
     code, text = run(program, "--scenes", "1", "--seed", "913000237", *common)
     assert code == 0 and "blown up 1" in text, text
+    code, text = run(program, "--scenes", "30", "--stuck-seconds", "0.001", *common)
+    assert code == 3 and re.search(r"seed \d+ runs for .* has not ended", text), f"a scene that takes too long goes on:\n{text}"
     code, text = run(program, "--scenes", "1", "--plain-set", "none", *common)
     assert code == 1 and "no instruction set 'none'" in text, text
     code, text = run(program, "--scenes", "3", *common)
