@@ -182,7 +182,7 @@ FN void project_stretch(REF(Stretch) v, REF(Stress) stress, float c, float cap, 
     // without roots or angles. Stretches beyond e^+-1/2 count as these.
     float sum = v.xx + v.yy;
     float grown = sum + (v.xx * v.yy - v.xy * v.xy); // det V - 1
-    bool sound = both(grown > -0.999999f, both(sum > -2.0f, sum < 1000.0f));
+    bool sound = both(grown > -0.999999f, both(sum > -2.0f, sum < 998.0f));
     float middle = 0.5f * sum; // of both stretches, less 1
     float d = 0.5f * (v.xx - v.yy);
     float xy = v.xy;
@@ -191,9 +191,10 @@ FN void project_stretch(REF(Stretch) v, REF(Stress) stress, float c, float cap, 
     bool within = both(room >= 0.0f, apart2 <= room * room);
     float volume = 1.0f + grown;
     if (UNIFORM(!within)) {
+        // The floats near e^-1/2 - 1 and e^1/2 - 1 for which det V - 1 is 0 below where both bounds act: stiff sand is pushed by 3e-8.
         float apart = lean_root(wclamp(apart2, 1.0e-28f, 1.0e28f));
-        float high = wclamp(middle + apart, -0.39346934f, 0.648721271f);
-        float low = wclamp(middle - apart, -0.39346934f, 0.648721271f);
+        float high = wclamp(middle + apart, -0.393469363f, 0.648721337f);
+        float low = wclamp(middle - apart, -0.393469363f, 0.648721337f);
         float left_apart = lean_quotient(0.5f * (high - low), apart);
         d = within ? d : d * left_apart;
         xy = within ? xy : xy * left_apart;

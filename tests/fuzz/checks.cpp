@@ -150,14 +150,12 @@ std::string check_image(const Case& c, Session& session, Base& base, Image image
 }
 
 // Each depth a quantum more, less or as it is, as other rounding of fluxes leaves it; without quanta two units in a float's last
-// place, as many as each strain and angle. (The angle of an F that a step turned inside out may hang on them.)
+// place.
 void nudge(reference::Solver<double>& solver, Random& random) {
     const double quantum = height_quantum(solver.settings.method);
     for (reference::Field<double>* depth : {&solver.sand, &solver.water})
         for (double& h : *depth)
             if (h > quantum) h += (quantum > 0 ? quantum : h * 0x1p-22) * random.whole(-1, 1);
-    for (reference::Field<double>* strain : {&solver.Vxx, &solver.Vxy, &solver.Vyy, &solver.rotation})
-        for (double& v : *strain) v += v * 0x1p-22 * random.whole(-1, 1);
     solver.split_water();
 }
 

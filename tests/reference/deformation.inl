@@ -192,7 +192,8 @@ template <class Real> void Solver<Real>::project_deformation_gradient() {
         const Real l1 = mean(bxx, byy) + radius;
         const Real l2 = det * det / l1;
         Real tr(0), dd(0), dxy(0);
-        if (det > Real(1e-6) && l1 < Real(1e6)) { // otherwise V starts again from the identity
+        const Real sum = Vxx[c] + Vyy[c];
+        if (det > Real(1e-6) && sum > Real(0) && sum < Real(1000)) { // otherwise V starts again from the identity
             const Real e1 = clamped(std::log(l1) / Real(2), Real(0.5));
             const Real e2 = clamped(std::log(l2) / Real(2), Real(0.5));
             tr = e1 + e2;
