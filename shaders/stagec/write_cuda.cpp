@@ -83,13 +83,15 @@ __device__ __forceinline__ bool keep(float* to, float4 value, bool look) {
     return changed;
 }
 __device__ __forceinline__ bool keep(Half* to, float4 value, bool look) {
-    const float values[4] = {value.x, value.y, value.z, value.w};
+    const Half stored[4] = {Half(value.x), Half(value.y), Half(value.z), Half(value.w)};
     bool changed = false;
+    if (look) {
 #pragma unroll
-    for (int k = 0; k < 4; ++k) {
-        const Half stored(values[k]);
-        changed = changed || (look && to[k].bits != stored.bits);
-        to[k] = stored;
+        for (int k = 0; k < 4; ++k) changed = changed || to[k].bits != stored[k].bits;
+    }
+    if (!look || changed) {
+#pragma unroll
+        for (int k = 0; k < 4; ++k) to[k] = stored[k];
     }
     return changed;
 }
