@@ -1,23 +1,32 @@
 #!/usr/bin/env python3
-"""Every measurement of this folder that depends on the machine, unattended: frontier.py, timings.py, effects.py and wadi-report, each into a folder of its
-own under OUT, what they print in OUT/log.txt as it comes. A backend that the machine lacks is left out, and said; a part that outlasts its
-share of the time is ended, and what it has written stays. Exit code 1 where a part failed or was ended.
+"""The measurements of this folder that depend on the machine, unattended, of one build and in one job: frontier.py, timings.py, effects.py and
+wadi-report on the first backend that the machine has, each into a folder of its own under OUT, what they print in OUT/log.txt. A backend that
+the machine lacks is left out, and said; a part that outlasts its share of the time is ended, and what it has written stays. Exit code 1 where a
+part failed or was ended.
 
-usage: samples/report/run_all.py BIN_FOLDER [--quick] [--parts PART ...] [--minutes 30] [--backends cuda,vulkan,cpu] [--relaxed BIN_FOLDER] [--out out/all]
+--beside: at the same time the pages of two CPU cores (timings, report, frontier and effects, each on two cores of its own) and those whose
+numbers are the same on any machine (methods, errors), on the cores that are left; needs 32 cores and a GPU. frontier has the second GPU to itself,
+where there is one.
+
+usage: samples/report/run_all.py BIN_FOLDER [--quick] [--parts PART ...] [--minutes 30] [--backends cuda,vulkan,cpu] [--beside] [--relaxed BIN_FOLDER] [--out out/all]
 """
 import argparse
+import concurrent.futures
 import os
 import pathlib
 import re
 import signal
 import subprocess
 import sys
+import threading
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
-SHARES = {"frontier": 0.15, "timings": 0.42, "effects": 0.11, "report": 0.32}  # of the time, in this order; what one leaves over goes to the next
+SHARES = {"frontier": 0.15, "timings": 0.42, "effects": 0.11, "report": 0.32}  # of a lane's time, in this order; what one leaves over goes to the next
 FRONTIER_ROWS = 30  # as many of the longest rows as fit: of each of 16 kinds of run one, and those of smaller grids
 WRITES_PAGE = 0.9  # of its time: the report stops measuring here
+BESIDE_CORES = 32
+TWO_CORES = {"timings": (8, 10), "report": (12, 14), "frontier": (16, 18), "effects": (20, 22)}  # every second one: neighbours may be threads of one core
 
 
 def end_group(process):
@@ -30,10 +39,11 @@ def end_group(process):
         process.wait()
 
 
-def run(command, seconds, log):
+def run(command, seconds, log, cores=None, environment=None):
     """Exit code, or None where the time was over."""
     # Its own output file: a pipe would block the clock below on a silent part.
-    process = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, start_new_session=True)
+    process = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, start_new_session=True, env={**os.environ, **(environment or {})},
+                               preexec_fn=(lambda: os.sched_setaffinity(0, cores)) if cores else None)
     try:
         return process.wait(seconds)
     except subprocess.TimeoutExpired:
@@ -44,6 +54,59 @@ def run(command, seconds, log):
         raise
 
 
+class Job:
+    """Lanes of parts: those of a lane one after another, lanes at the same time."""
+
+    def __init__(self, options):
+        self.options, self.begun, self.failed, self.lock = options, time.monotonic(), [], threading.Lock()
+        self.out = options.out
+        self.out.mkdir(parents=True, exist_ok=True)
+        self.main_log = (self.out / "log.txt").open("a")
+
+    def say(self, text):
+        with self.lock:
+            print(text, flush=True)
+            print(text, file=self.main_log, flush=True)
+
+    def lane(self, name, parts, cores=None, environment=None):
+        """parts: {folder under OUT: (share of the lane's time, function of the seconds it has, which gives its command)}"""
+        due, whole = self.begun, sum(share for share, _ in parts.values())
+        log = self.main_log if name == "" else (self.out / f"log_{name}.txt").open("a")
+        for folder, (share, command_of) in parts.items():
+            due += 60 * self.options.minutes * share / whole
+            left = due - time.monotonic()
+            script, *arguments = command_of(left)
+            self.say(f"== {folder}: {script} {' '.join(map(str, arguments))}, {left:.0f} s at most")
+            start = time.monotonic()
+            code = run([sys.executable, "-u", str(HERE / script), *map(str, arguments), "--out", str(self.out / folder)], left, log, cores, environment)
+            result = "ENDED: out of time" if code is None else {0: "done", 77: "SKIPPED, see log.txt"}.get(code, f"FAILED: exit code {code}")
+            self.say(f"== {folder}: {result} after {time.monotonic() - start:.0f} s")
+            if code not in (0, 77):
+                self.failed.append(folder)
+
+
+def device_parts(options, there):
+    """The parts on the first backend (timings: on all)."""
+    first, programs, quick = there[0], options.programs, ["--quick"] if options.quick else []
+    commands = {
+        "frontier": lambda left: ["frontier.py", programs, "--backend", first, "--row-seconds", f"{left / FRONTIER_ROWS:.1f}", *(["--sizes", "16", "32"] if options.quick else [])],
+        "timings": lambda left: ["timings.py", programs, *quick, "--backends", ",".join(there)],
+        "effects": lambda left: ["effects.py", programs, "--backend", first, *(["--only", "water", "drag"] if options.quick else []),
+                                 *(["--prices", "--rounds", "3"] if first != "cpu" else [])],
+        "report": lambda left: ["wadi-report", programs, *(quick or ["--full"]), "--backend", first, "--repeats", options.repeats, "--minutes", f"{WRITES_PAGE * left / 60:.2f}",
+                                *(["--relaxed", options.relaxed] if options.relaxed else [])]}
+    return {name: (SHARES[name], commands[name]) for name in SHARES if name in options.parts}
+
+
+def two_core_parts(options):
+    cpu = ["--backend", "cpu", "--threads", "2"]
+    return {
+        "timings": lambda left: ["timings.py", options.programs, "--backends", "cpu", "--threads", "2", "--only", "table_2", "scaling", "order", "presets"],
+        "report": lambda left: ["wadi-report", options.programs, "--quick", *cpu, "--minutes", f"{WRITES_PAGE * left / 60:.2f}"],
+        "frontier": lambda left: ["frontier.py", options.programs, *cpu, "--row-seconds", f"{left / FRONTIER_ROWS:.1f}"],
+        "effects": lambda left: ["effects.py", options.programs, *cpu]}
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("programs", type=pathlib.Path)
@@ -52,49 +115,39 @@ def main():
     parser.add_argument("--parts", nargs="+", choices=SHARES, default=list(SHARES), metavar="PART", help=f"of {', '.join(SHARES)} (default all)")
     parser.add_argument("--repeats", type=int, default=2, metavar="N", help="runs per point of the report (default %(default)s)")
     parser.add_argument("--backends", default="cuda,vulkan,cpu", help="wanted, the one to report on first (default %(default)s)")
+    parser.add_argument("--beside", action="store_true", help="at the same time the pages of two CPU cores, methods and errors")
     parser.add_argument("--relaxed", type=pathlib.Path, metavar="BIN", help="programs of a build with -DWADI_STRICT_FLOAT=OFF, to price strict floats by")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/all"))
     options = parser.parse_args()
-    begun = time.monotonic()
-    options.out.mkdir(parents=True, exist_ok=True)
-    recorder = options.programs / "wadi-recorder"
-    listed = subprocess.run([str(recorder.resolve()), "--list-backends"], capture_output=True, text=True, check=True).stdout
+    cores = sorted(os.sched_getaffinity(0))
+    if options.beside and len(cores) < BESIDE_CORES:
+        parser.error(f"--beside wants {BESIDE_CORES} cores, {len(cores)} are there")
+    job = Job(options)
+    listed = subprocess.run([str((options.programs / "wadi-recorder").resolve()), "--list-backends"], capture_output=True, text=True, check=True).stdout
     there = [name for name in options.backends.split(",") if re.search(rf"^{name} +\d+ ", listed, re.M)]
-    with (options.out / "log.txt").open("a") as log:
-        def say(text):
-            print(text, flush=True)
-            print(text, file=log, flush=True)
-
-        say(listed.rstrip())
-        for name in options.backends.split(","):
-            if name not in there:
-                say(f"SKIPPED {name}: no device here")
-        if not there:
-            return 1
-        quick = ["--quick"] if options.quick else []
-        parts = {
-            "frontier": ["frontier.py", options.programs, "--backend", there[0], *(["--sizes", "16", "32"] if options.quick else [])],
-            "timings": ["timings.py", options.programs, *quick, "--backends", ",".join(there)],
-            "effects": ["effects.py", options.programs, "--backend", there[0], *(["--only", "water", "drag"] if options.quick else []), *(["--prices", "--rounds", "3"] if there[0] != "cpu" else [])],
-            "report": ["wadi-report", options.programs, *(quick or ["--full"]), "--backend", there[0], "--repeats", options.repeats, *(["--relaxed", options.relaxed] if options.relaxed else [])]}
-        failed, due = [], begun
-        for name in [part for part in SHARES if part in options.parts]:
-            script, *arguments = parts[name]
-            due += 60 * options.minutes * SHARES[name] / sum(SHARES[part] for part in options.parts)
-            left = due - time.monotonic()
-            if name == "report":
-                arguments += ["--minutes", f"{WRITES_PAGE * left / 60:.2f}"]
-            if name == "frontier":
-                arguments += ["--row-seconds", f"{left / FRONTIER_ROWS:.1f}"]
-            say(f"== {name}: {script} {' '.join(map(str, arguments))}, {left:.0f} s at most")
-            start = time.monotonic()
-            code = run([sys.executable, "-u", str(HERE / script), *map(str, arguments), "--out", str(options.out / name)], left, log)
-            result = "ENDED: out of time" if code is None else {0: "done", 77: "SKIPPED, see log.txt"}.get(code, f"FAILED: exit code {code}")
-            say(f"== {name}: {result} after {time.monotonic() - start:.0f} s")
-            if code not in (0, 77):
-                failed.append(name)
-        say(f"{options.out}: " + (f"{', '.join(failed)} not complete, see log.txt" if failed else "complete"))
-    return 1 if failed else 0
+    job.say(listed.rstrip())
+    for name in options.backends.split(","):
+        if name not in there:
+            job.say(f"SKIPPED {name}: no device here")
+    if not there:
+        return 1
+    if not options.beside:
+        job.lane("", device_parts(options, there))
+    else:
+        at = {k: {cores[c] for c in range(4 * k, 4 * k + 4)} for k in range(2)}
+        devices = device_parts(options, [name for name in there if name != "cpu"] or there)
+        second = {"frontier": devices.pop("frontier")} if "frontier" in devices and re.search(r"^cuda +1 ", listed, re.M) else {}
+        rest = {"methods": (3, lambda left: ["side_by_side.py", options.programs]), "errors": (1, lambda left: ["errors.py", options.programs])}
+        with concurrent.futures.ThreadPoolExecutor() as pool:
+            lanes = [pool.submit(job.lane, "", devices, at[0], {"CUDA_VISIBLE_DEVICES": "0"}), pool.submit(job.lane, "second_gpu", second, at[1], {"CUDA_VISIBLE_DEVICES": "1"}),
+                     pool.submit(job.lane, "rest", rest, set(cores[24:]))]
+            for name, command_of in two_core_parts(options).items():
+                folder = f"two_cores_{name}"
+                lanes.append(pool.submit(job.lane, folder, {folder: (1, command_of)}, {cores[c] for c in TWO_CORES[name]}))
+            for lane in lanes:
+                lane.result()
+    job.say(f"{options.out}: " + (f"{', '.join(job.failed)} not complete, see its log" if job.failed else "complete"))
+    return 1 if job.failed else 0
 
 
 if __name__ == "__main__":
