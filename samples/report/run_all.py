@@ -104,7 +104,7 @@ def two_core_parts(options):
         "timings": lambda left: ["timings.py", options.programs, "--backends", "cpu", "--threads", "2", "--only", "table_2", "scaling", "order", "presets"],
         "report": lambda left: ["wadi-report", options.programs, "--quick", *cpu, "--minutes", f"{WRITES_PAGE * left / 60:.2f}"],
         "frontier": lambda left: ["frontier.py", options.programs, *cpu, "--row-seconds", f"{left / FRONTIER_ROWS:.1f}"],
-        "effects": lambda left: ["effects.py", options.programs, *cpu]}
+        "effects": lambda left: ["effects.py", options.programs, "--prices", *cpu]}
 
 
 def main():

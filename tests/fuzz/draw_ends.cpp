@@ -1,4 +1,5 @@
 // Settings at the ends of their ranges and next to nothing, whatever the case is otherwise.
+#include "engine/settings/edit_checks.hpp"
 #include "engine/settings/setting_table.hpp"
 #include "tests/fuzz/fuzz_case.hpp"
 #include "tests/fuzz/random.hpp"
@@ -41,7 +42,11 @@ bool draw_ends(Random& random, Case& c) {
         const Setting& row = *rows[random.next() % rows.size()];
         Settings changed = c.scene.settings;
         row.at.set(changed, end_of(row, random));
-        if (!validate(changed) || !validate(c.scene.fields, changed)) continue; // what a loader refuses is no case
+        // What a loader or a call refuses is no case.
+        const auto refused = [&](const Edit& edit) { return !check_edit("", 0, edit, changed, {}, 0); };
+        if (!validate(changed) || !validate(c.scene.fields, changed) ||
+            std::any_of(c.commands.begin(), c.commands.end(), refused))
+            continue;
         c.scene.settings = changed;
         any = true;
     }
