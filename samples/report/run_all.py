@@ -4,9 +4,9 @@ wadi-report on the first backend that the machine has, each into a folder of its
 the machine lacks is left out, and said; a part that outlasts its share of the time is ended, and what it has written stays. Exit code 1 where a
 part failed or was ended.
 
---beside: at the same time the pages of two CPU cores (timings, report, frontier and effects, each on two cores of its own) and those whose
-numbers are the same on any machine (methods, errors), on the cores that are left; needs 32 cores and a GPU. frontier has the second GPU to itself,
-where there is one.
+--beside: while frontier runs, whose times of large grids no busy host moves, the pages of CPU cores (timings and report on two cores each, frontier
+and effects on one in processor time) and those whose numbers are the same on any machine (methods, errors), on the cores that are left; the other
+parts then have the machine to themselves. Needs 32 cores and a GPU.
 
 usage: samples/report/run_all.py BIN_FOLDER [--quick] [--parts PART ...] [--minutes 30] [--backends cuda,vulkan,cpu] [--beside] [--relaxed BIN_FOLDER] [--out out/all]
 """
@@ -26,7 +26,8 @@ SHARES = {"frontier": 0.15, "timings": 0.42, "effects": 0.11, "report": 0.32}  #
 FRONTIER_ROWS = 30  # as many of the longest rows as fit: of each of 16 kinds of run one, and those of smaller grids
 WRITES_PAGE = 0.9  # of its time: the report stops measuring here
 BESIDE_CORES = 32
-TWO_CORES = {"timings": (8, 10), "report": (12, 14), "frontier": (16, 18), "effects": (20, 22)}  # every second one: neighbours may be threads of one core
+BESIDE_SHARE = 0.4  # of the minutes
+CPU_CORES = {"timings": (8, 10), "report": (12, 14), "frontier": (16,), "effects": (20,)}  # every second one: neighbours may be threads of one core
 
 
 def end_group(process):
@@ -39,10 +40,10 @@ def end_group(process):
         process.wait()
 
 
-def run(command, seconds, log, cores=None, environment=None):
+def run(command, seconds, log, cores=None):
     """Exit code, or None where the time was over."""
     # Its own output file: a pipe would block the clock below on a silent part.
-    process = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, start_new_session=True, env={**os.environ, **(environment or {})},
+    process = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, start_new_session=True,
                                preexec_fn=(lambda: os.sched_setaffinity(0, cores)) if cores else None)
     try:
         return process.wait(seconds)
@@ -58,7 +59,7 @@ class Job:
     """Lanes of parts: those of a lane one after another, lanes at the same time."""
 
     def __init__(self, options):
-        self.options, self.begun, self.failed, self.lock = options, time.monotonic(), [], threading.Lock()
+        self.options, self.failed, self.lock = options, [], threading.Lock()
         self.out = options.out
         self.out.mkdir(parents=True, exist_ok=True)
         self.main_log = (self.out / "log.txt").open("a")
@@ -68,17 +69,17 @@ class Job:
             print(text, flush=True)
             print(text, file=self.main_log, flush=True)
 
-    def lane(self, name, parts, cores=None, environment=None):
-        """parts: {folder under OUT: (share of the lane's time, function of the seconds it has, which gives its command)}"""
-        due, whole = self.begun, sum(share for share, _ in parts.values())
+    def lane(self, name, parts, minutes, cores=None):
+        """parts: {folder under OUT: (share of the lane's minutes, function of the seconds it has, which gives its command)}"""
+        due, whole = time.monotonic(), sum(share for share, _ in parts.values())
         log = self.main_log if name == "" else (self.out / f"log_{name}.txt").open("a")
         for folder, (share, command_of) in parts.items():
-            due += 60 * self.options.minutes * share / whole
+            due += 60 * minutes * share / whole
             left = due - time.monotonic()
             script, *arguments = command_of(left)
             self.say(f"== {folder}: {script} {' '.join(map(str, arguments))}, {left:.0f} s at most")
             start = time.monotonic()
-            code = run([sys.executable, "-u", str(HERE / script), *map(str, arguments), "--out", str(self.out / folder)], left, log, cores, environment)
+            code = run([sys.executable, "-u", str(HERE / script), *map(str, arguments), "--out", str(self.out / folder)], left, log, cores)
             result = "ENDED: out of time" if code is None else {0: "done", 77: "SKIPPED, see log.txt"}.get(code, f"FAILED: exit code {code}")
             self.say(f"== {folder}: {result} after {time.monotonic() - start:.0f} s")
             if code not in (0, 77):
@@ -98,13 +99,13 @@ def device_parts(options, there):
     return {name: (SHARES[name], commands[name]) for name in SHARES if name in options.parts}
 
 
-def two_core_parts(options):
-    cpu = ["--backend", "cpu", "--threads", "2"]
+def cpu_parts(options):
+    two, one = ["--backend", "cpu", "--threads", "2"], ["--backend", "cpu", "--processor-time"]
     return {
         "timings": lambda left: ["timings.py", options.programs, "--backends", "cpu", "--threads", "2", "--only", "table_2", "scaling", "order", "presets"],
-        "report": lambda left: ["wadi-report", options.programs, "--quick", *cpu, "--minutes", f"{WRITES_PAGE * left / 60:.2f}"],
-        "frontier": lambda left: ["frontier.py", options.programs, *cpu, "--row-seconds", f"{left / FRONTIER_ROWS:.1f}"],
-        "effects": lambda left: ["effects.py", options.programs, "--prices", *cpu]}
+        "report": lambda left: ["wadi-report", options.programs, "--quick", *two, "--minutes", f"{WRITES_PAGE * left / 60:.2f}"],
+        "frontier": lambda left: ["frontier.py", options.programs, *one, "--row-seconds", f"{left / FRONTIER_ROWS:.1f}"],
+        "effects": lambda left: ["effects.py", options.programs, "--prices", *one]}
 
 
 def main():
@@ -115,7 +116,7 @@ def main():
     parser.add_argument("--parts", nargs="+", choices=SHARES, default=list(SHARES), metavar="PART", help=f"of {', '.join(SHARES)} (default all)")
     parser.add_argument("--repeats", type=int, default=2, metavar="N", help="runs per point of the report (default %(default)s)")
     parser.add_argument("--backends", default="cuda,vulkan,cpu", help="wanted, the one to report on first (default %(default)s)")
-    parser.add_argument("--beside", action="store_true", help="at the same time the pages of two CPU cores, methods and errors")
+    parser.add_argument("--beside", action="store_true", help="the pages of CPU cores, methods and errors as well, beside frontier")
     parser.add_argument("--relaxed", type=pathlib.Path, metavar="BIN", help="programs of a build with -DWADI_STRICT_FLOAT=OFF, to price strict floats by")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/all"))
     options = parser.parse_args()
@@ -131,21 +132,18 @@ def main():
             job.say(f"SKIPPED {name}: no device here")
     if not there:
         return 1
-    if not options.beside:
-        job.lane("", device_parts(options, there))
-    else:
-        at = {k: {cores[c] for c in range(4 * k, 4 * k + 4)} for k in range(2)}
-        devices = device_parts(options, [name for name in there if name != "cpu"] or there)
-        second = {"frontier": devices.pop("frontier")} if "frontier" in devices and re.search(r"^cuda +1 ", listed, re.M) else {}
-        rest = {"methods": (3, lambda left: ["side_by_side.py", options.programs]), "errors": (1, lambda left: ["errors.py", options.programs])}
+    devices, minutes = device_parts(options, there), options.minutes
+    if options.beside:
+        at = {"frontier": devices.pop("frontier")} if "frontier" in devices else {}
+        same_anywhere = {"methods": (9, lambda left: ["side_by_side.py", options.programs]), "errors": (1, lambda left: ["errors.py", options.programs])}
         with concurrent.futures.ThreadPoolExecutor() as pool:
-            lanes = [pool.submit(job.lane, "", devices, at[0], {"CUDA_VISIBLE_DEVICES": "0"}), pool.submit(job.lane, "second_gpu", second, at[1], {"CUDA_VISIBLE_DEVICES": "1"}),
-                     pool.submit(job.lane, "rest", rest, set(cores[24:]))]
-            for name, command_of in two_core_parts(options).items():
-                folder = f"two_cores_{name}"
-                lanes.append(pool.submit(job.lane, folder, {folder: (1, command_of)}, {cores[c] for c in TWO_CORES[name]}))
+            lanes = [pool.submit(job.lane, "frontier", at, BESIDE_SHARE * minutes, set(cores[:4])), pool.submit(job.lane, "same_anywhere", same_anywhere, BESIDE_SHARE * minutes, set(cores[24:]))]
+            for name, command_of in cpu_parts(options).items():
+                lanes.append(pool.submit(job.lane, f"cpu_{name}", {f"cpu_{name}": (1, command_of)}, BESIDE_SHARE * minutes, {cores[c] for c in CPU_CORES[name]}))
             for lane in lanes:
                 lane.result()
+        minutes *= 1 - BESIDE_SHARE
+    job.lane("", devices, minutes)
     job.say(f"{options.out}: " + (f"{', '.join(job.failed)} not complete, see its log" if job.failed else "complete"))
     return 1 if job.failed else 0
 
