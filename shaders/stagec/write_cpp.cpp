@@ -1,4 +1,5 @@
 #include "writers.hpp"
+#include <algorithm>
 #include <sstream>
 
 namespace stagec {
@@ -35,13 +36,18 @@ std::string file_head(const Stage& s, const std::string& isa) {
            ".\nnamespace wadi_stage_" + isa + " {\n#include \"language/stage_cpp.h\"\n";
 }
 
-// Base has every mask. Half storage saves memory and no time here: the other sets leave it to base.
+// Base has every mask. Of those with half storage the other sets have the largest of each choice of methods.
 std::string select_function(const Stage& s, const std::string& isa, unsigned tested, std::vector<unsigned> masks,
                             const Effects& effects, bool all_masks) {
     const bool base = isa == "base";
     if (!base) {
-        std::erase_if(masks, [&](unsigned mask) { return (mask & effects.at(half_storage)) != 0; });
-        if (!all_masks) masks = largest(masks, ~(effects.at(first_choice) - 1));
+        const unsigned choices = ~(effects.at(first_choice) - 1);
+        const auto halves = std::stable_partition(masks.begin(), masks.end(),
+                                                  [&](unsigned mask) { return (mask & effects.at(half_storage)) == 0; });
+        const auto largest_halves = largest({halves, masks.end()}, choices);
+        masks.erase(halves, masks.end());
+        if (!all_masks) masks = largest(masks, choices);
+        masks.insert(masks.end(), largest_halves.begin(), largest_halves.end());
     }
     std::ostringstream o;
     o << "using Block = void (*)(void* const*, const unsigned long long*, const void*, const void*, int, int, int, int);\n";
