@@ -22,8 +22,8 @@ const char* const four_floats =
     "TO[(T) + 2] = four.z; TO[(T) + 3] = four.w; }\n"
     "#define ZERO(TO, T) { TO[T] = 0.0f; TO[(T) + 1] = 0.0f; TO[(T) + 2] = 0.0f; TO[(T) + 3] = 0.0f; }\n#define COPIED\n"
     "#define HOLDS(FIELD, AT) any(notEqual(wide_##FIELD[(AT) >> 2], vec4(0.0f)))\n#define LOAD(FIELD, AT) FIELD[AT]\n"
-    "#define KEEP_FOUR(PLACE, VALUE) { vec4 four = VALUE; bool other = !look; if (look) { other = any(notEqual(floatBitsToInt("
-    "PLACE), floatBitsToInt(four))); changed = changed || other; } if (other) PLACE = four; }\n"
+    "#define KEEP_FOUR(PLACE, VALUE) { vec4 four = VALUE; if (look) changed = changed || any(notEqual(floatBitsToInt(PLACE), "
+    "floatBitsToInt(four))); PLACE = four; }\n"
     "#define KEEP_ZEROS(FIELD, AT, TYPE) KEEP_FOUR(wide_##FIELD[(AT) >> 2], vec4(0.0f))\n"
     "#define KEEP_COPY(FIELD, AT, TYPE, FROM) KEEP_FOUR(wide_##FIELD[(AT) >> 2], wide_##FROM[(AT) >> 2])\n";
 
