@@ -3,8 +3,9 @@
 
 usage: tests/conformance/limits.py BIN_FOLDER [LEVEL:NXxNY:SECONDS ...] [--skip 700] [--launches 75] [--out DIR]
        tests/conformance/limits.py --page [--out DIR]      tables of the CSVs that lie in DIR
-Counters lie in OUT/LEVEL_NX.csv.gz, what is printed is Markdown. `instructions`: what the step would take if every issue slot of every scheduler
-were used; `bytes`: if memory ran at its full rate. A row whose step is whole needs --launches of two steps (19 to 40 kernels each with tiles).
+Counters lie in OUT/LEVEL_NX.csv.gz, what is printed is Markdown. Of a step, in ms: its kernels' time, that of the short ones among them, and
+what it would take if every issue slot of every scheduler were used (`instructions`) or memory ran at its full rate (`bytes`).
+--launches has to hold a whole step: 19 to 40 kernels with tiles.
 """
 import argparse
 import csv
@@ -79,7 +80,7 @@ def page(folder):
     paths = sorted(folder.glob("*.csv.gz"))
     if not paths:
         sys.exit(f"{folder}: no CSV of counters")
-    print("| row | kernels a step | their time [ms] | instructions [ms] | bytes [ms] | warp instructions [M] | bytes moved [MB] | kernels under 10 us: time [ms] |\n| --- |" + " ---: |" * 7)
+    print("| row | kernels | their time | instructions | bytes | warp instructions [M] | bytes moved [MB] | kernels under 10 us |\n| --- |" + " ---: |" * 7)
     steps_of = {path: whole_steps(path) for path in paths}
     for path, (kernels, steps) in steps_of.items():
         time, issue, memory, executed, moved = totals(kernels, steps)

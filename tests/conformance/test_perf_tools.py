@@ -1,12 +1,14 @@
 #!/usr/bin/env python3
-"""`conformance perf` on the CPU at 128 x 128, and what plot.py and compare_perf.py make of its CSV. Usage: test_perf_tools.py CONFORMANCE."""
+"""`conformance perf` on the CPU at 128 x 128, what plot.py and compare_perf.py make of its CSV, and limits.py of Nsight Compute's. Usage: test_perf_tools.py CONFORMANCE."""
 import csv
+import gzip
 import pathlib
 import subprocess
 import sys
 import tempfile
 import xml.etree.ElementTree as xml
 
+import limits
 import perf_table
 
 here = pathlib.Path(__file__).parent
@@ -37,4 +39,20 @@ with tempfile.TemporaryDirectory() as folder:
     assert "| step, all effects |" in ratios and "| 1.00 |" in ratios, ratios
     empty = subprocess.run([sys.executable, here / "plot.py", picture, "/dev/null"], capture_output=True, text=True)
     assert empty.returncode != 0 and "no rows" in empty.stderr, empty
+    # Counters of two whole steps, of 100 and 60 us, half of whose issue slots and a quarter of whose memory were busy.
+    barrier = "smsp__average_warps_issue_stalled_barrier_per_issue_active.ratio"
+    columns = ["Kernel Name", limits.TIME, limits.EXECUTED, limits.RATE, limits.ISSUE, limits.MEMORY, limits.WARPS, limits.WAVES, barrier]
+    kernel = lambda stage, ns: [f"void wadi_stage_cuda_{stage}::run<1, 1>(int)", ns, "1,000,000", 1e12, 50, 25, 40, 2, 1.5]
+    rows = [columns, [""] * len(columns), kernel("transport_sand", 9000), *[kernel(limits.ONCE_A_STEP, 40000), kernel("transport_sand", 60000), kernel(limits.ONCE_A_STEP, 55000), kernel("transport_sand", 5000)],
+            kernel(limits.ONCE_A_STEP, 40000)]
+
+    def counters(rows):
+        with gzip.open(pathlib.Path(folder) / "level_64.csv.gz", "wt", newline="") as file:
+            csv.writer(file).writerows(rows)
+        return subprocess.run([sys.executable, here / "limits.py", "--page", "--out", folder], capture_output=True, text=True)
+
+    said = counters(rows)
+    assert "| level_64 | 2 | 0.080 | 0.040 | 0.020 | 2 | 80 | 0.003 |" in said.stdout and "| `step_mixed_water` | 1 | 47.5 | 50 | 25 | 40 | 2.0 | barriers 1.5 |" in said.stdout, said
+    part = counters(rows[:5])
+    assert part.returncode != 0 and "no whole step" in part.stderr, part
 print("five whole steps measured and compared, three drawn")
