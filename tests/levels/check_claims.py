@@ -13,7 +13,7 @@ import tempfile
 
 import measures
 
-BOUNDS = {"above": lambda value, bound: value > bound, "below": lambda value, bound: value < bound}
+BOUNDS = {"above": lambda value, bound: bound < value < math.inf, "below": lambda value, bound: -math.inf < value < bound}  # what never came is neither
 CLAIM_KEYS = {"says", "value", "unit", "control", *BOUNDS}
 RUN_KEYS = {"variant", "size", "dt", "seconds", "method"}
 
