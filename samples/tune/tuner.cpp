@@ -1,4 +1,4 @@
-#include "tuner.hpp"
+#include "comparisons.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -16,11 +16,7 @@ constexpr double REFERENCES[] = {4, 3, 2.5, 2, 1.6}; // likewise
 constexpr double KIN[] = {0.5, 0.354, 0.25, 0.177};  // cells along x of the reference's coarser kin, over its own
 constexpr double KIN_TIME = 1.2;                     // time of a reference with its kin, over its own
 constexpr int LEAST_KIN_SIDE = 8;
-// The order at which kin must come closer to each other, the same as that of errors. Of the levels that the tuner's constants
-// rest on flush and letters go down to -0.2 and are told well; spring, which is not, goes further down.
-constexpr double LEAST_CLOSING = -0.25;
-constexpr double TOLD_H = 1.4;   // cells of settings whose error is told, in units of the reference's
-constexpr double LEAST_H = 1.15; // cells of a run that is compared, in units of the reference's
+constexpr double TOLD_H = 1.4; // cells of settings whose error is told, in units of the reference's
 constexpr double FINER[] = {1.6, TOLD_H},
                  FINER_TIME = 0.4; // cells along x over the chosen settings'; share of the time, beyond it
 constexpr int ATTEMPTS = 4;
@@ -30,24 +26,6 @@ constexpr double ENOUGH = 0.9; // of the budget
 double usual_cost(const Way& way) {
     return (0.35 + 0.325 * way.substeps) * (way.water_order == 2 ? 1.35 : 1) * (way.sand_order == 2 ? 1.35 : 1);
 }
-
-/// Two runs of one piece, and what they are apart in its first checkpoints.
-struct Pair {
-    Settings run, reference;
-    std::size_t run_times = 0, reference_times = 0;
-    int checkpoints = 0;
-    Errors errors;
-    bool same(const Pair& other) const {
-        return run == other.run && reference == other.reference && run_times == other.run_times &&
-               reference_times == other.reference_times && checkpoints == other.checkpoints;
-    }
-};
-
-/// Ways whose errors fall alike with cells.
-bool alike(const Way& a, const Way& b) {
-    return a.water_order == b.water_order && a.sand_order == b.sand_order && a.half_storage == b.half_storage;
-}
-bool same_but_tiles(const Way& a, const Way& b) { return alike(a, b) && a.substeps == b.substeps; }
 
 class Tuner {
   public:
@@ -70,12 +48,13 @@ class Tuner {
     std::vector<WayModel> models_;
     std::optional<Run> reference_;
     double scale_ = 1; // of the models' times
-    mutable std::vector<Pair> pairs_;
-    mutable double aside_ = 0; // [s] on making worlds and comparing surfaces, which the plan of what to run does not count
+    Comparisons comparisons_{ladder_, reference_, [this] { return elapsed(); }};
+    double making_worlds_ = 0; // [s]
 
     double seconds() const { return 60 * request_.minutes; }
     double elapsed() const { return now(request_.device) - start_; }
-    double spent() const { return elapsed() - aside_; } // on steps
+    // On steps: the plan of what to run counts neither making worlds nor comparing surfaces.
+    double spent() const { return elapsed() - making_worlds_ - comparisons_.seconds(); }
     void tell(const std::string& text) const {
         if (request_.tell) request_.tell(text);
     }
@@ -93,12 +72,6 @@ class Tuner {
     std::pair<Way, const WayModel*> finest_way() const;
     void run_kin(int parts);
     void refer();
-    Errors errors_of(const Run& run, const Run& reference, int checkpoints) const;
-    const Run* nearest_kin(double nx) const;
-    std::optional<double> closing(bool sand, int checkpoints) const;
-    Told told_until(bool sand, int checkpoints) const;
-    void fit_errors();
-    template <class Wanted> std::vector<ErrorPoint> differences(bool sand, int checkpoints, const Wanted& wanted) const;
     std::vector<Candidate> model_frontier() const {
         return frontier(candidates(level_, models_, reference_->settings.nx, request_.frames, scale_));
     }
@@ -118,7 +91,7 @@ Run Tuner::run(const Settings& settings, const RunRequest& request) {
     ++outcome_.runs;
     const double before = elapsed();
     Run done = runner_.run(settings, request);
-    aside_ += elapsed() - before - done.stepping;
+    making_worlds_ += elapsed() - before - done.stepping;
     return done;
 }
 
@@ -293,95 +266,6 @@ void Tuner::refer() {
     outcome_.reference = reference_->settings;
 }
 
-/// As errors_against, each pair once: means of fields as large as a GPU's cost more than its steps.
-Errors Tuner::errors_of(const Run& run, const Run& reference, int checkpoints) const {
-    Pair pair{run.settings, reference.settings, run.at.size(), reference.at.size(), checkpoints, {}};
-    const auto known = std::find_if(pairs_.begin(), pairs_.end(), [&](const Pair& other) { return pair.same(other); });
-    if (known != pairs_.end()) return known->errors;
-    const double before = elapsed();
-    pair.errors = errors_against(run, reference, checkpoints);
-    aside_ += elapsed() - before;
-    pairs_.push_back(pair);
-    return pair.errors;
-}
-
-/// Differences of ladder runs whose way is wanted from the reference, at its first checkpoints.
-template <class Wanted> std::vector<ErrorPoint> Tuner::differences(bool sand, int checkpoints, const Wanted& wanted) const {
-    std::vector<ErrorPoint> points;
-    for (const Run& run : ladder_) {
-        const double h = static_cast<double>(reference_->settings.nx) / run.settings.nx;
-        if (h < LEAST_H || !wanted(run.settings.way)) continue;
-        const Errors errors = errors_of(run, *reference_, checkpoints);
-        const std::optional<double>& difference = sand ? errors.sand : errors.water;
-        if (difference && *difference > 0) points.push_back({h, *difference});
-    }
-    return points;
-}
-
-/// Of the reference's coarser kin the one with cells along x nearest to these.
-const Run* Tuner::nearest_kin(double nx) const {
-    const Run* nearest = nullptr;
-    for (const Run& run : ladder_) {
-        if (run.settings.way != reference_->settings.way || run.settings.nx >= reference_->settings.nx) continue;
-        if (!nearest || std::abs(std::log(run.settings.nx / nx)) < std::abs(std::log(nearest->settings.nx / nx))) nearest = &run;
-    }
-    return nearest;
-}
-
-/// The order at which the reference and its kin of half and a quarter of its cells along x come closer to each other: differences
-/// from one run fall towards it on every level, those among runs only where it is near the truth.
-std::optional<double> Tuner::closing(bool sand, int checkpoints) const {
-    const double nx = reference_->settings.nx;
-    const Run *const middle = nearest_kin(nx / 2), *const coarse = nearest_kin(nx / 4);
-    if (!middle || middle == coarse) return {};
-    const Errors first = errors_of(*coarse, *middle, checkpoints), second = errors_of(*middle, *reference_, checkpoints);
-    const auto &from = sand ? first.sand : first.water, &to = sand ? second.sand : second.water;
-    if (!from || !to || !(*from > 0) || !(*to > 0)) return {};
-    return order_among(nx / coarse->settings.nx, nx / middle->settings.nx, *from, *to);
-}
-
-/// What the reference and its kin tell of an error in so much of the piece.
-Told Tuner::told_until(bool sand, int checkpoints) const {
-    Told told;
-    told.exists = (sand ? outcome_.sand : outcome_.water).exists;
-    const Way& finest = reference_->settings.way;
-    told.differences = differences(sand, checkpoints, [&](const Way& way) { return same_but_tiles(way, finest); });
-    told.moved = told.exists && !told.differences.empty();
-    if (!told.moved) return told;
-    const ErrorFit fit = fit_own(told.differences);
-    const std::optional<double> closer = closing(sand, checkpoints);
-    told.order = fit.order;
-    told.scatter = fit.scatter;
-    told.closing = closer.value_or(0);
-    told.converges = told.differences.size() > 1 && fit.converges() && closer && *closer > LEAST_CLOSING;
-    told.reference = told.converges ? fit.at(1) : 0;
-    return told;
-}
-
-/// How errors fall with cells follows from the orders of transport, so that ways of all substeps share it with that of two. Small
-/// differences grow with time, until runs on any grid are as far apart: where that is so at the end, an earlier part may be told.
-void Tuner::fit_errors() {
-    const int usual = ladder_.front().settings.way.substeps, all = outcome_.checkpoints;
-    for (const bool sand : {true, false}) {
-        Told& told = sand ? outcome_.sand : outcome_.water;
-        told = told_until(sand, all);
-        for (int checkpoints = all - 1; checkpoints > 0 && !told.converges && told.early == 0; --checkpoints) {
-            const Told shorter = told_until(sand, checkpoints);
-            if (!shorter.converges) continue;
-            told.early = checkpoints;
-            told.early_reference = shorter.reference;
-        }
-        if (!told.moved) continue;
-        for (WayModel& model : models_) {
-            const auto kin =
-                differences(sand, all, [&](const Way& way) { return alike(way, model.way) && way.substeps == usual; });
-            const auto same = differences(sand, all, [&](const Way& way) { return same_but_tiles(way, model.way); });
-            if (kin.empty() || same.empty()) continue;
-            (sand ? model.sand : model.water) = fit_other(same, told.reference, fit_other(kin, told.reference, 0).order);
-        }
-    }
-}
-
 /// Measures what the model says is best, corrects the model's times by it, and again, until the budget is nearly used up.
 void Tuner::choose() {
     scale_ = outcome_.load;
@@ -466,7 +350,7 @@ bool Tuner::refer_finer() {
             outcome_.reference = settings;
             outcome_.piece = simulated;
             outcome_.checkpoints = CHECKPOINTS * parts / PARTS;
-            fit_errors();
+            comparisons_.fit_errors(outcome_, models_);
             outcome_.frontier = model_frontier();
             return true;
         }
@@ -516,7 +400,7 @@ Outcome Tuner::tune() {
     fit_times();
     try_tiles();
     refer();
-    fit_errors();
+    comparisons_.fit_errors(outcome_, models_);
     choose();
     measure_errors();
     outcome_.seconds = elapsed();

@@ -36,26 +36,28 @@ std::string file_head(const Stage& s, const std::string& isa) {
            ".\nnamespace wadi_stage_" + isa + " {\n#include \"language/stage_cpp.h\"\n";
 }
 
-// Base has every mask. Of those with half storage the other sets have the largest of each choice of methods.
+// Base has every mask, and what a set lacks is that of the set below. Of masks with half storage avx2 has the largest of each
+// choice of methods, but of fused stages, which do not pay on a CPU, none.
 std::string select_function(const Stage& s, const std::string& isa, unsigned tested, std::vector<unsigned> masks,
                             const Effects& effects, bool all_masks) {
-    const bool base = isa == "base";
-    if (!base) {
+    const std::string below = isa == "base" ? "" : isa == "avx512" ? "avx2" : "base";
+    if (!below.empty()) {
         const unsigned choices = ~(effects.at(first_choice) - 1);
         const auto halves = std::stable_partition(masks.begin(), masks.end(),
                                                   [&](unsigned mask) { return (mask & effects.at(half_storage)) == 0; });
         const auto largest_halves = largest({halves, masks.end()}, choices);
         masks.erase(halves, masks.end());
         if (!all_masks) masks = largest(masks, choices);
-        masks.insert(masks.end(), largest_halves.begin(), largest_halves.end());
+        if (isa == "avx2" && !s.fused) masks.insert(masks.end(), largest_halves.begin(), largest_halves.end());
     }
     std::ostringstream o;
     o << "using Block = void (*)(void* const*, const unsigned long long*, const void*, const void*, int, int, int, int);\n";
-    if (!base) o << "extern \"C\" Block wadi_cpu_base_" << s.name << "(unsigned effects);\n";
+    if (!below.empty()) o << "extern \"C\" Block wadi_cpu_" << below << "_" << s.name << "(unsigned effects);\n";
     o << "extern \"C\" Block wadi_cpu_" << isa << "_" << s.name << "(unsigned effects) {\n    switch (effects & " << tested
       << "u) {\n";
     for (const unsigned mask : masks) o << "    case " << mask << "u: return wadi_stage_" << isa << "::block<" << mask << "u>;\n";
-    o << "    default: return " << (base ? "nullptr" : "wadi_cpu_base_" + s.name + "(effects)") << ";\n    }\n}\n";
+    o << "    default: return " << (below.empty() ? "nullptr" : "wadi_cpu_" + below + "_" + s.name + "(effects)")
+      << ";\n    }\n}\n";
     return o.str();
 }
 
