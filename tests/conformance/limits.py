@@ -3,22 +3,27 @@
 
 usage: tests/conformance/limits.py BIN_FOLDER [LEVEL:NXxNY:SECONDS ...] [--skip 700] [--launches 75] [--out DIR]
        tests/conformance/limits.py --page [--out DIR]      tables of the CSVs that lie in DIR
-Counters lie in OUT/LEVEL_NX.csv.gz, what is printed is Markdown. Of a step, in ms: its kernels' time, that of the short ones among them, and
-what it would take if every issue slot of every scheduler were used (`instructions`) or memory ran at its full rate (`bytes`).
+LEVEL: a shipped one, or all_wet: water alone, no dry ground. Counters lie in OUT/LEVEL_NX.csv.gz; what is printed is Markdown. Of a step, in ms:
+the time of its kernels and of the short ones among them, and what it would take if every issue slot of every scheduler were used (`instructions`)
+or memory ran at its full rate (`bytes`).
 --launches has to hold a whole step: 19 to 40 kernels with tiles.
 """
 import argparse
 import csv
 import gzip
+import json
 import pathlib
 import re
 import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-ROWS = ("castle:4096x4096:0.5", "wadi:4096x4096:0.5", "beach:4096x4096:0.5", "canyon:4096x5243:1", "dam_break:4096x4096:1", "dam_break:1024x1024:1", "dam_break:512x512:1")
+ROWS = ("castle:4096x4096:0.5", "wadi:4096x4096:0.5", "beach:4096x4096:0.5", "canyon:4096x5243:1", "dam_break:4096x4096:1", "dam_break:1024x1024:1", "dam_break:512x512:1",
+        "all_wet:4096x4096:1")
 SECTIONS = ("SpeedOfLight", "WarpStateStats", "SchedulerStats", "InstructionStats", "LaunchStats", "Occupancy", "MemoryWorkloadAnalysis")
-ONCE_A_STEP = "step_mixed_water"
+ALL_WET = {"format_version": 1, "name": "all wet", "grid": {"nx": 256, "ny": 256, "dx": 1}, "dt": 0.05, "duration": 10, "effects": {"bed_friction": "off"},
+           "water": [{"shape": "plane", "height": 2}, {"shape": "cylinder", "center": [64, 64], "radius": 40, "height": 3, "combine": "set"}]}
+ONCE_A_STEP = ("step_mixed_water", "step_water")
 TIME, EXECUTED, RATE = "gpu__time_duration.sum", "smsp__inst_executed.sum", "dram__bytes.sum.per_second"
 ISSUE, MEMORY, WARPS = "sm__issue_active.avg.pct_of_peak_sustained_elapsed", "dram__cycles_active.avg.pct_of_peak_sustained_elapsed", "sm__warps_active.avg.pct_of_peak_sustained_active"
 WAVES = "launch__waves_per_multiprocessor"
@@ -30,8 +35,12 @@ WAITS = {"long_scoreboard": "loads", "barrier": "barriers", "short_scoreboard": 
 def collect(programs, row, options):
     level, size, seconds = row.split(":")
     report = options.out / f"{level}_{size.split('x')[0]}"
+    where = ROOT / "samples" / "levels" / level
+    if level == "all_wet":
+        where = options.out / "all_wet.json"
+        where.write_text(json.dumps(ALL_WET))
     command = ["ncu", "--force-overwrite", "--export", str(report), "--graph-profiling", "node", "--clock-control", "none", "--cache-control", "none", "--launch-skip", str(options.skip),
-               "--launch-count", str(options.launches), *(word for section in SECTIONS for word in ("--section", section)), str(programs / "wadi-recorder"), str(ROOT / "samples" / "levels" / level),
+               "--launch-count", str(options.launches), *(word for section in SECTIONS for word in ("--section", section)), str(programs / "wadi-recorder"), str(where),
                "--backend", "cuda", "--size", size, "--seconds", seconds, "--no-frames", "--out", str(options.out / "recording")]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     raw = subprocess.run(["ncu", "--import", f"{report}.ncu-rep", "--page", "raw", "--csv", "--print-units", "base", "--print-kernel-base", "demangled"], capture_output=True, text=True, check=False)
@@ -51,7 +60,7 @@ def whole_steps(path):
         kernels = list(csv.DictReader(file))[1:]
     for kernel in kernels:
         kernel["stage"] = re.sub(r".*wadi_stage_cuda_(\w+)::.*", r"\1", kernel["Kernel Name"])
-    starts = [n for n, kernel in enumerate(kernels) if kernel["stage"] == ONCE_A_STEP]
+    starts = [n for n, kernel in enumerate(kernels) if kernel["stage"] in ONCE_A_STEP]
     if len(starts) < 2:
         sys.exit(f"{path}: {len(kernels)} kernels and no whole step among them; want another --skip or more --launches")
     return kernels[starts[0]:starts[-1]], len(starts) - 1

@@ -43,8 +43,8 @@ with tempfile.TemporaryDirectory() as folder:
     barrier = "smsp__average_warps_issue_stalled_barrier_per_issue_active.ratio"
     columns = ["Kernel Name", limits.TIME, limits.EXECUTED, limits.RATE, limits.ISSUE, limits.MEMORY, limits.WARPS, limits.WAVES, barrier]
     kernel = lambda stage, ns: [f"void wadi_stage_cuda_{stage}::run<1, 1>(int)", ns, "1,000,000", 1e12, 50, 25, 40, 2, 1.5]
-    rows = [columns, [""] * len(columns), kernel("transport_sand", 9000), *[kernel(limits.ONCE_A_STEP, 40000), kernel("transport_sand", 60000), kernel(limits.ONCE_A_STEP, 55000), kernel("transport_sand", 5000)],
-            kernel(limits.ONCE_A_STEP, 40000)]
+    rows = [columns, [""] * len(columns), kernel("transport_sand", 9000), *[kernel(limits.ONCE_A_STEP[0], 40000), kernel("transport_sand", 60000), kernel(limits.ONCE_A_STEP[0], 55000), kernel("transport_sand", 5000)],
+            kernel(limits.ONCE_A_STEP[0], 40000)]
 
     def counters(rows):
         with gzip.open(pathlib.Path(folder) / "level_64.csv.gz", "wt", newline="") as file:
