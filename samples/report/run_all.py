@@ -72,7 +72,8 @@ class Job:
     def lane(self, name, parts, minutes, cores=None):
         """parts: {folder under OUT: (share of the lane's minutes, function of the seconds it has, which gives its command)}"""
         due, whole = time.monotonic(), sum(share for share, _ in parts.values())
-        log = self.main_log if name == "" else (self.out / f"log_{name}.txt").open("a")
+        log_name = f"log_{name}.txt" if name else "log.txt"
+        log = (self.out / log_name).open("a") if name else self.main_log
         for folder, (share, command_of) in parts.items():
             due += 60 * minutes * share / whole
             left = due - time.monotonic()
@@ -80,7 +81,7 @@ class Job:
             self.say(f"== {folder}: {script} {' '.join(map(str, arguments))}, {left:.0f} s at most")
             start = time.monotonic()
             code = run([sys.executable, "-u", str(HERE / script), *map(str, arguments), "--out", str(self.out / folder)], left, log, cores)
-            result = "ENDED: out of time" if code is None else {0: "done", 77: "SKIPPED, see log.txt"}.get(code, f"FAILED: exit code {code}")
+            result = "ENDED: out of time" if code is None else {0: "done", 77: f"SKIPPED, see {log_name}"}.get(code, f"FAILED: exit code {code}")
             self.say(f"== {folder}: {result} after {time.monotonic() - start:.0f} s")
             if code not in (0, 77):
                 self.failed.append(folder)
@@ -100,12 +101,12 @@ def device_parts(options, there):
 
 
 def cpu_parts(options):
-    two, one = ["--backend", "cpu", "--threads", "2"], ["--backend", "cpu", "--processor-time"]
+    two, one, quick = ["--backend", "cpu", "--threads", "2"], ["--backend", "cpu", "--processor-time"], options.quick
     return {
-        "timings": lambda left: ["timings.py", options.programs, "--backends", "cpu", "--threads", "2", "--only", "table_2", "scaling", "order", "presets"],
+        "timings": lambda left: ["timings.py", options.programs, "--backends", "cpu", "--threads", "2", "--only", "table_2", "scaling", "order", "presets", *(["--quick"] if quick else [])],
         "report": lambda left: ["wadi-report", options.programs, "--quick", *two, "--minutes", f"{WRITES_PAGE * left / 60:.2f}"],
-        "frontier": lambda left: ["frontier.py", options.programs, *one, "--row-seconds", f"{left / FRONTIER_ROWS:.1f}"],
-        "effects": lambda left: ["effects.py", options.programs, "--prices", *one]}
+        "frontier": lambda left: ["frontier.py", options.programs, *one, "--row-seconds", f"{left / FRONTIER_ROWS:.1f}", *(["--sizes", "16", "32"] if quick else [])],
+        "effects": lambda left: ["effects.py", options.programs, "--prices", *one, *(["--only", "water", "drag"] if quick else [])]}
 
 
 def main():
@@ -135,7 +136,7 @@ def main():
     devices, minutes = device_parts(options, there), options.minutes
     if options.beside:
         at = {"frontier": devices.pop("frontier")} if "frontier" in devices else {}
-        same_anywhere = {"methods": (9, lambda left: ["side_by_side.py", options.programs]), "errors": (1, lambda left: ["errors.py", options.programs])}
+        same_anywhere = {"methods": (9, lambda left: ["side_by_side.py", options.programs, *(["--small"] if options.quick else [])]), "errors": (1, lambda left: ["errors.py", options.programs])}
         with concurrent.futures.ThreadPoolExecutor() as pool:
             lanes = [pool.submit(job.lane, "frontier", at, BESIDE_SHARE * minutes, set(cores[:4])), pool.submit(job.lane, "same_anywhere", same_anywhere, BESIDE_SHARE * minutes, set(cores[24:]))]
             for name, command_of in cpu_parts(options).items():
