@@ -3,7 +3,8 @@
 
 usage: tests/conformance/limits.py BIN_FOLDER [LEVEL:NXxNY:SECONDS ...] [--skip 700] [--launches 75] [--out DIR]
        tests/conformance/limits.py --page [--out DIR]      tables of the CSVs that lie in DIR
-LEVEL: a shipped one, or all_wet: water alone, no dry ground. Counters lie in OUT/LEVEL_NX.csv.gz; what is printed is Markdown. Of a step, in ms:
+LEVEL: a shipped one; all_wet: water alone, no dry ground, no tiles; or all_effects: what `conformance perf-tiles` steps, every effect but sources,
+rain and open sides in every cell. Counters lie in OUT/LEVEL_NX.csv.gz; what is printed is Markdown. Of a step, in ms:
 the time of its kernels and of the short ones among them, and what it would take if every issue slot of every scheduler were used (`instructions`)
 or memory ran at its full rate (`bytes`).
 --launches has to hold a whole step: 19 to 40 kernels with tiles.
@@ -19,7 +20,7 @@ import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 ROWS = ("castle:4096x4096:0.5", "wadi:4096x4096:0.5", "beach:4096x4096:0.5", "canyon:4096x5243:1", "dam_break:4096x4096:1", "dam_break:1024x1024:1", "dam_break:512x512:1",
-        "all_wet:4096x4096:1")
+        "all_wet:4096x4096:5", "all_wet:1024x1024:12", "all_effects:4096x4096:0", "all_effects:1024x1024:0")
 SECTIONS = ("SpeedOfLight", "WarpStateStats", "SchedulerStats", "InstructionStats", "LaunchStats", "Occupancy", "MemoryWorkloadAnalysis")
 ALL_WET = {"format_version": 1, "name": "all wet", "grid": {"nx": 256, "ny": 256, "dx": 1}, "dt": 0.05, "duration": 10, "effects": {"bed_friction": "off"},
            "water": [{"shape": "plane", "height": 2}, {"shape": "cylinder", "center": [64, 64], "radius": 40, "height": 3, "combine": "set"}]}
@@ -39,9 +40,13 @@ def collect(programs, row, options):
     if level == "all_wet":
         where = options.out / "all_wet.json"
         where.write_text(json.dumps(ALL_WET))
+    program = [str(programs / "wadi-recorder"), str(where), "--backend", "cuda", "--size", size, "--seconds", seconds, "--no-frames", "--out", str(options.out / "recording")]
+    if level == "all_wet":
+        program += ["--active-tiles", "-1"]
+    if level == "all_effects":
+        program = [str(programs / "conformance"), "perf-tiles", "--backend", "cuda", "--size", size.split("x")[0], "--shares", "1", "--tiles", "0", "--fused-only", "--repeats", "1"]
     command = ["ncu", "--force-overwrite", "--export", str(report), "--graph-profiling", "node", "--clock-control", "none", "--cache-control", "none", "--launch-skip", str(options.skip),
-               "--launch-count", str(options.launches), *(word for section in SECTIONS for word in ("--section", section)), str(programs / "wadi-recorder"), str(where),
-               "--backend", "cuda", "--size", size, "--seconds", seconds, "--no-frames", "--out", str(options.out / "recording")]
+               "--launch-count", str(options.launches), *(word for section in SECTIONS for word in ("--section", section)), *program]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     raw = subprocess.run(["ncu", "--import", f"{report}.ncu-rep", "--page", "raw", "--csv", "--print-units", "base", "--print-kernel-base", "demangled"], capture_output=True, text=True, check=False)
     if done.returncode != 0 or raw.returncode != 0:

@@ -243,9 +243,10 @@ int run(int argc, char** argv) {
     tiles->add_option("--shares", options.perf_tiles.shares, "of the area that moves")
         ->delimiter(',')
         ->check(CLI::Range(0.0, 1.0));
-    tiles->add_option("--tiles", options.perf_tiles.tiles, "sides of active tiles, 0 = without")
+    tiles->add_option("--tiles", options.perf_tiles.tiles, "sides of active tiles, 0 = without, 1 = while they gain")
         ->delimiter(',')
-        ->check(CLI::IsMember({0, 8, 16, 32, 64}));
+        ->check(CLI::IsMember({0, tiles_where_they_gain, 8, 16, 32, 64}));
+    tiles->add_flag("--fused-only", options.perf_tiles.fused_only, "no rows of stages one by one");
     tiles->add_option("--steps", options.perf_tiles.steps, "steps per time")->check(CLI::Range(1, 100000));
     tiles->add_option("--repeats", options.perf_tiles.repeats, "times per row")->check(CLI::Range(1, 1000));
     const CLI::App* list = app.add_subcommand("list", "print the cases and devices");

@@ -74,6 +74,7 @@ Status run_perf_tiles(Session& session, const PerfTilesOptions& options) {
         std::optional<std::uint64_t> expected;
         for (const bool fused : {false, true}) {
             if (fused && (*device)->capabilities().fused_gain_cells == 0) continue;
+            if (!fused && options.fused_only) continue;
             scene->settings.fused_stages = fused ? FusedStages::always : FusedStages::never;
             for (const int side : options.tiles) {
                 scene->settings.active_tiles = side;
