@@ -53,6 +53,10 @@ with tempfile.TemporaryDirectory() as folder:
 
     said = counters(rows)
     assert "| level_64 | 2 | 0.080 | 0.040 | 0.020 | 2 | 80 | 0.003 |" in said.stdout and "| `step_mixed_water` | 1 | 47.5 | 50 | 25 | 40 | 2.0 | barriers 1.5 |" in said.stdout, said
+    alone = counters([columns, [""] * len(columns), *[["void run<1, 0>(WorldParams)", *kernel("x", 30000)[1:]]] * 3])
+    assert "| level_64 | 1 | 0.030 |" in alone.stdout and "| `step_water` | 1 | 30.0 |" in alone.stdout, alone
     part = counters(rows[:5])
     assert part.returncode != 0 and "no whole step" in part.stderr, part
+torch = subprocess.run([sys.executable, here / "torch_times.py", "water", "64"], capture_output=True, text=True)
+assert torch.returncode in (0, 77) and ("| water, 64 x 64 |" if torch.returncode == 0 else "SKIPPED") in torch.stdout, torch
 print("five whole steps measured and compared, three drawn")
