@@ -6,7 +6,7 @@ part failed or was ended.
 
 --beside: while frontier runs, whose times of large grids no busy host moves, the pages of CPU cores (timings and report on two cores each, frontier
 and effects on one in processor time) and those whose numbers are the same on any machine (methods, errors), on the cores that are left; the other
-parts then have the machine to themselves, the report its second GPU where there are two. Needs 32 cores and a GPU.
+parts then have the machine to themselves. Needs 32 cores and a GPU.
 
 usage: samples/report/run_all.py BIN_FOLDER [--quick] [--parts PART ...] [--minutes 30] [--backends cuda,vulkan,cpu] [--beside] [--relaxed BIN_FOLDER] [--out out/all]
 """
@@ -26,7 +26,7 @@ SHARES = {"frontier": 0.15, "timings": 0.42, "effects": 0.11, "report": 0.32}  #
 FRONTIER_ROWS = 30  # as many of the longest rows as fit: of each of 16 kinds of run one, and those of smaller grids
 WRITES_PAGE = 0.9  # of its time: the report stops measuring here
 BESIDE_CORES = 32
-BESIDE_SHARE = {1: 0.4, 2: 0.55}  # of the minutes, by GPUs: with two the parts behind take as long as the longer of two lanes
+BESIDE_SHARE = 0.4  # of the minutes
 CPU_CORES = {"timings": (8, 10), "report": (12, 14), "frontier": (16,), "effects": (20,)}  # every second one: neighbours may be threads of one core
 
 
@@ -40,11 +40,10 @@ def end_group(process):
         process.wait()
 
 
-def run(command, seconds, log, cores=None, gpu=None):
-    """Exit code, or None where the time was over. gpu: the only one that CUDA sees."""
+def run(command, seconds, log, cores=None):
+    """Exit code, or None where the time was over."""
     # Its own output file: a pipe would block the clock below on a silent part.
     process = subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT, start_new_session=True,
-                               env=None if gpu is None else {**os.environ, "CUDA_VISIBLE_DEVICES": str(gpu)},
                                preexec_fn=(lambda: os.sched_setaffinity(0, cores)) if cores else None)
     try:
         return process.wait(seconds)
@@ -70,7 +69,7 @@ class Job:
             print(text, flush=True)
             print(text, file=self.main_log, flush=True)
 
-    def lane(self, name, parts, minutes, cores=None, gpu=None):
+    def lane(self, name, parts, minutes, cores=None):
         """parts: {folder under OUT: (share of the lane's minutes, function of the seconds it has, which gives its command)}"""
         due, whole = time.monotonic(), sum(share for share, _ in parts.values())
         log_name = f"log_{name}.txt" if name else "log.txt"
@@ -81,7 +80,7 @@ class Job:
             script, *arguments = command_of(left)
             self.say(f"== {folder}: {script} {' '.join(map(str, arguments))}, {left:.0f} s at most")
             start = time.monotonic()
-            code = run([sys.executable, "-u", str(HERE / script), *map(str, arguments), "--out", str(self.out / folder)], left, log, cores, gpu)
+            code = run([sys.executable, "-u", str(HERE / script), *map(str, arguments), "--out", str(self.out / folder)], left, log, cores)
             result = "ENDED: out of time" if code is None else {0: "done", 77: f"SKIPPED, see {log_name}"}.get(code, f"FAILED: exit code {code}")
             self.say(f"== {folder}: {result} after {time.monotonic() - start:.0f} s")
             if code not in (0, 77):
@@ -135,25 +134,17 @@ def main():
     if not there:
         return 1
     devices, minutes = device_parts(options, there), options.minutes
-    gpus = 2 if options.beside and there[0] == "cuda" and re.search(r"^cuda +1 ", listed, re.M) else 1
     if options.beside:
-        beside = BESIDE_SHARE[gpus] * minutes
         at = {"frontier": devices.pop("frontier")} if "frontier" in devices else {}
         same_anywhere = {"methods": (9, lambda left: ["side_by_side.py", options.programs, *(["--small"] if options.quick else [])]), "errors": (1, lambda left: ["errors.py", options.programs])}
         with concurrent.futures.ThreadPoolExecutor() as pool:
-            lanes = [pool.submit(job.lane, "frontier", at, beside, set(cores[:4])), pool.submit(job.lane, "same_anywhere", same_anywhere, beside, set(cores[24:]))]
+            lanes = [pool.submit(job.lane, "frontier", at, BESIDE_SHARE * minutes, set(cores[:4])), pool.submit(job.lane, "same_anywhere", same_anywhere, BESIDE_SHARE * minutes, set(cores[24:]))]
             for name, command_of in cpu_parts(options).items():
-                lanes.append(pool.submit(job.lane, f"cpu_{name}", {f"cpu_{name}": (1, command_of)}, beside, {cores[c] for c in CPU_CORES[name]}))
+                lanes.append(pool.submit(job.lane, f"cpu_{name}", {f"cpu_{name}": (1, command_of)}, BESIDE_SHARE * minutes, {cores[c] for c in CPU_CORES[name]}))
             for lane in lanes:
                 lane.result()
-        minutes -= beside
-    second = {"report": devices.pop("report")} if gpus > 1 and "report" in devices else {}
-    with concurrent.futures.ThreadPoolExecutor() as pool:
-        half = len(cores) // 2
-        lane = pool.submit(job.lane, "second_gpu", second, minutes, set(cores[half:]), 1) if second else None
-        job.lane("", devices, minutes, *((set(cores[:half]), 0) if second else ()))
-        if lane:
-            lane.result()
+        minutes *= 1 - BESIDE_SHARE
+    job.lane("", devices, minutes)
     job.say(f"{options.out}: " + (f"{', '.join(job.failed)} not complete, see its log" if job.failed else "complete"))
     return 1 if job.failed else 0
 
