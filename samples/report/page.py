@@ -46,8 +46,11 @@ class Page:
         self.markdown += [f"![{name}]({name}.svg)", ""]
         self.html.append(svg)
 
-    def write(self):
+    def write(self, whole=True):
+        """whole: as HTML, too."""
         (self.out / "README.md").write_text("\n".join([*self.markdown, stamps.stamp("report"), ""]))
+        if not whole:
+            return
         style = "body{font-family:sans-serif;max-width:75em;margin:2em auto;padding:0 1em}table{border-collapse:collapse;margin:1em 0}td,th{border:1px solid #ccc;padding:.2em .5em;text-align:right}td:first-child,th:first-child{text-align:left}"
         (self.out / "report.html").write_text(f"<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><title>Wadi: what accuracy costs</title><style>{style}</style>\n"
                                               + "\n".join(self.html) + "</html>\n")
@@ -154,7 +157,7 @@ def second_order(page, all_scenes, rows):
         slopes = [order([(r["dx"], r["error"]) for r in side]) for side in (first, second)]
         slower = two["ms_per_step"] / one["ms_per_step"]
         same_time = one["error"] * slower ** (-float(slopes[0]) / 3)  # time goes with the third power of the cells along x
-        verdict = VERDICTS[0 if two["error"] < finer["error"] else 1 if two["error"] < same_time else 2]
+        verdict = VERDICTS[2 if two["error"] >= one["error"] else 0 if two["error"] < finer["error"] else 1 if two["error"] < same_time else 2]
         body.append([scene.title, str(one["n"]), number(one["error"]), number(two["error"]), number(finer["error"]), f"{two['error'] / one['error']:.2f}", " / ".join(slopes),
                      f"{slower:.1f}", number(same_time), verdict])
         if scene.kind == "water" and scene.truth == "exact":
@@ -241,29 +244,38 @@ def price_list(page, rows, prices):
     named = [(row["point"].removeprefix("price: "), row) for row in prices]
     page.heading("What effects cost, and what leaving one out changes")
     change = {r["off"]: r for r in rows if r["off"]}
-    page.text(f"Scene wall on {everything['n']} cells along x: ms per step, passes per step and bytes per cell; error: against the reference with everything on, at the sweep's size. "
+    page.text(f"Scene wall on {everything['n']} cells along x: ms per step, passes per step and bytes per cell{'; error: against the reference with everything on, at the size of the sweep' if rows else ''}. "
               f"Saved: median and quartiles of {everything['rounds']} pairs of runs, one with it and one without, in turn, {everything['steps']} steps each. "
               "On so coarse a grid one error can offset another: what leaving an effect out changes by itself is in effects/README.md of samples/report.")
-    page.table(["", "ms per step", "saved [%]", "passes", "bytes per cell", "error [%]"],
-               [[what, f"{row['ms_per_step']:.4g}", share(row), str(row["passes"]), f"{row['bytes_per_cell']:.0f}",
-                 "".join(number(point.get("error")) for point in (change.get(what.removeprefix("effect ").removesuffix(" off")), base.get(1) if what == "everything" else None) if point)]
+    error = lambda what: "".join(number(point.get("error")) for point in (change.get(what.removeprefix("effect ").removesuffix(" off")), base.get(1) if what == "everything" else None) if point)
+    page.table(["", "ms per step", "saved [%]", "passes", "bytes per cell", *(["error [%]"] if rows else [])],
+               [[what, f"{row['ms_per_step']:.4g}", share(row), str(row["passes"]), f"{row['bytes_per_cell']:.0f}", *([error(what)] if rows else [])]
                 for what, row in named if what == "everything" or what.startswith("effect")])
     page.heading("What safety costs")
-    page.text("One guard off at a time (negative: it costs more without), measured as above. Error and mass drift at the base step and at four times it, where the guards work. "
+    page.text(f"One guard off at a time (negative: it costs more without), measured as above.{' Error and mass drift at the base step and at four times it, where the guards work.' if rows else ''} "
               f"The ledger has no off: its row is the share of the passes that only it needs ({', '.join(PASSES)}) in the time of all, of level {LEVEL}, which has open sides and a source, on "
               f"as many cells along a side; what no_quantum saves is its rounding. Strict floats: a second build without them; where there is none, tests/conformance/results has 6 to 16 % of a step on an H100.")
-    both = lambda table, key: [f"{number(table[key].get('error'))} %, drift {number(table[key].get('drift', 0))}" if key in table else ""]
+    both = lambda table, key: [f"{number(table[key].get('error'))} %, drift {number(table[key].get('drift', 0))}" if key in table else ""] if rows else []
     body = [["everything on", f"{everything['ms_per_step']:.4g}", "", *both(base, 1), *both(base, 4)]]
     for what, row in named[1:]:
         if what in sweep.GUARDS or not (what in sweep.METHODS or what.startswith(("effect", "fused"))):
             body.append([what, f"{row['ms_per_step']:.4g}" if "ms_per_step" in row else "", share(row), *both(at, (what, 1)), *both(at, (what, 4))])
-    page.table(["off", "ms per step", "saved [%]", "base step", "four times it"], body)
+    page.table(["off", "ms per step", "saved [%]", *(["base step", "four times it"] if rows else [])], body)
     page.heading("What choices of method and of fused stages cost")
     page.table(["choice", "ms per step", "saved [%]", "passes"], [[what, f"{row['ms_per_step']:.4g}", share(row), str(row["passes"])] for what, row in named if what in sweep.METHODS or what.startswith("fused")])
     page.heading("What parts of the water's laws cost")
     page.text(f"Level {WATER_LEVEL} on {laws[0]['n']} x {laws[0]['n']} cells with walls, without bed friction, shock viscosity and edits, as it is and without its sand; costs: of one part put in, in percent of a "
               f"step without it, median and quartiles of {laws[0]['rounds']} pairs of runs in turn. With sand, level sides let ground water through.")
     page.table(["part", "ms per step without", "costs [%]"], [[row["point"].removeprefix("price: "), f"{row['ms_per_step']:.4g}", share(row, "costs")] for row in laws])
+
+
+def write_prices(out, prices, processor_time):
+    """The price lists alone."""
+    page = Page(out)
+    page.heading("What effects, guards and choices cost", 1)
+    page.text(f"On {prices[0]['backend']}: {prices[0]['device']}; time of stepping alone{', processor time of one thread' if processor_time else ''}. Errors: sweep/README.md of samples/report.")
+    price_list(page, [], prices)
+    page.write(whole=False)
 
 
 def write(out, all_scenes, rows, prices, planned, quick, processor_time):
@@ -287,5 +299,6 @@ def write(out, all_scenes, rows, prices, planned, quick, processor_time):
     choices(page, all_scenes, rows)
     second_order(page, all_scenes, rows)
     convergence(page, all_scenes, rows)
-    price_list(page, rows, prices)
+    if prices:
+        price_list(page, rows, prices)
     page.write()

@@ -106,7 +106,7 @@ def price_list(recorder, relaxed, scene, n, rounds, run_seconds, until):
     rounds = next(iter(prices.values())).rounds
     base = next(iter(prices.values())).base_ms
     rows = [{"point": "price: everything", "n": n, "rounds": rounds, "steps": round(seconds / level["dt"]), "ms_per_step": base, "passes": first["passes"]["per_step"],
-             "bytes_per_cell": first["bytes_per_cell"]}]
+             "bytes_per_cell": first["bytes_per_cell"], "backend": first["device"]["backend"], "device": first["device"]["name"]}]
     for what, price in prices.items():
         rows.append({"point": f"price: {what}", "n": n, "rounds": rounds, "steps": rows[0]["steps"], "ms_per_step": base * price.ratio, "saved": 100 * (1 - price.ratio),
                      "saved_low": 100 * (1 - price.high), "saved_high": 100 * (1 - price.low), "passes": price.summary["passes"]["per_step"],

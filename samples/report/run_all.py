@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 """The measurements of this folder that depend on the machine, unattended, of one build and in one job: frontier.py, timings.py, effects.py and
-wadi-report on the first backend that the machine has, each into a folder of its own under OUT, what they print in OUT/log.txt. A backend that
-the machine lacks is left out, and said; a part that outlasts its share of the time is ended, and what it has written stays. Exit code 1 where a
-part failed or was ended.
+wadi-report's price lists on the first backend that the machine has, each into a folder of its own under OUT, what they print in OUT/log.txt. A
+backend that the machine lacks is left out, and said; a part that outlasts its share of the time is ended, and what it has written stays. Exit
+code 1 where a part failed or was ended.
 
---beside: while frontier runs, whose times of large grids no busy host moves, the pages of CPU cores (timings and report on two cores each, frontier
-and effects on one in processor time) and those whose numbers are the same on any machine (methods, errors), on the cores that are left; the other
-parts then have the machine to themselves. Needs 32 cores and a GPU.
+--beside: while frontier runs, whose times of large grids no busy host moves, the pages of a CPU (timings on two cores, frontier, effects, prices and
+the report's sweep on one in processor time) and those whose numbers are the same on any machine (methods, errors), on the cores that are left; the
+other parts then have the machine to themselves. Needs 32 cores and a GPU.
 
 usage: samples/report/run_all.py BIN_FOLDER [--quick] [--parts PART ...] [--minutes 30] [--backends cuda,vulkan,cpu] [--beside] [--relaxed BIN_FOLDER] [--out out/all]
 """
@@ -22,12 +22,12 @@ import threading
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
-SHARES = {"frontier": 0.15, "timings": 0.42, "effects": 0.11, "report": 0.32}  # of a lane's time, in this order; what one leaves over goes to the next
+SHARES = {"frontier": 0.15, "timings": 0.35, "effects": 0.3, "prices": 0.2}  # of a lane's time, in this order; what one leaves over goes to the next
 FRONTIER_ROWS = 30  # as many of the longest rows as fit: of each of 16 kinds of run one, and those of smaller grids
-WRITES_PAGE = 0.9  # of its time: the report stops measuring here
+WRITES_PAGE = 0.9  # of its time: wadi-report stops measuring here
 BESIDE_CORES = 32
 BESIDE_SHARE = 0.4  # of the minutes
-CPU_CORES = {"timings": (8, 10), "report": (12, 14), "frontier": (16,), "effects": (20,)}  # every second one: neighbours may be threads of one core
+CPU_CORES = {"timings": (8, 10), "sweep": (12,), "prices": (14,), "frontier": (16,), "effects": (20,)}  # every second one: neighbours may be threads of one core
 
 
 def end_group(process):
@@ -95,7 +95,7 @@ def device_parts(options, there):
         "timings": lambda left: ["timings.py", programs, *quick, "--backends", ",".join(there)],
         "effects": lambda left: ["effects.py", programs, "--backend", first, *(["--only", "water", "drag"] if options.quick else []),
                                  *(["--prices", "--rounds", "3"] if first != "cpu" else [])],
-        "report": lambda left: ["wadi-report", programs, *(quick or ["--full"]), "--backend", first, "--repeats", options.repeats, "--minutes", f"{WRITES_PAGE * left / 60:.2f}",
+        "prices": lambda left: ["wadi-report", programs, "--prices", *(quick or ["--full"]), "--backend", first, "--minutes", f"{WRITES_PAGE * left / 60:.2f}",
                                 *(["--relaxed", options.relaxed] if options.relaxed else [])]}
     return {name: (SHARES[name], commands[name]) for name in SHARES if name in options.parts}
 
@@ -104,7 +104,8 @@ def cpu_parts(options):
     two, one, quick = ["--backend", "cpu", "--threads", "2"], ["--backend", "cpu", "--processor-time"], options.quick
     return {
         "timings": lambda left: ["timings.py", options.programs, "--backends", "cpu", "--threads", "2", "--only", "table_2", "scaling", "order", "presets", *(["--quick"] if quick else [])],
-        "report": lambda left: ["wadi-report", options.programs, "--quick", *two, "--minutes", f"{WRITES_PAGE * left / 60:.2f}"],
+        "sweep": lambda left: ["wadi-report", options.programs, "--no-prices", "--quick" if quick else "--full", *one, "--repeats", options.repeats, "--minutes", f"{WRITES_PAGE * left / 60:.2f}"],
+        "prices": lambda left: ["wadi-report", options.programs, "--prices", *one, "--minutes", f"{WRITES_PAGE * left / 60:.2f}"],
         "frontier": lambda left: ["frontier.py", options.programs, *one, "--row-seconds", f"{left / FRONTIER_ROWS:.1f}", *(["--sizes", "16", "32"] if quick else [])],
         "effects": lambda left: ["effects.py", options.programs, "--prices", *one, *(["--only", "water", "drag"] if quick else [])]}
 
@@ -115,7 +116,7 @@ def main():
     parser.add_argument("--quick", action="store_true", help="small grids: shows that all runs, measures little")
     parser.add_argument("--minutes", type=float, default=30)
     parser.add_argument("--parts", nargs="+", choices=SHARES, default=list(SHARES), metavar="PART", help=f"of {', '.join(SHARES)} (default all)")
-    parser.add_argument("--repeats", type=int, default=2, metavar="N", help="runs per point of the report (default %(default)s)")
+    parser.add_argument("--repeats", type=int, default=2, metavar="N", help="runs per point of the sweep (default %(default)s)")
     parser.add_argument("--backends", default="cuda,vulkan,cpu", help="wanted, the one to report on first (default %(default)s)")
     parser.add_argument("--beside", action="store_true", help="the pages of CPU cores, methods and errors as well, beside frontier")
     parser.add_argument("--relaxed", type=pathlib.Path, metavar="BIN", help="programs of a build with -DWADI_STRICT_FLOAT=OFF, to price strict floats by")

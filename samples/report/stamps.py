@@ -37,7 +37,7 @@ KINDS = {  # a kind of page: the parts, and the scripts and files besides
                                                            "samples/levels/*/expected.json")),
     "mpm": (("stages", "step", "defaults"), ("samples/report/mpm.py", "samples/report/mpm_solver.py", *SAND_LAB)),
     "timings": (("stages", "step", "defaults", "levels"), ("samples/report/timings.py",)),
-    "advice": ((), ("samples/report/two_cores/*.csv", "samples/report/h100/*.csv", "samples/report/timings/*.csv")),
+    "advice": ((), tuple(f"samples/report/{page}/*.csv" for page in ("sweep", "prices_cpu", "prices_h100", "timings"))),
     "sand": (("stages", "step", "defaults", "levels"), ("tests/sand/*.py",)),
 }
 PAGES = {
@@ -45,12 +45,13 @@ PAGES = {
     "samples/report/effects/README.md": "effects",
     "samples/report/errors/README.md": "errors",
     "samples/report/frontier/README.md": "frontier",
-    "samples/report/h100/README.md": "report",
     "samples/report/methods/README.md": "methods",
     "samples/report/mpm/README.md": "mpm",
+    "samples/report/prices_cpu/README.md": "report",
+    "samples/report/prices_h100/README.md": "report",
+    "samples/report/sweep/README.md": "report",
     "samples/report/timings/README.md": "timings",
     "samples/report/timings/two_cores/README.md": "timings",
-    "samples/report/two_cores/README.md": "report",
     "tests/sand/README.md": "sand",
 }
 

@@ -92,6 +92,14 @@ def main():
         assert {point[:4] for point in frontiers} == {"isla", "wall"}, frontiers
         for chart in re.findall(r"\]\(([^)]+\.svg)\)", text):
             assert (out / chart).is_file(), chart
+        # Either half alone, from rows that are there.
+        for half, there, lacks in (("--prices", "## What safety costs", "Error against time"), ("--no-prices", "## Error against time", "What safety costs")):
+            part = out / half.strip("-")
+            part.mkdir()
+            (part / "results.jsonl").write_text("\n".join(kept) + "\n")
+            run(report, programs, *quick, half, "--out", part)
+            written = (part / "README.md").read_text()
+            assert there in written and lacks not in written and (part / "prices.csv").exists() == (half == "--prices") != (part / "results.csv").exists(), written
         assert json.loads(stored[0])["point"] in rows
         assert all(f"\n| {what} |" in text for what in priced), text
 

@@ -8,7 +8,7 @@ import sys
 import tempfile
 import time
 
-PARTS = ("frontier", "timings", "effects", "report")
+PARTS = ("frontier", "timings", "effects", "prices")
 RECORDER = "#!/bin/sh\ncase \"$*\" in *--list-backends*) echo 'cpu       0  a processor';; *) echo begun; {} ;; esac\n"
 
 
@@ -35,7 +35,7 @@ said, log, seconds = run("exit 3", 5)
 assert [f"== {part}: FAILED: exit code 1" in said for part in PARTS] == [True] * len(PARTS), said
 assert "recordings.Failed" in log and "begun" in log and "no run came to an end" in log and seconds < 40, log
 said, log, seconds = run("exit 3", 5, "--beside")
-BESIDE = (*PARTS, "cpu_timings", "cpu_report", "cpu_frontier", "cpu_effects", "methods", "errors")
+BESIDE = (*PARTS, "cpu_timings", "cpu_sweep", "cpu_prices", "cpu_frontier", "cpu_effects", "methods", "errors")
 assert [f"== {part}: FAILED: exit code 1" in said for part in BESIDE] == [True] * len(BESIDE) and seconds < 60, said
 assert max(said.index(f"== {part}: FAILED") for part in BESIDE if part not in PARTS[1:]) < said.index("== timings: timings.py"), said
 print("OK")
