@@ -101,7 +101,7 @@ def device_parts(options, there):
 
 
 def cpu_parts(options):
-    two, one, quick = ["--backend", "cpu", "--threads", "2"], ["--backend", "cpu", "--processor-time"], options.quick
+    one, quick = ["--backend", "cpu", "--processor-time"], options.quick
     return {
         "timings": lambda left: ["timings.py", options.programs, "--backends", "cpu", "--threads", "2", "--only", "table_2", "scaling", "order", "presets", *(["--quick"] if quick else [])],
         "sweep": lambda left: ["wadi-report", options.programs, "--no-prices", "--quick" if quick else "--full", *one, "--repeats", options.repeats, "--minutes", f"{WRITES_PAGE * left / 60:.2f}"],
