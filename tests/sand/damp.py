@@ -66,8 +66,12 @@ def washed(name, scene, seconds, above, least, most, held, control=None):
         coarse, fine = lab.runs([(scene(spacing), [0, seconds]) for spacing in (dx, dx / 2)])
         start, hs, finer = coarse.field("hs", 0), coarse.field("hs", seconds), fine.field("hs", seconds)
         kept = [patterns.in_place(run.field("hs", seconds), run.field("hs", 0), above) for run in (coarse, fine)]
+        apart = np.abs(patterns.restrict(finer, 2) - hs)
         return [
             at_most("difference of the two grids / moved", patterns.refinement(finer, hs, start), most, held=held[1]),
+            shown("of it where sand stood", apart[start > above].sum() / apart.sum()),
+            *(shown(f"sand that left where it stood, {which}", run.field("hs", seconds)[run.field("hs", 0) <= above].sum() * run.dx**2, "m3")
+              for which, run in (("coarse", coarse), ("fine", fine))),
             shown("sand elsewhere on the finer grid", patterns.elsewhere(finer, hs)),
             *(at_least(f"high sand in its place, {which}", share, least, held=held[0]) for which, share in zip(("coarse", "fine"), kept)),
         ]
