@@ -104,7 +104,7 @@ def main():
         assert all(f"\n| {what} |" in text for what in priced), text
 
     for arguments, says in ((("--point", "stoker@100"), "SCENE@nCELLS"), (("--point", "moon@n8,dt1,T1,robust"), "no scene"),
-                            (("--point", "wall@n8,dt1,T1,magic"), "no choice"), (("--only", "moon"), "no scene")):
+                            (("--point", "wall@n8,dt1,T1,magic"), "no choice"), (("--only", "moon"), "no scene"), (("--prices", "--only", "wall"), "--prices")):
         last = run(report, programs, *arguments, code=2).stderr.strip().splitlines()[-1]
         assert says in last, last
     print("OK")
