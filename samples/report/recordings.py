@@ -1,5 +1,6 @@
 """Runs of the recorder: of shipped levels, or of levels made in a script, by method preset or with single choices changed."""
 import array
+import itertools
 import json
 import pathlib
 import re
@@ -24,7 +25,7 @@ class Recorder:
     def __init__(self, program, backend="cpu", threads=0, processor_time=False):
         self.program, self.backend, self.threads, self.processor_time = str(pathlib.Path(program).resolve()), backend, threads, processor_time
         self.scratch = tempfile.TemporaryDirectory()
-        self.count = 0
+        self.numbers = itertools.count(1)  # of folders; threads may record at the same time
 
     def close(self):
         self.scratch.cleanup()
@@ -40,8 +41,7 @@ class Recorder:
         """level: a shipped level's name, or a level as a dict. times [s]: when `fields` are kept. pictures: how many on the contact
         sheet. benchmark: figures of the state are taken at the end only, and no step leaves tiles out.
         files: {name: (nx, ny, values)}, NPY maps beside a level given as a dict. water_scale: depth drawn in deep blue [m]. Returns (measures.Run, the recorder's summary)."""
-        self.count += 1
-        folder = pathlib.Path(self.scratch.name) / f"{self.count:04d}"
+        folder = pathlib.Path(self.scratch.name) / f"{next(self.numbers):04d}"
         folder.mkdir()
         if isinstance(level, dict):
             where = folder / f"{re.sub(r'[^a-z0-9]+', '_', level.get('name', 'level').lower())}.json"  # which the recorder writes on pictures

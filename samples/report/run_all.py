@@ -4,14 +4,15 @@ wadi-report's price lists on the first backend that the machine has, each into a
 backend that the machine lacks is left out, and said; a part that outlasts its share of the time is ended, and what it has written stays. Exit
 code 1 where a part failed or was ended.
 
---beside: while frontier runs, whose times of large grids no busy host moves, the pages of a CPU (timings on two cores, frontier, effects, prices and
-the report's sweep on one in processor time) and those whose numbers are the same on any machine (methods, errors), on the cores that are left; the
-other parts then have the machine to themselves. Needs 32 cores and a GPU.
+--beside: while frontier runs, whose times of large grids no busy host moves, the pages of a CPU (timings and frontier on two cores, effects, prices
+and the report's sweep in processor time of one) and those whose numbers are the same on any machine (methods, errors), on the cores that are left;
+the other parts then have the machine to themselves. Needs 32 cores and a GPU; in less than the 30 minutes it ends methods and what else is long.
 
 usage: samples/report/run_all.py BIN_FOLDER [--quick] [--parts PART ...] [--minutes 30] [--backends cuda,vulkan,cpu] [--beside] [--relaxed BIN_FOLDER] [--out out/all]
 """
 import argparse
 import concurrent.futures
+import functools
 import os
 import pathlib
 import re
@@ -21,13 +22,16 @@ import sys
 import threading
 import time
 
+from effects import SHOWN
+
 HERE = pathlib.Path(__file__).resolve().parent
 SHARES = {"frontier": 0.15, "timings": 0.35, "effects": 0.3, "prices": 0.2}  # of a lane's time, in this order; what one leaves over goes to the next
 FRONTIER_ROWS = 30  # as many of the longest rows as fit: of each of 16 kinds of run one, and those of smaller grids
 WRITES_PAGE = 0.9  # of its time: wadi-report stops measuring here
 BESIDE_CORES = 32
 BESIDE_SHARE = 0.4  # of the minutes
-CPU_CORES = {"timings": (8, 10), "sweep": (12,), "prices": (14,), "frontier": (16,), "effects": (20,)}  # every second one: neighbours may be threads of one core
+# Parts of a CPU, and of the cores every second one: neighbours may be threads of one core. effects: a third of them on each of three.
+CPU_CORES = {"timings": ((4, 6),), "sweep": ((8,),), "prices": ((10,),), "frontier": ((12, 14),), "effects": ((16,), (18,), (20,))}
 
 
 def end_group(process):
@@ -106,8 +110,8 @@ def cpu_parts(options):
         "timings": lambda left: ["timings.py", options.programs, "--backends", "cpu", "--threads", "2", "--only", "table_2", "scaling", "order", "presets", *(["--quick"] if quick else [])],
         "sweep": lambda left: ["wadi-report", options.programs, "--no-prices", "--quick" if quick else "--full", *one, "--repeats", options.repeats, "--minutes", f"{WRITES_PAGE * left / 60:.2f}"],
         "prices": lambda left: ["wadi-report", options.programs, "--prices", *one, "--minutes", f"{WRITES_PAGE * left / 60:.2f}"],
-        "frontier": lambda left: ["frontier.py", options.programs, *one, "--row-seconds", f"{left / FRONTIER_ROWS:.1f}", *(["--sizes", "16", "32"] if quick else [])],
-        "effects": lambda left: ["effects.py", options.programs, "--prices", *one, *(["--only", "water", "drag"] if quick else [])]}
+        "frontier": lambda left: ["frontier.py", options.programs, "--backend", "cpu", "--row-seconds", f"{left / FRONTIER_ROWS:.1f}", *(["--sizes", "16", "32"] if quick else [])],
+        "effects": lambda left, nth, of: ["effects.py", options.programs, "--prices", *one, "--only", *(["water", "drag"] if quick else SHOWN)[nth::of]]}
 
 
 def main():
@@ -141,7 +145,10 @@ def main():
         with concurrent.futures.ThreadPoolExecutor() as pool:
             lanes = [pool.submit(job.lane, "frontier", at, BESIDE_SHARE * minutes, set(cores[:4])), pool.submit(job.lane, "same_anywhere", same_anywhere, BESIDE_SHARE * minutes, set(cores[24:]))]
             for name, command_of in cpu_parts(options).items():
-                lanes.append(pool.submit(job.lane, f"cpu_{name}", {f"cpu_{name}": (1, command_of)}, BESIDE_SHARE * minutes, {cores[c] for c in CPU_CORES[name]}))
+                for nth, own in enumerate(CPU_CORES[name]):
+                    log_name = f"cpu_{name}" + (f"_{nth + 1}" if nth else "")
+                    command = functools.partial(command_of, nth=nth, of=len(CPU_CORES[name])) if len(CPU_CORES[name]) > 1 else command_of
+                    lanes.append(pool.submit(job.lane, log_name, {f"cpu_{name}": (1, command)}, BESIDE_SHARE * minutes, {cores[c] for c in own}))
             for lane in lanes:
                 lane.result()
         minutes *= 1 - BESIDE_SHARE

@@ -7,8 +7,11 @@ BIN_FOLDER holds wadi-recorder and conformance. --small: the levels' test sizes.
 method that should be wrong is right or the other way round.
 """
 import argparse
+import concurrent.futures
 import csv
+import itertools
 import json
+import os
 import pathlib
 import re
 import shutil
@@ -45,17 +48,28 @@ def number(value):
     return "0" if value == 0 else f"{value:.0f}" if abs(value) >= 1000 else f"{value:.3g}"
 
 
+def at_once(function, items):
+    """[function(item)], one run on each core."""
+    with concurrent.futures.ThreadPoolExecutor(len(os.sched_getaffinity(0))) as pool:
+        return list(pool.map(function, items))
+
+
 def exact_rows(recorder, small, choices):
     """(case, measure, unit, right answer, {choice: value}); a run that the recorder calls broken gives its message instead."""
-    for key, (title, make) in cases.EXACT.items():
-        level, seconds, measure = make(cases.SMALL[key]) if small else make()
-        columns = {}
-        for choice, keys in choices.items():
-            run, summary = recorder.record(recordings.choose(level, **keys), seconds=seconds, times=(0, seconds))
-            columns[choice] = measure(run, summary)
-            print(f"{title}: {choice}", flush=True)
-        for n, (name, unit, _, right) in enumerate(columns["robust"]):
-            yield title, name, unit, right, {choice: values[n][2] for choice, values in columns.items()}
+    made = {key: make(cases.SMALL[key]) if small else make() for key, (_, make) in cases.EXACT.items()}
+
+    def values_of(case):
+        key, choice = case
+        level, seconds, measure = made[key]
+        run, summary = recorder.record(recordings.choose(level, **choices[choice]), seconds=seconds, times=(0, seconds))
+        print(f"{cases.EXACT[key][0]}: {choice}", flush=True)
+        return measure(run, summary)
+
+    runs = list(itertools.product(made, choices))
+    columns = dict(zip(runs, at_once(values_of, runs)))
+    for key in made:
+        for n, (name, unit, _, right) in enumerate(columns[key, "robust"]):
+            yield cases.EXACT[key][0], name, unit, right, {choice: columns[key, choice][n][2] for choice in choices}
 
 
 def half_turns(conformance, backend):
@@ -152,15 +166,20 @@ def write_page(recorder, conformance, options):
                                               ("left stretch (`left_stretch`, robust)", "left_stretch"))])
         lines += [""]
     lines += ["## Levels", "", "What `expected.json` beside each level claims, by each method; bold where it does not hold.", ""]
-    for name in SHOWN_LEVELS:
-        if options.only and name not in options.only:
-            continue
-        sides = {}
-        for method in METHODS:
-            sides[method] = claims_of(recorder, name, method, options.small)
-            if name in LEVELS_WITH_PICTURES:
-                picture(recorder, name, method, options.small, out)
-            print(f"{name}: {method}, {sum(holds for *_, holds in sides[method][0])} of {len(sides[method][0])} claims", flush=True)
+
+    def side_of(run):
+        name, method = run
+        claims = claims_of(recorder, name, method, options.small)
+        if name in LEVELS_WITH_PICTURES:
+            picture(recorder, name, method, options.small, out)
+        print(f"{name}: {method}, {sum(holds for *_, holds in claims[0])} of {len(claims[0])} claims", flush=True)
+        return claims
+
+    names = [name for name in SHOWN_LEVELS if not options.only or name in options.only]
+    runs = list(itertools.product(names, METHODS))
+    results = dict(zip(runs, at_once(side_of, runs)))
+    for name in names:
+        sides = {method: results[name, method] for method in METHODS}
         lines += [f"### {name}", ""]
         rows = []
         for claim in zip(*(sides[method][0] for method in METHODS)):
@@ -218,7 +237,7 @@ def main():
     parser.add_argument("--check", action="store_true")
     options = parser.parse_args()
     conformance = options.programs / "conformance"
-    with recordings.Recorder(options.programs / "wadi-recorder", options.backend) as recorder:
+    with recordings.Recorder(options.programs / "wadi-recorder", options.backend, threads=1) as recorder:
         if options.check:
             return 0 if check(recorder, conformance) else 1
         write_page(recorder, conformance, options)

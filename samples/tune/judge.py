@@ -160,11 +160,12 @@ def main():
     parser.add_argument("--keep", type=pathlib.Path, help="a new folder for the levels with their variants and what the tuner said of them")
     parser.add_argument("--backend", default="cpu")
     parser.add_argument("--threads", default="1")
-    parser.add_argument("--wall-time", dest="processor_time", action="store_false")
+    parser.add_argument("--wall-time", action="store_true", help="on a CPU as well, whose times are else processor time")
     parser.add_argument("--budget-ms", default="2")
     parser.add_argument("--minutes", default="1")
     parser.add_argument("--finer", type=float, default=1.6, help="cells along x of the run that judges, over those of the tuner's finest")
     arguments = parser.parse_args()
+    arguments.processor_time = arguments.backend == "cpu" and not arguments.wall_time
     if arguments.drawn and arguments.seed is None:
         parser.error("--drawn wants --seed")
     off, left = [], []

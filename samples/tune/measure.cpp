@@ -122,6 +122,8 @@ Run Runner::run(const Settings& settings, const RunRequest& request) const {
     run.dt = world.info.dt;
     run.device_name = world.info.device_name;
     run.backend = world.info.backend;
+    if (device_.processor_time && run.backend != "cpu")
+        throw BadInput("--processor-time: of the CPU backend alone, this is " + run.backend);
     for (std::uint32_t n = 0; n < world.info.warning_count; ++n) run.warnings.emplace_back(wadi_world_get_warning(world.id, n));
     if (request.keep_surfaces) run.at.push_back(world.surfaces());
     world.wait();

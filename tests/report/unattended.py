@@ -12,7 +12,7 @@ PARTS = ("frontier", "timings", "effects", "prices")
 RECORDER = "#!/bin/sh\ncase \"$*\" in *--list-backends*) echo 'cpu       0  a processor';; *) echo begun; {} ;; esac\n"
 
 
-MANY_CORES = "import os, runpy, sys; os.sched_getaffinity = lambda _: set(range(32)); os.sched_setaffinity = lambda *_: None; sys.argv.pop(0); runpy.run_path(sys.argv[0], run_name='__main__')"
+MANY_CORES = "import os, runpy, sys; sys.path.insert(0, os.path.dirname(sys.argv[1])); os.sched_getaffinity = lambda _: set(range(32)); os.sched_setaffinity = lambda *_: None; sys.argv.pop(0); runpy.run_path(sys.argv[0], run_name='__main__')"
 
 
 def run(does, minutes, *options):

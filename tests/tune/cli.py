@@ -31,7 +31,7 @@ def run(program, *arguments, code=0, stderr=True):
     return done.stderr if code != 0 and stderr else done.stdout
 
 
-def test_refusals(tune, level):
+def test_refusals(tune, recorder, level):
     before = level.read_text()
     (level.parent / "there.json").write_text("{}")
     for arguments, says in (
@@ -45,6 +45,10 @@ def test_refusals(tune, level):
             ((level, *QUICK, "--budget-ms", "1e-5"), "the cheapest settings, ")):
         said = run(tune, *arguments, code=2)
         assert says in said, f"{arguments}: {said}"
+    for line in run(recorder, "--list-backends").splitlines():
+        name = line.split()[0]
+        if name != "cpu":
+            assert f"--processor-time: of the CPU backend alone, this is {name}" in run(tune, level, "--backend", name, "--processor-time", code=2)
     assert (level.parent / "there.json").read_text() == "{}" and level.read_text() == before
 
 
@@ -125,7 +129,7 @@ def main():
     folder = pathlib.Path(sys.argv[1]).resolve()
     tune, recorder = folder / "wadi-tune", folder / "wadi-recorder"
     level = sys.argv[3] if sys.argv[2:3] == ["--judge"] else "piles"
-    for test, arguments in ((test_refusals, (tune,)), (test_writing, (tune, recorder)), (test_nothing_moves, (tune,)), (test_hardly_any_time, (tune,))):
+    for test, arguments in ((test_refusals, (tune, recorder)), (test_writing, (tune, recorder)), (test_nothing_moves, (tune,)), (test_hardly_any_time, (tune,))):
         with tempfile.TemporaryDirectory() as scratch:
             file = pathlib.Path(scratch) / "level.json"
             file.write_text(LEVEL)
