@@ -11,7 +11,7 @@ namespace {
 constexpr AccuracyPreset presets[] = {
     {"draft", 0.5, 2, 0, 1.8, 0.29, 0.15},
     {"balanced", 1, 2, 0, 1, 1, 1},
-    {"accurate", 2, 2, 2, 0.51, 10.5, 9.3},
+    {"accurate", 2, 2, 2, 0.51, 10.6, 9.3},
 };
 
 } // namespace
