@@ -2,6 +2,7 @@
 import math
 from xml.sax.saxutils import escape
 
+TITLE, TITLE_WIDTH = 15, 0.62  # font size; of a bold letter as wide as most, in font sizes
 COLOURS = ("#222222", "#0b6fa4", "#c8501e", "#3a8a3a", "#7a4fa3", "#a38a1e", "#b03070", "#2a9d9d")
 WIDTH, HEIGHT, LEFT, TOP, BOTTOM, LEGEND = 520, 320, 74, 40, 52, 190
 
@@ -38,7 +39,7 @@ def line_chart(title, x_label, y_label, series, *, x_log=False, y_log=False, x_m
     up = Axis(ys, y_log, TOP + HEIGHT, -HEIGHT)
     out = [f'<svg xmlns="http://www.w3.org/2000/svg" width="{LEFT + WIDTH + LEGEND}" height="{TOP + HEIGHT + BOTTOM}" '
            'font-family="sans-serif" font-size="12"><rect width="100%" height="100%" fill="white"/>',
-           f'<text x="{LEFT}" y="22" font-size="15" font-weight="bold">{escape(title)}</text>']
+           f'<text x="{LEFT}" y="22" font-size="{min(TITLE, (WIDTH + LEGEND - 10) / (TITLE_WIDTH * len(title))):.1f}" font-weight="bold">{escape(title)}</text>']
     for mark in up.marks:
         y = up.at(mark)
         out.append(f'<line x1="{LEFT}" x2="{LEFT + WIDTH}" y1="{y:.1f}" y2="{y:.1f}" stroke="#dddddd"/>'
@@ -64,6 +65,8 @@ def line_chart(title, x_label, y_label, series, *, x_log=False, y_log=False, x_m
         out.append(f'<line x1="{LEFT + WIDTH + 10}" x2="{LEFT + WIDTH + 27}" y1="{line - 7}" y2="{line - 7}" stroke="{colour}" stroke-width="4"{key}/>'
                    f'<text x="{LEFT + WIDTH + 32}" y="{line - 3}">{escape(name)}</text>')
     for x, y, text in named:
+        # A name above its point would lie upon the ring or the name of one close to the right.
+        below = any(0 < across.at(other) - across.at(x) < 130 and abs(up.at(height) - up.at(y)) < 14 for other, height, _ in named)
         out.append(f'<circle cx="{across.at(x):.1f}" cy="{up.at(y):.1f}" r="6" fill="none" stroke="#222222" stroke-width="1.5"/>'
-                   f'<text x="{across.at(x) + 9:.1f}" y="{up.at(y) - 6:.1f}" font-size="11">{escape(text)}</text>')
+                   f'<text x="{across.at(x) + 9:.1f}" y="{up.at(y) + (16 if below else -6):.1f}" font-size="11">{escape(text)}</text>')
     return "\n".join([*out, "</svg>", ""])
