@@ -2,6 +2,7 @@
 """wadi-tune as users run it: refusals, what it writes, and what it says against the recorder. Usage: cli.py BIN [--judge LEVEL]; needs numpy."""
 import json
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -45,10 +46,8 @@ def test_refusals(tune, recorder, level):
             ((level, *QUICK, "--budget-ms", "1e-5"), "the cheapest settings, ")):
         said = run(tune, *arguments, code=2)
         assert says in said, f"{arguments}: {said}"
-    for line in run(recorder, "--list-backends").splitlines():
-        name = line.split()[0]
-        if name != "cpu":
-            assert f"--processor-time: of the CPU backend alone, this is {name}" in run(tune, level, "--backend", name, "--processor-time", code=2)
+    for name in set(re.findall(r"^(\w+) +\d+ ", run(recorder, "--list-backends"), re.M)) - {"cpu"}:
+        assert f"--processor-time: of the CPU backend alone, this is {name}" in run(tune, level, "--backend", name, "--processor-time", code=2)
     assert (level.parent / "there.json").read_text() == "{}" and level.read_text() == before
 
 
