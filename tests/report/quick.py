@@ -78,7 +78,11 @@ def main():
         priced = {row["point"].removeprefix("price: "): row for row in csv.DictReader((out / "prices.csv").open())}
         passes = {what: int(row["passes"] or 0) for what, row in priced.items()}  # a busy machine cannot change these
         assert passes["effect elastoplastic off"] < passes["everything"] == passes["no_limiter"] < passes["paper_like"], passes
-        assert float(priced["effect elastoplastic off"]["saved"]) > 15 and 0 < float(priced["ledger"]["saved"]) < 20, priced
+        assert 0 < float(priced["ledger"]["saved"]) < 20, priced
+        # One pair of runs. The ci preset has vector code of most masks for AVX-512 alone: checked code of -Og takes thirty times as long, and
+        # where it runs beside other tests one pair scatters by more than half.
+        if float(priced["everything"]["ms_per_step"]) < 3:
+            assert float(priced["effect elastoplastic off"]["saved"]) > 15, priced
 
         for point in ("stoker@n100,dt1,T3,robust", "stoker@n100,dt1,T3,second_order"):
             again = run(report, programs, "--point", point).stdout
