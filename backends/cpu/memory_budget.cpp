@@ -11,6 +11,9 @@ namespace {
 // A look takes some 0.1 ms and more where much is mapped: it holds for so long and for so many bytes.
 constexpr std::chrono::seconds holds_for{10};
 constexpr std::uint64_t holds_for_bytes = std::uint64_t{256} << 20;
+// Left for what is no buffer: a level while it is drawn, threads, the system's own pages. Without a least, nothing is left of it
+// where little is available.
+constexpr std::uint64_t least_left = std::uint64_t{32} << 20;
 
 } // namespace
 
@@ -27,8 +30,8 @@ std::uint64_t MemoryBudget::measure() const {
         untouched = promised_;
     }
     if (available == 0) return std::numeric_limits<std::uint64_t>::max();
-    const std::uint64_t limit = available / 10 * 9;
-    return limit > untouched ? limit - untouched : 0;
+    const std::uint64_t taken = untouched + std::max(available / 10, least_left);
+    return available > taken ? available - taken : 0;
 }
 
 bool MemoryBudget::take(std::uint64_t bytes) {

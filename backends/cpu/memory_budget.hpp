@@ -13,7 +13,7 @@ class MemoryBudget {
   public:
     /// Of the process.
     static MemoryBudget& of_process();
-    /// False where the memory that is available now, less a tenth, does not hold that many bytes more.
+    /// False where the memory that is available now, less a tenth and 32 MiB at least, does not hold that many bytes more.
     bool take(std::uint64_t bytes);
     void give_back(std::uint64_t bytes);
     /// What take() would grant at most [bytes], after a look.
