@@ -7,7 +7,7 @@ import patterns
 from cases import case
 from piles import damp
 from scene import grid, level
-from shapes import block, cone, draw
+from shapes import block, cone, draw, TURNS
 from shipped import shipped
 from table import at_least, at_most, exactly, shown
 
@@ -78,6 +78,32 @@ def washed(name, scene, seconds, above, least, most, held, control=None):
 
 
 washed("castle_with_wave", castle, 3, above=1, least=0.7, most=0.11, held=0.115)
+@case("castle_turned", dx=(0.2, 0.1), control={"dt": 0.03})
+def castle_turned(lab, dx):
+    """The castle and its wave, on a walled square with room to turn them, do what they do along the grid."""
+    own = shipped("castle")
+    drawn, side = lab.run(own, [0]).field("hs", 0), own["grid"]["dx"]
+
+    def sand(x, y):  # as the level draws it, in cells of its own
+        column, row = (np.floor(place / side + size / 2).astype(int) for place, size in ((x, drawn.shape[1]), (y, drawn.shape[0])))
+        inside = (column >= 0) & (column < drawn.shape[1]) & (row >= 0) & (row < drawn.shape[0])
+        return np.where(inside, drawn[np.clip(row, 0, drawn.shape[0] - 1), np.clip(column, 0, drawn.shape[1] - 1)], 0.0)
+
+    def wave(x, y):
+        return np.where((x > -25.6) & (x < -16) & (np.abs(y) < 12.8), 3.5, 0.0)
+
+    def scene(turn):
+        cells = grid(52, 52, dx)
+        heights = draw(cells, sand, turn)
+        return level(cells, own["material"], own["method"], dt=own["dt"] * dx / side, sand=[{"file": heights}],
+                     water=[{"file": draw(cells, wave, turn) + 0.25 * heights}])
+
+    straight, *turned = lab.runs([(scene(turn), [0, 3]) for turn in (0, *TURNS)])
+    start, hs = straight.field("hs", 0), straight.field("hs", 3)
+    return [at_most(f"turned by {turn}: difference / moved", patterns.rotation(run.field("hs", 3), hs, start, dx, turn), 0.17)
+            for turn, run in zip(TURNS, turned)]
+
+
 # On finer grids soaked letters stand steeper and longer.
 washed("letters", partial(shipped, "letters"), 4, above=0.3, least=0.6, most=0.16, held=0.26, control={"material.friction": 0})
 
