@@ -7,8 +7,9 @@ import patterns
 from cases import case
 from piles import damp
 from scene import grid, level
-from shapes import block, cone, draw, TURNS
+from shapes import block, cone, draw
 from shipped import shipped
+from streams import TURNS
 from table import at_least, at_most, exactly, shown
 
 

@@ -2,8 +2,6 @@
 on every grid."""
 import numpy as np
 
-TURNS = (30, 45)  # by which scenes are drawn turned [degrees]
-
 
 def centres(grid):
     """x and y of every cell's centre, counted from the middle of the grid."""

@@ -8,6 +8,7 @@ from scene import grid, level
 from table import at_most, shown
 
 FIELD = 16  # walled square, wide enough that nothing that returns from the walls counts [m]
+TURNS = (30, 45)
 
 
 def wave(depth, length, width, front):
@@ -24,12 +25,12 @@ def washed(name, sand, water, wet, seconds, limits, control, held=None):
             drawn = shapes.draw(cells, sand, turn)
             return level(cells, sand=[{"file": drawn}], water=[{"file": shapes.draw(cells, water, turn) + wet * drawn}])
 
-        straight, fine, *turned = lab.runs([(one, [0, seconds]) for one in (scene(dx), scene(dx / 2), *(scene(dx, turn) for turn in shapes.TURNS))])
+        straight, fine, *turned = lab.runs([(one, [0, seconds]) for one in (scene(dx), scene(dx / 2), *(scene(dx, turn) for turn in TURNS))])
         start, coarse = straight.field("hs", 0), straight.field("hs", seconds)
         return [
             at_most("difference of the two grids / moved", patterns.refinement(fine.field("hs", seconds), coarse, start), limits[0], held=held),
             *(at_most(f"turned by {turn}: difference / moved", patterns.rotation(run.field("hs", seconds), coarse, start, dx, turn), limits[1])
-              for turn, run in zip(shapes.TURNS, turned)),
+              for turn, run in zip(TURNS, turned)),
             shown("sand elsewhere on the finer grid", patterns.elsewhere(fine.field("hs", seconds), coarse)),
             shown("share in its place", patterns.in_place(coarse, start, 0)),
         ]
