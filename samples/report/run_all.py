@@ -29,7 +29,7 @@ SHARES = {"frontier": 0.15, "timings": 0.35, "effects": 0.3, "prices": 0.2}  # o
 FRONTIER_ROWS = 30  # as many of the longest rows as fit: of each of 16 kinds of run one, and those of smaller grids
 WRITES_PAGE = 0.9  # of its time: wadi-report stops measuring here
 BESIDE_CORES = 32
-BESIDE_SHARE = 0.4  # of the minutes
+BESIDE_SHARE = 0.5  # of the minutes
 # Parts of a CPU, and of the cores every second one: neighbours may be threads of one core. effects: a third of them on each of three.
 CPU_CORES = {"timings": ((4, 6),), "sweep": ((8,),), "prices": ((10,),), "frontier": ((12, 14),), "effects": ((16,), (18,), (20,))}
 
