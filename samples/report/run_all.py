@@ -5,14 +5,14 @@ backend that the machine lacks is left out, and said; a part that outlasts its s
 code 1 where a part failed or was ended.
 
 --beside: while frontier runs, whose times of large grids no busy host moves, the pages of a CPU (timings and frontier on two cores, effects, prices
-and the report's sweep in processor time of one) and those whose numbers are the same on any machine (methods, errors), on the cores that are left;
-the other parts then have the machine to themselves. Needs 32 cores and a GPU; in less than the 30 minutes it ends methods and what else is long.
+and the report's sweep in processor time of one) and errors, whose numbers are the same on any machine, each on cores of its own; the other parts
+then have the machine to themselves. Needs 16 cores and a GPU. With 32 methods runs too, on those that are left; it is the same anywhere as well.
+In less than the 30 minutes it ends methods and what else is long.
 
 usage: samples/report/run_all.py BIN_FOLDER [--quick] [--parts PART ...] [--minutes 30] [--backends cuda,vulkan,cpu] [--beside] [--relaxed BIN_FOLDER] [--out out/all]
 """
 import argparse
 import concurrent.futures
-import functools
 import os
 import pathlib
 import re
@@ -28,10 +28,11 @@ HERE = pathlib.Path(__file__).resolve().parent
 SHARES = {"frontier": 0.15, "timings": 0.35, "effects": 0.3, "prices": 0.2}  # of a lane's time, in this order; what one leaves over goes to the next
 FRONTIER_ROWS = 30  # as many of the longest rows as fit: of each of 16 kinds of run one, and those of smaller grids
 WRITES_PAGE = 0.9  # of its time: wadi-report stops measuring here
-BESIDE_CORES = 32
-BESIDE_SHARE = 0.5  # of the minutes
-# Parts of a CPU, and of the cores every second one: neighbours may be threads of one core. effects: a third of them on each of three.
-CPU_CORES = {"timings": ((4, 6),), "sweep": ((8,),), "prices": ((10,),), "frontier": ((12, 14),), "effects": ((16,), (18,), (20,))}
+BESIDE_CORES = 16
+BESIDE_SHARE = 0.58  # of the minutes
+# A CPU's parts by the cores that a lane of them has: every second one, since neighbours may be threads of one core. 0 and 1 have the GPU's frontier.
+CPU_LANES = {(2, 4): ("timings", "frontier", "errors"), (6,): ("sweep",), (8,): ("prices",), (10,): ("effects_0",), (12,): ("effects_1",), (14,): ("effects_2",)}
+METHODS_CORES = 32  # so many are there; its own are those beyond BESIDE_CORES
 
 
 def end_group(process):
@@ -105,13 +106,19 @@ def device_parts(options, there):
 
 
 def cpu_parts(options):
-    one, quick = ["--backend", "cpu", "--processor-time"], options.quick
+    """{part: (folder under OUT, function of the seconds it has, which gives its command)}; a third of the effects to each of three parts."""
+    programs, one, quick = options.programs, ["--backend", "cpu", "--processor-time"], options.quick
     return {
-        "timings": lambda left: ["timings.py", options.programs, "--backends", "cpu", "--threads", "2", "--only", "table_2", "scaling", "order", "presets", *(["--quick"] if quick else [])],
-        "sweep": lambda left: ["wadi-report", options.programs, "--no-prices", "--quick" if quick else "--full", *one, "--repeats", options.repeats, "--minutes", f"{WRITES_PAGE * left / 60:.2f}"],
-        "prices": lambda left: ["wadi-report", options.programs, "--prices", *one, "--minutes", f"{WRITES_PAGE * left / 60:.2f}"],
-        "frontier": lambda left: ["frontier.py", options.programs, "--backend", "cpu", "--row-seconds", f"{left / FRONTIER_ROWS:.1f}", *(["--sizes", "16", "32"] if quick else [])],
-        "effects": lambda left, nth, of: ["effects.py", options.programs, "--prices", *one, "--only", *(["water", "drag"] if quick else SHOWN)[nth::of]]}
+        "timings": ("cpu_timings", lambda left: ["timings.py", programs, "--backends", "cpu", "--threads", "2", "--only", "table_2", "scaling", "order", "presets",
+                                                 *(["--quick"] if quick else [])]),
+        "sweep": ("cpu_sweep", lambda left: ["wadi-report", programs, "--no-prices", "--quick" if quick else "--full", *one, "--repeats", options.repeats,
+                                             "--minutes", f"{WRITES_PAGE * left / 60:.2f}"]),
+        "prices": ("cpu_prices", lambda left: ["wadi-report", programs, "--prices", *one, "--minutes", f"{WRITES_PAGE * left / 60:.2f}"]),
+        "frontier": ("cpu_frontier", lambda left: ["frontier.py", programs, "--backend", "cpu", "--row-seconds", f"{left / FRONTIER_ROWS:.1f}",
+                                                   *(["--sizes", "16", "32"] if quick else [])]),
+        "errors": ("errors", lambda left: ["errors.py", programs]),
+        **{f"effects_{third}": ("cpu_effects", lambda left, third=third: ["effects.py", programs, "--prices", *one,
+                                                                          "--only", *(["water", "drag", "sand"] if quick else SHOWN)[third::3]]) for third in range(3)}}
 
 
 def main():
@@ -140,16 +147,17 @@ def main():
         return 1
     devices, minutes = device_parts(options, there), options.minutes
     if options.beside:
-        at = {"frontier": devices.pop("frontier")} if "frontier" in devices else {}
-        same_anywhere = {"methods": (9, lambda left: ["side_by_side.py", options.programs, *(["--small"] if options.quick else [])]), "errors": (1, lambda left: ["errors.py", options.programs])}
-        with concurrent.futures.ThreadPoolExecutor() as pool:
-            lanes = [pool.submit(job.lane, "frontier", at, BESIDE_SHARE * minutes, set(cores[:4])), pool.submit(job.lane, "same_anywhere", same_anywhere, BESIDE_SHARE * minutes, set(cores[24:]))]
-            for name, command_of in cpu_parts(options).items():
-                for nth, own in enumerate(CPU_CORES[name]):
-                    log_name = f"cpu_{name}" + (f"_{nth + 1}" if nth else "")
-                    command = functools.partial(command_of, nth=nth, of=len(CPU_CORES[name])) if len(CPU_CORES[name]) > 1 else command_of
-                    lanes.append(pool.submit(job.lane, log_name, {f"cpu_{name}": (1, command)}, BESIDE_SHARE * minutes, {cores[c] for c in own}))
-            for lane in lanes:
+        lanes, cpu = [], cpu_parts(options)  # (name, parts, cores)
+        if "frontier" in devices:
+            lanes.append(("frontier", {"frontier": devices.pop("frontier")}, cores[:2]))
+        for own, names in CPU_LANES.items():
+            lanes.append(("_".join(("cpu", *names)), {cpu[name][0]: (1, cpu[name][1]) for name in names}, [cores[core] for core in own]))
+        if len(cores) >= METHODS_CORES:
+            lanes.append(("methods", {"methods": (1, lambda left: ["side_by_side.py", options.programs, *(["--small"] if options.quick else [])])}, cores[BESIDE_CORES:]))
+        else:
+            job.say(f"SKIPPED methods: {METHODS_CORES} cores wanted, {len(cores)} are there")
+        with concurrent.futures.ThreadPoolExecutor(len(lanes)) as pool:
+            for lane in [pool.submit(job.lane, name, parts, BESIDE_SHARE * minutes, set(own)) for name, parts, own in lanes]:
                 lane.result()
         minutes *= 1 - BESIDE_SHARE
     job.lane("", devices, minutes)
