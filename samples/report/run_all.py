@@ -118,7 +118,7 @@ def cpu_parts(options):
                                                    *(["--sizes", "16", "32"] if quick else [])]),
         "errors": ("errors", lambda left: ["errors.py", programs]),
         **{f"effects_{third}": ("cpu_effects", lambda left, third=third: ["effects.py", programs, "--prices", *one,
-                                                                          "--only", *(["water", "drag", "sand"] if quick else SHOWN)[third::3]]) for third in range(3)}}
+                                                                          "--only", *(["water", "drag", "sand"] if quick else list(SHOWN))[third::3]]) for third in range(3)}}
 
 
 def main():
