@@ -87,7 +87,8 @@ template <class Real> void Solver<Real>::apply_rain() {
 
 /// A face beside a reservoir whose surface stands at `level`, and stood at `level_before` a step ago, over sand as high as
 /// inside. Waves run out through it, d/dt (u - sqrt(g/h) eta) being what the level does; where one depth of pure water is under
-/// half of the other the reservoir is a neighbour as any cell is. Returns what the outward velocity gains.
+/// half of the other the reservoir is a neighbour as any cell is. A cell that stands higher or lower than both beside it along
+/// the side is levelled, by pure water alone. Returns what the outward velocity gains otherwise.
 template <class Real> Real Solver<Real>::level_face(const Axis& ax, int a, int b, Real level, Real level_before) {
     const bool far_end = a != 0;
     const Real outward = far_end ? Real(1) : Real(-1);
@@ -139,7 +140,14 @@ template <class Real> Real Solver<Real>::level_face(const Axis& ax, int a, int b
         const Real incoming = push / (Real(4) * Real(cells)) + (h > Real(0) ? c / h : Real(0)) * (gained - Real(2) * risen);
         gain += alike * (incoming / (Real(1) + P.k * std::max(second ? c : c + own, Real(0))) - push);
     }
-    Real u = own + gain;
+    Real even{};
+    if (b > 0 && b + 1 < ax.across()) {
+        const std::size_t L = ax.cell(far_end ? cells - 1 : 0, b - 1);
+        const std::size_t R = ax.cell(far_end ? cells - 1 : 0, b + 1);
+        const bool wet = std::min({pure[L], pure[N], pure[R]}) > P.eps;
+        if (wet) even = P.k * g / Real(4) * minmod(eta_in - (terrain[L] + water[L]), eta_in - (terrain[R] + water[R]));
+    }
+    Real u = own + gain + even;
     if (std::abs(eta_in - eta_out) <= P.rest_surface && std::abs(u) <= P.rest_velocity) u = Real(0);
     if (blocked(pure[N], ghost, eta_in, eta_out, P.eps)) u = Real(0);
     velocity = clamped(outward * u, P.clamp);

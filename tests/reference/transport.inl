@@ -133,8 +133,9 @@ void Solver<Real>::advect_velocity(const Field<Real>& height, const Faces<Real>&
         const Real u = u_old[ax.face(a, b)];
         const Real u_W = u_old[ax.face(a - 1, b)];
         const Real u_E = u_old[ax.face(a + 1, b)];
-        const Real u_S = b > 0 ? u_old[ax.face(a, b - 1)] : u;
-        const Real u_N = b + 1 < ax.across() ? u_old[ax.face(a, b + 1)] : u;
+        // What enters from beyond the grid has no velocity along the side.
+        const Real u_S = b > 0 ? u_old[ax.face(a, b - 1)] : Q_S > Real(0) ? Real(0) : u;
+        const Real u_N = b + 1 < ax.across() ? u_old[ax.face(a, b + 1)] : Q_N < Real(0) ? Real(0) : u;
         const Real from_along = std::max(-Q_E, Real(0)) * (u_E - u) + std::max(Q_W, Real(0)) * (u_W - u);
         const Real from_across = std::max(-Q_N, Real(0)) * (u_N - u) + std::max(Q_S, Real(0)) * (u_S - u);
         velocity.along(ax)[ax.face(a, b)] = u + (from_along + from_across) / hb;
@@ -149,8 +150,13 @@ void Solver<Real>::advect_velocity_second_order(const Field<Real>& height, const
     for_inner_faces([&](const Axis& ax, int a, int b) {
         const Real hb = mean(height[ax.cell(a - 1, b)], height[ax.cell(a, b)]);
         if (hb <= P.eps) return;
-        // Offsets along and across; beyond the last face or row its value again.
+        // Offsets along and across; beyond the last face or row its value again, or 0 where something comes in there.
+        const auto enters = [&](int row) {
+            return mean(flux.across(ax)[ax.cross(a - 1, row)], flux.across(ax)[ax.cross(a, row)]);
+        };
         const auto in = [&](const Faces<Real>& from, int da, int db) {
+            if (b == 0 && db < 0 && enters(b) > Real(0)) return Real(0);
+            if (b + 1 == ax.across() && db > 0 && enters(b + 1) < Real(0)) return Real(0);
             return from.along(ax)[ax.face(std::clamp(a + da, 0, ax.along()), std::clamp(b + db, 0, ax.across() - 1))];
         };
         const auto at = [&](int da, int db) { return in(carried, da, db); };
