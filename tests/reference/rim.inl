@@ -87,8 +87,7 @@ template <class Real> void Solver<Real>::apply_rain() {
 
 /// A face beside a reservoir whose surface stands at `level`, and stood at `level_before` a step ago, over sand as high as
 /// inside. Waves run out through it, d/dt (u - sqrt(g/h) eta) being what the level does; where one depth of pure water is under
-/// half of the other the reservoir is a neighbour as any cell is. A cell that stands higher or lower than both beside it along
-/// the side is levelled, by pure water alone. Returns what the outward velocity gains otherwise.
+/// half of the other the reservoir is a neighbour as any cell is. Returns what the outward velocity gains.
 template <class Real> Real Solver<Real>::level_face(const Axis& ax, int a, int b, Real level, Real level_before) {
     const bool far_end = a != 0;
     const Real outward = far_end ? Real(1) : Real(-1);
@@ -116,13 +115,19 @@ template <class Real> Real Solver<Real>::level_face(const Axis& ax, int a, int b
         const Real c = std::sqrt(g * h);
         const auto upwind = [&](Real speed, Real behind, Real ahead) { return P.k * speed * (speed > Real(0) ? behind : ahead); };
         const int inner = far_end ? cells - 1 : 0;
+        const Axis cross = axis(!ax.is_y);
         velocity = outward * own; // for face_depth
         const bool second = has(EFFECT_SECOND_ORDER_WATER);
         const auto enters = [&](Layer layer, const Field<Real>& depth, Real beyond) {
-            const Field<Real>& v = velocity_of(layer).across(ax);
-            Real low{}, high{};
-            if (b > 0) low = upwind(v[ax.cross(inner, b)], depth[ax.cell(inner, b - 1)], depth[N]);
-            if (b + 1 < ax.across()) high = upwind(v[ax.cross(inner, b + 1)], depth[N], depth[ax.cell(inner, b + 1)]);
+            // Cells at the side's ends count as flat.
+            const auto along_side = [&](int face) {
+                const Real v = velocity_of(layer).along(cross)[cross.face(face, inner)];
+                const int donor = v > Real(0) ? face - 1 : face;
+                const bool flat = !second || donor == 0 || donor + 1 == cross.along();
+                return P.k * v * (flat ? depth[cross.cell(donor, inner)] : face_depth(layer, cross, face, inner, v));
+            };
+            const Real low = b > 0 ? along_side(b) : Real(0);
+            const Real high = b + 1 < ax.across() ? along_side(b + 1) : Real(0);
             const auto leaves = [&](int face, Real behind, Real ahead) {
                 const Real speed = outward * velocity_of(layer).along(ax)[ax.face(face, b)];
                 // Of two cells the further one lies beside the other side and counts as flat.
@@ -136,18 +141,17 @@ template <class Real> Real Solver<Real>::level_face(const Axis& ax, int a, int b
         };
         Real gained = enters(Layer::pure, pure, ghost);
         if (has(EFFECT_MIXTURE)) gained += enters(Layer::mixed, mixed, Real(0));
+        if (has(EFFECT_DIFFUSION)) {
+            const Real through = outward * diffusion(ax, far_end ? cells - 1 : 1, b);
+            const Real low = b > 0 ? diffusion(cross, b, inner) : Real(0);
+            const Real high = b + 1 < ax.across() ? diffusion(cross, b + 1, inner) : Real(0);
+            gained += P.k * (through + (low - high));
+        }
         const Real risen = ghost - above_sand(std::max(level_before - terrain[N], Real(0)));
         const Real incoming = push / (Real(4) * Real(cells)) + (h > Real(0) ? c / h : Real(0)) * (gained - Real(2) * risen);
         gain += alike * (incoming / (Real(1) + P.k * std::max(second ? c : c + own, Real(0))) - push);
     }
-    Real even{};
-    if (b > 0 && b + 1 < ax.across()) {
-        const std::size_t L = ax.cell(far_end ? cells - 1 : 0, b - 1);
-        const std::size_t R = ax.cell(far_end ? cells - 1 : 0, b + 1);
-        const bool wet = std::min({pure[L], pure[N], pure[R]}) > P.eps;
-        if (wet) even = P.k * g / Real(4) * minmod(eta_in - (terrain[L] + water[L]), eta_in - (terrain[R] + water[R]));
-    }
-    Real u = own + gain + even;
+    Real u = own + gain;
     if (std::abs(eta_in - eta_out) <= P.rest_surface && std::abs(u) <= P.rest_velocity) u = Real(0);
     if (blocked(pure[N], ghost, eta_in, eta_out, P.eps)) u = Real(0);
     velocity = clamped(outward * u, P.clamp);

@@ -197,6 +197,7 @@ template <class Real> class Solver {
     Real open_rise(const Axis& axis, int a, int b) const;
     Real level_friction(std::size_t left, std::size_t right) const;
     Real relative_permeability(std::size_t cell) const;
+    Real diffusion(const Axis& axis, int a, int b) const; // 2.1 through an inner face [m2/s]
     void slow_from_within(const Faces<Real>& old, const Axis& axis, int a, int b);
     void shear_in_plane(const Faces<Real>& old, const Axis& axis, int a, int b);
     void add_stress(const Axis& axis, int a, int b);

@@ -11,19 +11,20 @@ template <class Real> void Solver<Real>::split_water() {
     }
 }
 
+template <class Real> Real Solver<Real>::diffusion(const Axis& ax, int a, int b) const {
+    const std::size_t L = ax.cell(a - 1, b);
+    const std::size_t R = ax.cell(a, b);
+    Real q(0);
+    if (has(EFFECT_LAPLACE_DIFFUSION))
+        q = -P.diffusion * (mixed[R] - mixed[L]) / P.dx;
+    else if (sand[L] > P.eps && sand[R] > P.eps)
+        q = -P.diffusion * minmod(mixed[R] - mixed[L], (terrain[R] + water[R]) - (terrain[L] + water[L])) / P.dx;
+    return has(EFFECT_RETENTION) ? q * relative_permeability(q > Real(0) ? L : R) : q;
+}
+
 template <class Real> void Solver<Real>::diffuse_mixed_water() {
     if (!has(EFFECT_DIFFUSION)) return;
-    for_inner_faces([&](const Axis& ax, int a, int b) {
-        const std::size_t L = ax.cell(a - 1, b);
-        const std::size_t R = ax.cell(a, b);
-        Real q(0);
-        if (has(EFFECT_LAPLACE_DIFFUSION))
-            q = -P.diffusion * (mixed[R] - mixed[L]) / P.dx;
-        else if (sand[L] > P.eps && sand[R] > P.eps)
-            q = -P.diffusion * minmod(mixed[R] - mixed[L], (terrain[R] + water[R]) - (terrain[L] + water[L])) / P.dx;
-        if (has(EFFECT_RETENTION)) q *= relative_permeability(q > Real(0) ? L : R);
-        diffusion_flux.along(ax)[ax.face(a, b)] = q;
-    });
+    for_inner_faces([&](const Axis& ax, int a, int b) { diffusion_flux.along(ax)[ax.face(a, b)] = diffusion(ax, a, b); });
 }
 
 /// 2.15 on faces: D div(u grad h) / h, centred; heights beyond the sides repeat the last one.
