@@ -19,7 +19,7 @@ import time
 
 HERE = pathlib.Path(__file__).resolve().parent
 PARTS = ("frontier", "timings", "prices", "effects", "sweep", "errors", "methods")
-FRONTIER_ROWS = 30  # as many of the longest rows as fit: of each of 16 kinds of run one, and those of smaller grids
+FRONTIER_ROWS = 16  # as many times the longest row that is measured fit: all took 12 times as long on an H100, 8 on two cores
 WRITES_PAGE = 0.9  # of its time: wadi-report stops measuring here
 
 
@@ -56,7 +56,7 @@ def parts_on(options, there):
     until = lambda left: ["--minutes", f"{WRITES_PAGE * left / 60:.2f}"]
     relaxed = ["--relaxed", options.relaxed] if options.relaxed else []
     parts = {
-        "frontier": (3, lambda left: ["frontier.py", programs, "--backend", first, *(["--threads", 2] if cpu else []), "--row-seconds", f"{left / FRONTIER_ROWS:.1f}",
+        "frontier": (3 if cpu else 4, lambda left: ["frontier.py", programs, "--backend", first, *(["--threads", 2] if cpu else []), "--row-seconds", f"{left / FRONTIER_ROWS:.1f}",
                                       *(["--sizes", 16, 32] if quick else [])]),
         "timings": (2, lambda left: ["timings.py", programs, *(["--quick"] if quick else []), "--backends", ",".join(there),
                                      *(["--threads", 2, "--only", "table_2", "scaling", "order", "presets"] if cpu else [])]),
