@@ -81,14 +81,4 @@ FN float integrate_height(float height, float flux_west, float flux_east, float 
     return flush(wmax(height + ((flux_west - flux_east) + (flux_south - flux_north)), 0.0f));
 }
 
-// Diffusion of mixed water as a flux (NUMERICS 2.1): the smaller of the gradients of the mixed height and of the free
-// surface, none where they disagree in sign, so that a lake at rest stays at rest. number = c dt/dx^2.
-FN float diffusive_flux(float mixed_low, float mixed_high, float surface_low, float surface_high, float sand_low, float sand_high, float number, float dry) {
-    float a = mixed_high - mixed_low;
-    float e = surface_high - surface_low;
-    float s = minmod(a, e);
-    bool sand = both(sand_low > dry, sand_high > dry);
-    return both(s != 0.0f, sand) ? -number * s : 0.0f;
-}
-
 #endif
