@@ -6,7 +6,8 @@ out, and said; a part that outlasts its share of the time is ended, and what it 
 
 usage: samples/report/run_all.py BIN_FOLDER [--quick] [--parts PART ...] [--minutes 30] [--backends cuda,vulkan,cpu] [--relaxed BIN_FOLDER] [--out out/all]
 
-A CPU has two threads for timings and frontier and one, whose processor time counts, for the rest.
+A CPU has two threads for timings and frontier and one, whose processor time counts, for the rest. Full parts fit into 20 minutes on an H100 and into
+75 on two cores.
 """
 import argparse
 import os
@@ -56,16 +57,16 @@ def parts_on(options, there):
     until = lambda left: ["--minutes", f"{WRITES_PAGE * left / 60:.2f}"]
     relaxed = ["--relaxed", options.relaxed] if options.relaxed else []
     parts = {
-        "frontier": (3 if cpu else 4, lambda left: ["frontier.py", programs, "--backend", first, *(["--threads", 2] if cpu else []), "--row-seconds", f"{left / FRONTIER_ROWS:.1f}",
+        "frontier": (5 if cpu else 4, lambda left: ["frontier.py", programs, "--backend", first, *(["--threads", 2] if cpu else []), "--row-seconds", f"{left / FRONTIER_ROWS:.1f}",
                                       *(["--sizes", 16, 32] if quick else [])]),
         "timings": (2, lambda left: ["timings.py", programs, *(["--quick"] if quick else []), "--backends", ",".join(there),
                                      *(["--threads", 2, "--only", "table_2", "scaling", "order", "presets"] if cpu else [])]),
         "prices": (2, lambda left: ["wadi-report", programs, "--prices", *(["--quick"] if quick else [] if cpu else ["--full"]), *one, *until(left), *relaxed]),
-        "effects": (6 if cpu else 2, lambda left: ["effects.py", programs, *one, *(["--only", "water", "drag"] if quick else []), *([] if cpu else ["--prices", "--rounds", 3])])}
+        "effects": (27 if cpu else 2, lambda left: ["effects.py", programs, *one, *(["--only", "water", "drag"] if quick else []), *([] if cpu else ["--prices", "--rounds", 3])])}
     if cpu:
-        parts["sweep"] = 5, lambda left: ["wadi-report", programs, "--no-prices", "--quick" if quick else "--full", *one, "--repeats", options.repeats, *until(left)]
+        parts["sweep"] = 6, lambda left: ["wadi-report", programs, "--no-prices", "--quick" if quick else "--full", *one, "--repeats", options.repeats, *until(left)]
         parts["errors"] = 1, lambda left: ["errors.py", programs]
-        parts["methods"] = 12, lambda left: ["side_by_side.py", programs, *(["--small"] if quick else [])]
+        parts["methods"] = 32, lambda left: ["side_by_side.py", programs, *(["--small"] if quick else [])]
     return {name: part for name, part in parts.items() if name in options.parts}
 
 
