@@ -6,8 +6,8 @@ out, and said; a part that outlasts its share of the time is ended, and what it 
 
 usage: samples/report/run_all.py BIN_FOLDER [--quick] [--parts PART ...] [--minutes 30] [--backends cuda,vulkan,cpu] [--relaxed BIN_FOLDER] [--out out/all]
 
-A CPU has two threads for timings and frontier and one, whose processor time counts, for the rest. Full parts fit into 20 minutes on an H100 and into
-75 on two cores.
+A CPU has two threads for timings and frontier and one, whose processor time counts, for the rest. Full parts took 15 minutes on an H100; two cores want
+75 or more.
 """
 import argparse
 import os
