@@ -60,8 +60,8 @@ std::string describe_plan(const WorldState& world) {
         if (field.role == FieldRole::state || field.role == FieldRole::fixed) {
             ++state;
             partners += field.ping_pong ? 1 : 0;
-            state_bytes += field.element_bytes();
-            partner_bytes += field.ping_pong ? field.element_bytes() : 0;
+            state_bytes += PlanField::element_bytes;
+            partner_bytes += field.ping_pong ? PlanField::element_bytes : 0;
             state_names += (state_names.empty() ? "" : ", ") + field.name + (field.ping_pong ? " x2" : "");
         } else if (field.role == FieldRole::scratch) {
             scratch_names +=

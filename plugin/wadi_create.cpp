@@ -142,10 +142,6 @@ wadi_result host(Result<Level> level, const wadi_device_options& options, wadi_w
     auto world = World::create(level->settings, level->fields, std::move(*device));
     if (!world) return report(world.status());
     (*world)->set_log(log);
-    if (level->settings.method.half_storage && (*world)->device().capabilities().backend == "cpu")
-        level->warnings.emplace_back(
-            "method.half_storage: on a CPU a step takes about ten times as long with it, which has no vector "
-            "code there; it is for GPUs");
     if (log) {
         for (const auto& warning : level->warnings) log(1, level->name + ": " + warning);
         const auto& grid = level->settings.grid;

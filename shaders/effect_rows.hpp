@@ -47,7 +47,6 @@ inline constexpr EffectRow choice_rows[] = {
     {EFFECT_LAPLACE_DIFFUSION, "laplace_diffusion", EFFECT_DIFFUSION, "mixed water spreads by the Laplacian of its height"},
     {EFFECT_SECOND_ORDER_WATER, "second_order_water", EFFECT_WATER,
      "heights and flux-form velocities of water move by limited slopes"},
-    {EFFECT_HALF_STORAGE, "half_storage", 0, "velocities and stretch lie in memory as 16-bit floats"},
     {EFFECT_SECOND_ORDER_SAND, "second_order_sand", EFFECT_SAND,
      "heights and flux-form velocities of sand move by limited slopes"},
     {EFFECT_SHOCK_VISCOSITY, "shock_viscosity", EFFECT_WATER,
@@ -67,12 +66,6 @@ inline constexpr EffectRow choice_rows[] = {
 
 inline constexpr std::uint32_t all_effects = (1u << std::size(effect_rows)) - 1;
 
-/// Half storage is for worlds that trade accuracy for memory; a method that does the opposite, or the paper's own, has no kernels
-/// for it.
-inline constexpr std::uint32_t never_half = EFFECT_SEMI_LAGRANGIAN | EFFECT_WHOLE_STRAIN | EFFECT_EXPLICIT_DRAG |
-                                            EFFECT_LAPLACE_DIFFUSION | EFFECT_SECOND_ORDER_WATER | EFFECT_SECOND_ORDER_SAND |
-                                            EFFECT_WHOLE_PRESSURE;
-
 /// The stages of Algorithm 1 know nothing of these.
 inline constexpr std::uint32_t never_algorithm_1 =
     EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION | EFFECT_RETENTION | EFFECT_DIRECT_STRAIN | EFFECT_SECOND_ORDER_SAND;
@@ -87,16 +80,15 @@ constexpr std::uint32_t with_needs(std::uint32_t mask) {
     return mask;
 }
 
-/// True when every effect in the mask and choice in the mask has what it needs, half storage no choice that is without it, and
-/// Algorithm 1 strain and drag as the paper has them.
+/// True when every effect in the mask and choice in the mask has what it needs, and Algorithm 1 strain and drag as the paper
+/// has them.
 constexpr bool is_legal(std::uint32_t mask) {
     const auto both_or_neither = [mask](std::uint32_t one, std::uint32_t other) {
         return ((mask & one) != 0) == ((mask & other) != 0);
     };
     const bool algorithm_1 = (mask & never_algorithm_1) == 0 && both_or_neither(EFFECT_ELASTOPLASTIC, EFFECT_WHOLE_STRAIN) &&
                              both_or_neither(EFFECT_DRAG, EFFECT_EXPLICIT_DRAG);
-    return with_needs(mask) == mask && ((mask & EFFECT_HALF_STORAGE) == 0 || (mask & never_half) == 0) &&
-           ((mask & EFFECT_ALGORITHM_1) == 0 || algorithm_1);
+    return with_needs(mask) == mask && ((mask & EFFECT_ALGORITHM_1) == 0 || algorithm_1);
 }
 
 constexpr bool rows_follow_bits() {

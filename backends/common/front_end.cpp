@@ -102,8 +102,6 @@ Result<compute::Pipeline> FrontEnd::create_pipeline(int index, std::uint32_t eff
                          "stage " + std::string(stage.name) + ": " + capabilities().name + " has no " + what);
         };
         if (stage.fused() && !capabilities().fused_stages) return lacks("groups large enough for fused stages");
-        if ((effects & EFFECT_HALF_STORAGE) != 0 && !capabilities().half_storage)
-            return lacks("buffers of 16-bit floats, or no leave to use them");
         auto group = choose_group(stage, asked, capabilities().groups);
         if (!group) return group.status();
         const Objects::Pipeline wanted{index, effects, *group};

@@ -40,7 +40,7 @@ class Runner {
                              {output.count ? static_cast<std::size_t>(i) : place.face,
                               output.count ? static_cast<std::size_t>(i + 4 * (p_.nx + p_.ny)) : place.ghost}) {
                             std::uint32_t word = 0;
-                            std::memcpy(&word, output.data + n * output.size, output.size);
+                            std::memcpy(&word, output.data + n * ActiveStage::number_bytes, ActiveStage::number_bytes);
                             use(old[at++], word, place.tile);
                         }
                     }
@@ -84,7 +84,8 @@ class Runner {
             visit([&](int, int low, std::size_t width) {
                 for (const auto& output : s_.outputs) {
                     for (int row = j; row < end; ++row, at += width)
-                        std::memcpy(old_.data() + at, output.data + index(low, row) * output.size, width * output.size);
+                        std::memcpy(old_.data() + at, output.data + index(low, row) * ActiveStage::number_bytes,
+                                    width * ActiveStage::number_bytes);
                 }
             });
             call_(i0, i1, j, end);
@@ -92,8 +93,8 @@ class Runner {
                 bool same = true;
                 for (const auto& output : s_.outputs) {
                     for (int row = j; row < end; ++row, at += width)
-                        same = same && std::memcmp(old_.data() + at, output.data + index(low, row) * output.size,
-                                                   width * output.size) == 0;
+                        same = same && std::memcmp(old_.data() + at, output.data + index(low, row) * ActiveStage::number_bytes,
+                                                   width * ActiveStage::number_bytes) == 0;
                 }
                 if (!same) stamp(watched);
             });

@@ -10,14 +10,13 @@ namespace wadi::cpu {
 
 /// A stage with its buffers, and the lists of compute::ActiveTiles.
 struct ActiveStage {
-    /// Numbers of `size` bytes that the stage writes; a count has its low words for in and out at i and i + 2 rim
+    /// Numbers of 4 bytes that the stage writes; a count has its low words for in and out at i and i + 2 rim
     /// (account_sides).
     struct Output {
         std::byte* data;
-        std::size_t size;
         bool count;
     };
-    static constexpr std::size_t most_outputs = 16;
+    static constexpr std::size_t most_outputs = 16, number_bytes = 4;
 
     std::uint32_t* activity = nullptr; // null: no active tiles
     const std::uint32_t* flags = nullptr;

@@ -36,7 +36,6 @@ CpuDevice::CpuDevice(const InstructionSet& set, const compute::DeviceOptions& op
         capabilities_.memory_bytes != 0 ? capabilities_.memory_bytes : std::numeric_limits<std::ptrdiff_t>::max();
     capabilities_.exact_float = true;
     capabilities_.timestamps = true;
-    capabilities_.half_storage = true;
     capabilities_.fused_stages = true;
     capabilities_.queue_depth = most_in_flight;
 }
@@ -215,9 +214,7 @@ Status CpuDevice::set_active(const compute::Dispatch& d, const compute::StageInf
     active.rim = stage.extent == compute::Extent::rim;
     for (std::size_t b = 0; b < stage.bindings.size(); ++b) {
         if (stage.bindings[b].access == compute::Access::in || step.buffers[b] == nullptr) continue;
-        const bool half = stage.bindings[b].type == compute::Scalar::f32_or_f16 && (d.effects & EFFECT_HALF_STORAGE) != 0;
-        active.outputs.push_back(
-            {static_cast<std::byte*>(step.buffers[b]), half ? 2u : 4u, stage.bindings[b].type == compute::Scalar::u32});
+        active.outputs.push_back({static_cast<std::byte*>(step.buffers[b]), stage.bindings[b].type == compute::Scalar::u32});
     }
     if (active.outputs.size() > ActiveStage::most_outputs)
         return error(Code::internal,
@@ -248,7 +245,7 @@ void CpuDevice::set_content(const WorldParams& params, Step& step) {
     const auto& r = step.range;
     const bool whole = r.i0 == 0 && r.j0 == 0 && r.i1 >= layout.nx && r.j1 >= layout.ny;
     const bool tiles = step.active.activity != nullptr;
-    if (step.stage->lacks.empty() || tiles || !whole || (step.effects & EFFECT_HALF_STORAGE) != 0) return;
+    if (step.stage->lacks.empty() || tiles || !whole) return;
     std::vector<BlockContent*> contents;
     for (auto* memory : step.bound) {
         contents.push_back(memory != nullptr ? content_of(*memory, layout) : nullptr);

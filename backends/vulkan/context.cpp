@@ -89,14 +89,6 @@ bool has_timeline(const InstanceApi& api, VkPhysicalDevice device) {
     return timeline.timelineSemaphore == VK_TRUE;
 }
 
-bool has_half_storage(const InstanceApi& api, VkPhysicalDevice device) {
-    auto half = vk_struct<VkPhysicalDevice16BitStorageFeatures>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_16BIT_STORAGE_FEATURES);
-    auto features = vk_struct<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
-    features.pNext = &half;
-    api.GetPhysicalDeviceFeatures2(device, &features);
-    return half.storageBuffer16BitAccess == VK_TRUE;
-}
-
 VkResult create_device(Context& c) {
     const InstanceApi& api = c.instance->api();
     const float priority = 1.0f;
@@ -107,15 +99,11 @@ VkResult create_device(Context& c) {
     auto timeline =
         vk_struct<VkPhysicalDeviceTimelineSemaphoreFeatures>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES);
     timeline.timelineSemaphore = VK_TRUE;
-    auto half = vk_struct<VkPhysicalDevice16BitStorageFeatures>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_16BIT_STORAGE_FEATURES);
-    half.storageBuffer16BitAccess = VK_TRUE;
     const char* extension = VK_KHR_TIMELINE_SEMAPHORE_EXTENSION_NAME;
     auto info = vk_struct<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO);
-    if (c.capabilities.half_storage) info.pNext = &half;
     info.queueCreateInfoCount = 1;
     info.pQueueCreateInfos = &queue;
     if (c.timeline) {
-        timeline.pNext = const_cast<void*>(info.pNext);
         info.pNext = &timeline;
         info.enabledExtensionCount = 1;
         info.ppEnabledExtensionNames = &extension;
@@ -159,7 +147,6 @@ Result<std::unique_ptr<Context>> Context::open(int index, const compute::DeviceO
     read_properties(c, *chosen);
     if (host) return adopt_device(std::move(context), *host);
     c.timeline = has_timeline(c.instance->api(), c.physical);
-    c.capabilities.half_storage = has_half_storage(c.instance->api(), c.physical);
     if (Status s = c.check(create_device(c), "vkCreateDevice", c.capabilities.name); !s) return s;
     c.instance->load(c.vk, c.device);
     c.vk.vkGetDeviceQueue(c.device, c.queue_family, 0, &c.queue);

@@ -76,14 +76,13 @@ Pipelines::~Pipelines() {
     for (const auto& s : stages_) {
         if (s.layout != VK_NULL_HANDLE) c_.vk.vkDestroyPipelineLayout(c_.device, s.layout, nullptr);
         if (s.set_layout != VK_NULL_HANDLE) c_.vk.vkDestroyDescriptorSetLayout(c_.device, s.set_layout, nullptr);
-        for (const auto module : {s.module, s.half_module})
-            if (module != VK_NULL_HANDLE) c_.vk.vkDestroyShaderModule(c_.device, module, nullptr);
+        if (s.module != VK_NULL_HANDLE) c_.vk.vkDestroyShaderModule(c_.device, s.module, nullptr);
     }
     if (cache_ != VK_NULL_HANDLE) c_.vk.vkDestroyPipelineCache(c_.device, cache_, nullptr);
 }
 
 // Makes what is still missing, so that a call that failed half way can be repeated.
-Status Pipelines::prepare_stage(int stage, bool half) {
+Status Pipelines::prepare_stage(int stage) {
     const compute::StageInfo& info = compute::stage_table()[static_cast<std::size_t>(stage)];
     StageObjects& objects = stages_[static_cast<std::size_t>(stage)];
     if (info.spirv.empty()) return error(Code::not_supported, "this build has no SPIR-V for stage " + std::string(info.name));
@@ -92,11 +91,10 @@ Status Pipelines::prepare_stage(int stage, bool half) {
         return error(Code::not_supported, "stage " + std::string(info.name) + " binds " + std::to_string(storage) + " buffers; " +
                                               c_.capabilities.name + " allows " + std::to_string(c_.limits.storage_buffers));
     }
-    auto& module = half ? objects.half_module : objects.module;
-    if (module == VK_NULL_HANDLE) {
-        auto made = create_module(c_, half ? info.half_spirv : info.spirv, info.name);
+    if (objects.module == VK_NULL_HANDLE) {
+        auto made = create_module(c_, info.spirv, info.name);
         if (!made) return made.status();
-        module = *made;
+        objects.module = *made;
     }
     if (objects.set_layout == VK_NULL_HANDLE) {
         auto layout = create_set_layout(c_, first_slot_binding, storage, info.name);
@@ -114,11 +112,10 @@ Status Pipelines::prepare_stage(int stage, bool half) {
 Result<compute::Pipeline> Pipelines::create(int stage, std::uint32_t effects, compute::GroupSize group) {
     const Constants constants{effects, static_cast<std::uint32_t>(group.x), static_cast<std::uint32_t>(group.y),
                               c_.corrected_division ? 1 : 0, group.tile > 0 ? 1u : 0u};
-    const bool half = (effects & EFFECT_HALF_STORAGE) != 0; // no stage asks for it but those with a module for it
-    if (Status s = prepare_stage(stage, half); !s) return s;
+    if (Status s = prepare_stage(stage); !s) return s;
     pipelines_.reserve(pipelines_.size() + 1); // so that nothing can fail once the pipeline exists
     const StageObjects& objects = stages_[static_cast<std::size_t>(stage)];
-    auto handle = create_compute_pipeline(c_, cache_, half ? objects.half_module : objects.module, objects.layout, constants,
+    auto handle = create_compute_pipeline(c_, cache_, objects.module, objects.layout, constants,
                                           compute::stage_table()[static_cast<std::size_t>(stage)].name);
     if (!handle) return handle.status();
     pipelines_.push_back({constants.group_x, constants.group_y, *handle});

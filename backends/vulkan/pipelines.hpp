@@ -31,7 +31,7 @@ Result<VkPipeline> create_compute_pipeline(Context& context, VkPipelineCache cac
 
 /// What the pipelines of one stage share.
 struct StageObjects {
-    VkShaderModule module = VK_NULL_HANDLE, half_module = VK_NULL_HANDLE; // without and with half storage
+    VkShaderModule module = VK_NULL_HANDLE;
     VkDescriptorSetLayout set_layout = VK_NULL_HANDLE;
     VkPipelineLayout layout = VK_NULL_HANDLE;
 };
@@ -56,7 +56,7 @@ class Pipelines {
     const StageObjects& stage(int index) const { return stages_[static_cast<std::size_t>(index)]; }
 
   private:
-    Status prepare_stage(int stage, bool half);
+    Status prepare_stage(int stage);
 
     Context& c_;
     VkPipelineCache cache_ = VK_NULL_HANDLE;

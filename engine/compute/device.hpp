@@ -37,7 +37,6 @@ struct Capabilities {
     GroupLimits groups;
     bool exact_float = false; // measured: + - * / sqrt agree with the CPU in every bit
     bool timestamps = false;
-    bool half_storage = false;         // buffers of 16-bit floats
     bool fused_stages = false;         // groups of fused_group_x x fused_group_y threads that share fused_shared_bytes
     std::int64_t fused_gain_cells = 0; // cells of a grid from which fused stages are faster than one by one, measured; 0 = never
     std::int64_t tiles_gain_cells = 0; // and from which active tiles may be, where few are awake, measured

@@ -12,8 +12,7 @@ namespace wadi::compute {
 /// `inout`: read only at the thread's own index (or, for `rim` and `strips` stages, at cells no other thread writes).
 enum class Access : std::uint8_t { in, out, inout };
 
-/// f32_or_f16: 16-bit floats with EFFECT_HALF_STORAGE.
-enum class Scalar : std::uint8_t { f32, u32, i32, vec2, vec4, uvec2, f32_or_f16 };
+enum class Scalar : std::uint8_t { f32, u32, i32, vec2, vec4, uvec2 };
 
 /// Which (i, j) a stage runs over.
 /// cells: nx x ny. faces: (nx+1) x (ny+1). rim: 2(nx+ny) x 1, the outer faces in the order west, east, south, north.
@@ -57,11 +56,10 @@ struct StageInfo {
     bool marks;                   // can run over active tiles (cells, faces), or tell which tiles it changed (rim)
     std::uint32_t tested_effects; // bits that HAS() asks in its body or bindings
     std::span<const StageBinding> bindings;
-    std::span<const std::uint32_t> spirv;      // empty when the build has no Vulkan
-    std::span<const std::uint32_t> half_spirv; // for masks with EFFECT_HALF_STORAGE; empty where that changes nothing, too
-    int stages;                                // stages that a fused stage runs in one pass; 0 for a stage that is none
-    std::uint32_t needs, without;              // a fused stage is for masks that have all of `needs` and nothing of `without`
-    std::span<const StageLack> lacks;          // of stages of cells and faces; not of fused ones
+    std::span<const std::uint32_t> spirv; // empty when the build has no Vulkan
+    int stages;                           // stages that a fused stage runs in one pass; 0 for a stage that is none
+    std::uint32_t needs, without;         // a fused stage is for masks that have all of `needs` and nothing of `without`
+    std::span<const StageLack> lacks;     // of stages of cells and faces; not of fused ones
 
     bool fused() const { return stages > 0; }
 };

@@ -105,12 +105,15 @@ std::string describe_effects() {
 
 // Fields that have a partner in some plan.
 bool takes_turns(std::string_view field) {
-    for (const bool traced : {false, true}) {
-        const StepPlan plan = make_step_plan(traced ? all_effects | never_half : all_effects, 1);
+    const auto turns = [field](std::uint32_t mask) {
+        const StepPlan plan = make_step_plan(mask, 1);
         const PlanField* found = plan.find(std::string(field));
-        if (found != nullptr && found->ping_pong) return true;
-    }
-    return false;
+        return found != nullptr && found->ping_pong;
+    };
+    return turns(all_effects) || std::any_of(std::begin(choice_rows), std::end(choice_rows), [&](const EffectRow& choice) {
+               const std::uint32_t mask = with_needs(all_effects | choice.bit);
+               return is_legal(mask) && turns(mask);
+           });
 }
 
 std::string describe_fields() {
@@ -162,8 +165,7 @@ std::string describe_stages() {
     for (const StageInfo& stage : stage_table()) {
         if (stage.fused()) continue;
         text += std::string(stage.name) + "  " + extents[static_cast<int>(stage.extent)];
-        if (const Strings tested = names_of(stage.tested_effects & ~EFFECT_HALF_STORAGE); !tested.empty())
-            text += "  tests " + joined(tested, ", ");
+        if (const Strings tested = names_of(stage.tested_effects); !tested.empty()) text += "  tests " + joined(tested, ", ");
         text += "\n";
         for (const Access access : {Access::in, Access::out, Access::inout}) {
             Strings names;

@@ -127,8 +127,6 @@ constexpr Choice choices[] = {
      [](const Method& m) { return m.diffusion != Diffusion::limited; }, [](Method& m) { m.diffusion = Diffusion::laplacian; }},
     {row(EFFECT_SECOND_ORDER_WATER), "water_transport_order 2", [](const Method& m) { return m.water_transport_order == 2; },
      [](Method& m) { m.water_transport_order = 2; }},
-    {row(EFFECT_HALF_STORAGE), "half_storage true", [](const Method& m) { return m.half_storage; },
-     [](Method& m) { m.half_storage = true; }},
     {row(EFFECT_SECOND_ORDER_SAND), "sand_transport_order 2", [](const Method& m) { return m.sand_transport_order == 2; },
      [](Method& m) { m.sand_transport_order = 2; }},
     {row(EFFECT_SHOCK_VISCOSITY), "shock_viscosity > 0", [](const Method& m) { return m.shock_viscosity > 0; },

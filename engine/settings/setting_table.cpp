@@ -142,8 +142,6 @@ constexpr Setting rows[] = {
      "a limited flux, or the height's Laplacian"},
     {"method.water_transport_order", method<&Method::water_transport_order>, {1, 2}, "", EFFECT_WATER,
      "2: heights and flux-form velocities move with limited slopes"},
-    {"method.half_storage", method<&Method::half_storage>, flag, "", several,
-     "velocities and strain lie in memory as 16-bit floats", InDigest::where_set},
     {"method.sand_transport_order", method<&Method::sand_transport_order>, {1, 2}, "", EFFECT_SAND,
      "2: heights and flux-form velocities of sand move with limited slopes", InDigest::where_set},
     {"method.mixed_pressure", method<&Method::mixed_pressure>, words(mixed_pressures), "", EFFECT_MIXTURE,

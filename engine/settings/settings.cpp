@@ -76,14 +76,6 @@ Status check_method(const Method& method) {
     if (method.velocity_transport == VelocityTransport::semi_lagrangian && method.velocity_clamp > SEMI_LAGRANGIAN_CLAMP_MOST)
         return refuse(outside_text("method.velocity_clamp", method.velocity_clamp, 0.01, SEMI_LAGRANGIAN_CLAMP_MOST) +
                       " (semi_lagrangian looks one cell back)");
-    const bool other = method.velocity_transport != VelocityTransport::flux_form ||
-                       method.strain_transport != StrainTransport::left_stretch || method.drag_friction != DragFriction::joint ||
-                       method.diffusion != Diffusion::limited || method.water_transport_order != 1 ||
-                       method.sand_transport_order != 1 || method.mixed_pressure != MixedPressure::in_substeps;
-    if (method.half_storage && other)
-        return refuse("method.half_storage: true goes only with velocity_transport \"flux_form\", strain_transport "
-                      "\"left_stretch\", drag_friction \"joint\", diffusion \"limited\", water_transport_order 1, "
-                      "sand_transport_order 1 and mixed_pressure \"in_substeps\"");
     const bool traced = method.velocity_transport == VelocityTransport::semi_lagrangian;
     if (!traced && method.diffusion == Diffusion::laplacian_ahead)
         return refuse("method.diffusion: \"laplacian_ahead\" goes only with velocity_transport \"semi_lagrangian\"");

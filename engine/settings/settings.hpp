@@ -104,7 +104,6 @@ struct Method {
     SandSubstep sand_substep = SandSubstep::own; // algorithm_1: only with the paper's other choices for sand
     CornerShear corner_shear = CornerShear::least_depth;
     StrainRim strain_rim = StrainRim::one_sided;
-    bool half_storage = false;     // NUMERICS 2.17
     int water_transport_order = 1; // NUMERICS 2.2, 2.3, 2.16
     int sand_transport_order = 1;  // the same
 };

@@ -1,5 +1,4 @@
 #include "engine/step/field_store.hpp"
-#include "engine/step/half.hpp"
 #include "engine/threads/bands.hpp"
 #include <algorithm>
 
@@ -42,7 +41,7 @@ std::uint64_t FieldStore::bytes_of(const PlanField& field) const {
                     : field.name.starts_with("active_counts") ? rows
                                                               : columns * rows);
     }
-    if (field.role != FieldRole::ledger) return layout_.size() * static_cast<std::uint64_t>(field.element_bytes());
+    if (field.role != FieldRole::ledger) return layout_.size() * PlanField::element_bytes;
     if (field.name != "source_ledger") return static_cast<std::uint64_t>(layout_.rim()) * 4 * 4;
     return std::uint64_t{2 * LEDGER_ENTRIES} * static_cast<std::uint64_t>(layout_.strips()) *
            static_cast<std::uint64_t>(layout_.pitch()) * 4;
@@ -110,20 +109,12 @@ Status FieldStore::read(const std::string& name, std::size_t first, std::span<fl
         std::fill(values.begin(), values.end(), 0.0F);
         return ok_status();
     }
-    if (!field->half) return device_.read(buffer(name), first * 4, std::as_writable_bytes(values));
-    std::vector<std::uint16_t> halves(values.size());
-    auto status = device_.read(buffer(name), first * 2, std::as_writable_bytes(std::span(halves)));
-    if (status) std::transform(halves.begin(), halves.end(), values.begin(), from_half);
-    return status;
+    return device_.read(buffer(name), first * 4, std::as_writable_bytes(values));
 }
 
 Status FieldStore::write(const std::string& name, std::size_t first, std::span<const float> values) {
-    const auto* field = find(name);
-    if (field == nullptr) return ok_status();
-    if (!field->half) return device_.write(buffer(name), first * 4, std::as_bytes(values));
-    std::vector<std::uint16_t> halves(values.size());
-    std::transform(values.begin(), values.end(), halves.begin(), to_half);
-    return device_.write(buffer(name), first * 2, std::as_bytes(std::span(halves)));
+    if (find(name) == nullptr) return ok_status();
+    return device_.write(buffer(name), first * 4, std::as_bytes(values));
 }
 
 Status FieldStore::write_rows(const std::string& name, const std::function<void(int j, std::span<float> row)>& fill) {

@@ -26,7 +26,7 @@ int StepPlan::field_buffers() const {
 double StepPlan::bytes_per_cell() const {
     int bytes = 4 * scratch_buffers();
     for (const auto& field : fields)
-        if (lasts(field)) bytes += field.element_bytes() * (field.ping_pong ? 2 : 1);
+        if (lasts(field)) bytes += PlanField::element_bytes * (field.ping_pong ? 2 : 1);
     return bytes;
 }
 
@@ -39,7 +39,7 @@ double StepPlan::traffic_per_cell() const {
         for (std::size_t n = 0; n < pass.fields.size(); ++n) {
             const auto* field = pass.fields[n].empty() ? nullptr : find(base_name(pass.fields[n]));
             if (field == nullptr || (!lasts(*field) && field->role != FieldRole::scratch)) continue;
-            moved += times * field->element_bytes() * (stage.bindings[n].access == compute::Access::inout ? 2 : 1);
+            moved += times * PlanField::element_bytes * (stage.bindings[n].access == compute::Access::inout ? 2 : 1);
         }
     };
     for (const auto& pass : water_passes) add(pass, 1);
@@ -50,7 +50,7 @@ double StepPlan::traffic_per_cell() const {
 double StepPlan::least_traffic_per_cell() const {
     double moved = 0;
     for (const auto& field : fields)
-        if (lasts(field)) moved += field.element_bytes() * (field.ping_pong ? 2 : 1);
+        if (lasts(field)) moved += PlanField::element_bytes * (field.ping_pong ? 2 : 1);
     return moved;
 }
 

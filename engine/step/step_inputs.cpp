@@ -1,6 +1,5 @@
 #include "engine/step/step_inputs.hpp"
 #include "engine/settings/setting_table.hpp"
-#include "engine/step/half.hpp"
 #include "engine/step/source_shapes.hpp"
 #include "engine/step/step_number.hpp"
 #include "engine/step/world_params.hpp"
@@ -77,9 +76,7 @@ void StepInputs::set_sides(StepInput& input, double time) {
             const auto moved = static_cast<double>(advance(totals_[settings_.sources.size() + 2 + n], value / dx));
             // Half a quantum more than is meant: the flux is cut to whole quanta after rounding.
             value = moved > 0 ? (moved + quantum_ / 2) / k : 0;
-            const double fastest = settings_.method.half_storage
-                                       ? value / static_cast<double>(velocity_limit(settings_.method, k))
-                                       : value * k / settings_.method.velocity_clamp;
+            const double fastest = value * k / settings_.method.velocity_clamp;
             // Deep enough that the flow into a dry cell is critical and within the velocity clamp; as deep as given where that is
             // less than critical, whatever the cell holds.
             const bool shooting = side.depth > 0 && side.depth < critical;
@@ -104,12 +101,8 @@ StepInput StepInputs::next(std::uint64_t step) {
         const auto& source = settings_.sources[n];
         const double rate = rate_of(n, time);
         const bool velocity = source.set_velocity && rate > 0;
-        const auto stored = [&](double v) {
-            const auto speed = static_cast<float>(std::abs(v));
-            return std::copysign(settings_.method.half_storage ? half_at_most(speed) : speed, static_cast<float>(v));
-        };
-        input.source[n] = {advance(totals_[n], rate), stored(source.velocity[0]), stored(source.velocity[1]),
-                           velocity ? 1.0F : 0.0F};
+        input.source[n] = {advance(totals_[n], rate), static_cast<float>(source.velocity[0]),
+                           static_cast<float>(source.velocity[1]), velocity ? 1.0F : 0.0F};
     }
     set_sides(input, time);
     return input;

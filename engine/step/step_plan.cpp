@@ -417,7 +417,6 @@ StepPlan make_step_plan(std::uint32_t effects, int substeps, PlanChoice choice) 
                 auto found =
                     std::find_if(plan.fields.begin(), plan.fields.end(), [&](const PlanField& f) { return f.name == base; });
                 if (found == plan.fields.end()) found = plan.fields.insert(plan.fields.end(), {base, field_row(base).role});
-                found->half = (effects & EFFECT_HALF_STORAGE) != 0 && bindings[n].type == compute::Scalar::f32_or_f16;
                 found->ping_pong |= is_next(name);
             }
         }

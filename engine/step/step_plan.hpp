@@ -32,10 +32,9 @@ struct PlanField {
     std::string name;
     FieldRole role = FieldRole::state;
     bool ping_pong = false;
-    int memory = -1;   // scratch: number of the memory block it shares with other scratch fields; -1: of its own
-    bool half = false; // 16-bit floats
+    int memory = -1; // scratch: number of the memory block it shares with other scratch fields; -1: of its own
 
-    int element_bytes() const { return half ? 2 : 4; }
+    static constexpr int element_bytes = 4;
 };
 
 struct StepPlan {

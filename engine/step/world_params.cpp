@@ -1,5 +1,4 @@
 #include "engine/step/world_params.hpp"
-#include "engine/step/half.hpp"
 #include "engine/step/source_shapes.hpp"
 #include <algorithm>
 #include <cmath>
@@ -46,10 +45,7 @@ double ledger_quantum(const Method& method) {
     return height_quantum(method) > 0 ? height_quantum(method) : height_quantum(chosen);
 }
 
-float velocity_limit(const Method& method, double k) {
-    const auto limit = static_cast<float>(method.velocity_clamp / k);
-    return method.half_storage ? half_at_most(limit) : limit;
-}
+float velocity_limit(const Method& method, double k) { return static_cast<float>(method.velocity_clamp / k); }
 
 WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     const auto& m = s.material;

@@ -8,7 +8,7 @@ namespace wadi {
 /// What the ledger counts in: Q, or the quantum that would have been chosen where Q is 0.
 double ledger_quantum(const Method& method);
 
-/// The velocity clamp [m/s] for k = dt/dx [s/m]; with half storage a 16-bit float, so that what is at it is not rounded above it.
+/// The velocity clamp [m/s] for k = dt/dx [s/m].
 float velocity_limit(const Method& method, double k);
 
 /// effects: the mask of those that are on. Balance (NUMERICS 2.20) counts on no others: without drag water takes nothing along,

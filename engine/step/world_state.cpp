@@ -48,10 +48,6 @@ Status WorldState::check_device(std::uint32_t effects) const {
                                               std::to_string(compute::fused_group_x * compute::fused_group_y) +
                                               " threads that share " + std::to_string(compute::fused_shared_bytes) + " bytes");
     }
-    if ((effects & EFFECT_HALF_STORAGE) != 0 && !device.half_storage) {
-        return error(Code::not_supported,
-                     "method.half_storage: '" + device.name + "' has no buffers of 16-bit floats, or no leave to use them");
-    }
     const std::uint64_t bytes = layout_.size() * 4, limit = device.largest_buffer_bytes;
     if (limit != 0 && bytes > limit) {
         return error(Code::not_supported, "grid " + std::to_string(layout_.nx) + " x " + std::to_string(layout_.ny) +

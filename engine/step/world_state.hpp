@@ -18,7 +18,7 @@ class WorldState {
     WorldState& operator=(const WorldState&) = delete;
 
     /// Plans for a mask and changes to its fields (FieldStore::set_plan), at a boundary between two steps. Errors: out_of_memory,
-    /// not_supported (fused stages, half storage or fields larger than the device can have); the caller goes back then.
+    /// not_supported (fused stages or fields larger than the device can have); the caller goes back then.
     Status set_effects(const EffectChoice& effects);
     /// Creates the pipelines that a plan of another mask would need, so that taking it later records but compiles nothing.
     Status prepare(std::uint32_t effects);

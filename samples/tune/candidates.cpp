@@ -12,7 +12,7 @@ constexpr double WORTH = 0.99;       // a dearer setting must leave at most this
 
 } // namespace
 
-std::vector<Way> ways(const Level& level, bool has_sand, bool has_water, bool with_half_storage) {
+std::vector<Way> ways(const Level& level, bool has_sand, bool has_water) {
     const Way own = level.own_way();
     std::vector<int> substeps = has_sand ? std::vector<int>{2, 1, 3} : std::vector<int>{own.substeps};
     if (has_sand && own.substeps > 3) substeps.push_back(own.substeps);
@@ -20,23 +20,16 @@ std::vector<Way> ways(const Level& level, bool has_sand, bool has_water, bool wi
     for (const int t : substeps) {
         Way way = own;
         way.substeps = t;
-        way.half_storage = false;
         way.water_order = way.sand_order = 1;
         list.push_back(way);
         if (has_water) way.water_order = 2, list.push_back(way);
         if (has_sand) way.sand_order = 2, list.push_back(way); // where there is water only together with its own
-        if (with_half_storage) {
-            way.water_order = way.sand_order = 1;
-            way.half_storage = true;
-            list.push_back(way);
-        }
     }
     return list;
 }
 
 Way reference_way(const Level& level, bool has_sand, bool has_water) {
     Way way = level.own_way();
-    way.half_storage = false;
     way.water_order = has_water ? 2 : 1;
     way.sand_order = has_sand ? 2 : 1;
     if (has_sand) way.substeps = 3;
@@ -97,7 +90,6 @@ std::string describe(const Way& way) {
     std::string text = "order " + std::to_string(way.water_order);
     if (way.sand_order != 1) text += ", sand order " + std::to_string(way.sand_order);
     text += ", T " + std::to_string(way.substeps);
-    if (way.half_storage) text += ", half storage";
     if (way.active_tiles >= 0) text += ", active_tiles " + std::to_string(way.active_tiles);
     return text;
 }

@@ -24,8 +24,8 @@ struct WayModel {
     std::optional<ErrorFit> sand, water;
 };
 
-/// Ways to choose among: one or two orders where there is sand or water, substeps, half storage.
-std::vector<Way> ways(const Level& level, bool has_sand, bool has_water, bool with_half_storage);
+/// Ways to choose among: one or two orders where there is sand or water, substeps.
+std::vector<Way> ways(const Level& level, bool has_sand, bool has_water);
 /// How a reference is stepped.
 Way reference_way(const Level& level, bool has_sand, bool has_water);
 /// All grids from 16 cells along the shorter side to four times the level's cells along x.

@@ -11,9 +11,7 @@ constexpr double LEAST_CLOSING = -0.25;
 
 } // namespace
 
-bool alike(const Way& a, const Way& b) {
-    return a.water_order == b.water_order && a.sand_order == b.sand_order && a.half_storage == b.half_storage;
-}
+bool alike(const Way& a, const Way& b) { return a.water_order == b.water_order && a.sand_order == b.sand_order; }
 bool same_but_tiles(const Way& a, const Way& b) { return alike(a, b) && a.substeps == b.substeps; }
 
 /// As errors_against, each pair once: means of fields as large as a GPU's cost more than its steps.

@@ -103,7 +103,7 @@ def judge(arguments, name, source, scratch):
     nx, ny = proportional(text["grid"], arguments.finer * max(tuned["reference"]["nx"], tuned["chosen"]["nx"]))
     finest["dt"] = finest["dt"] * finest["grid"]["nx"] / nx
     finest["grid"] = {"nx": nx, "ny": ny, "dx": extent / nx}
-    finest["method"] = {"substeps": 3, "water_transport_order": 2, "sand_transport_order": 2, "half_storage": False}
+    finest["method"] = {"substeps": 3, "water_transport_order": 2, "sand_transport_order": 2}
     text["variants"]["finest"] = finest
     level.write_text(json.dumps(text))
     checkpoints = [tuned["piece_seconds"] * k / tuned["checkpoints"] for k in range(tuned["checkpoints"] + 1)]
@@ -189,7 +189,7 @@ def main():
         chosen, model = tuned["chosen"], tuned["predicted"]
         cells = [cell(tuned, kind, errors[kind], early[kind]) for kind in KINDS]
         orders = "".join(str(chosen[f"{kind}_transport_order"]) for kind in ("water", "sand"))
-        way = f"orders {orders}, T {chosen['substeps']}{', half' if chosen['half_storage'] else ''}{', tiles' if chosen['active_tiles'] == 1 else ''}"
+        way = f"orders {orders}, T {chosen['substeps']}{', tiles' if chosen['active_tiles'] == 1 else ''}"
         print(f"| `{name}` | {chosen['nx']} x {chosen['ny']}, {way} | {model['ms_per_frame']:.2f} | {chosen['ms_per_frame']:.2f} | {ms:.2f} | "
               f"{cells[0]} | {cells[1]} | {finest[0]} x {finest[1]}, {tuned['piece_seconds']:.3g} s |", flush=True)
     if len(jobs) > 1 and sum(left) > MOST_UNTOLD * len(left):

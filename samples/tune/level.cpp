@@ -70,7 +70,6 @@ Way Level::own_way() const {
     way.substeps = method.value("substeps", 3);
     way.water_order = method.value("water_transport_order", 1);
     way.sand_order = method.value("sand_transport_order", 1);
-    way.half_storage = method.value("half_storage", false);
     return way;
 }
 
@@ -95,7 +94,6 @@ Json Level::patch(const Settings& settings) const {
     Json& method = patch["method"] = {{"substeps", way.substeps}};
     if (way.water_order != own.water_order) method["water_transport_order"] = way.water_order;
     if (way.sand_order != own.sand_order) method["sand_transport_order"] = way.sand_order;
-    if (way.half_storage != own.half_storage) method["half_storage"] = way.half_storage;
     if (way.active_tiles >= 0) patch["active_tiles"] = way.active_tiles;
     if (json_.contains("accuracy")) patch["accuracy"] = nullptr; // a preset would change the cells once more
     return patch;

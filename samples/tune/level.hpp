@@ -16,11 +16,10 @@ struct BadInput : std::runtime_error {
 
 /// How a level is stepped, whatever its grid.
 struct Way {
-    int substeps = 2;          // T: sand substeps per water step
-    int water_order = 1;       // method.water_transport_order
-    int sand_order = 1;        // method.sand_transport_order
-    bool half_storage = false; // method.half_storage
-    int active_tiles = -1;     // -1 = the level's; else a level's active_tiles
+    int substeps = 2;      // T: sand substeps per water step
+    int water_order = 1;   // method.water_transport_order
+    int sand_order = 1;    // method.sand_transport_order
+    int active_tiles = -1; // -1 = the level's; else a level's active_tiles
     bool operator==(const Way&) const = default;
 };
 

@@ -65,7 +65,6 @@ Json candidate_json(const Level& level, const Candidate& c) {
             {"substeps", c.settings.way.substeps},
             {"water_transport_order", c.settings.way.water_order},
             {"sand_transport_order", c.settings.way.sand_order},
-            {"half_storage", c.settings.way.half_storage},
             {"active_tiles", c.settings.way.active_tiles},
             {"ms_per_step", c.step_ms},
             {"steps_per_frame", c.steps_per_frame},
@@ -136,17 +135,17 @@ std::string report(const Level& level, const Request& request, const Outcome& ou
     for (const std::string& warning : outcome.warnings) text += "warning   " + warning + "\n";
     for (const std::string& note : outcome.notes) text += "note      " + note + "\n";
 
-    text += format("\n  %-12s %10s %6s %6s %3s %5s %6s %10s %8s %8s\n", "cells", "dt [s]", "water", "sand", "T", "half", "tiles",
+    text += format("\n  %-12s %10s %6s %6s %3s %6s %10s %8s %8s\n", "cells", "dt [s]", "water", "sand", "T", "tiles",
                    "ms a frame", "sand %", "water %");
     std::vector<Candidate> rows = shown_rows(outcome, request.budget_ms);
     const auto at = std::find_if(rows.begin(), rows.end(), [&](const Candidate& row) { return row.frame_ms > c.frame_ms; });
     const auto place = rows.insert(at, c) - rows.begin();
     for (std::size_t n = 0; n < rows.size(); ++n) {
         const Settings& s = rows[n].settings;
-        text += format("  %-12s %10.6g %6d %6d %3d %5s %6s %10.3g %8s %8s%s\n", grid_text(s).c_str(), level.dt(s),
-                       s.way.water_order, s.way.sand_order, s.way.substeps, s.way.half_storage ? "yes" : "no",
-                       s.way.active_tiles == 1 ? "auto" : "level", rows[n].frame_ms, cell(rows[n].errors.sand).c_str(),
-                       cell(rows[n].errors.water).c_str(), static_cast<std::ptrdiff_t>(n) == place ? "  <- measured" : "");
+        text += format("  %-12s %10.6g %6d %6d %3d %6s %10.3g %8s %8s%s\n", grid_text(s).c_str(), level.dt(s), s.way.water_order,
+                       s.way.sand_order, s.way.substeps, s.way.active_tiles == 1 ? "auto" : "level", rows[n].frame_ms,
+                       cell(rows[n].errors.sand).c_str(), cell(rows[n].errors.water).c_str(),
+                       static_cast<std::ptrdiff_t>(n) == place ? "  <- measured" : "");
     }
     return text;
 }

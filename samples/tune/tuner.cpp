@@ -43,7 +43,7 @@ class Tuner {
     std::optional<Run> whole_; // one over all of the level, for how its time changes
     double piece_ = 0;         // [s] of the level's time in the ladder's runs; the reference may take less
     double measured_nx_ = 0;   // cells along x of the largest grid of the ladder
-    bool gpu_ = false, half_ = false;
+    bool gpu_ = false;
     std::vector<Run> ladder_;
     std::vector<WayModel> models_;
     std::optional<Run> reference_;
@@ -111,7 +111,6 @@ void Tuner::probe() {
     outcome_.device_name = coarse.device_name;
     outcome_.backend = coarse.backend;
     gpu_ = coarse.backend != "cpu";
-    half_ = gpu_ && request_.half_storage;
 
     const Settings own = sized(level_.nx(), way);
     const Run brief = run(own, {2.0 * PARTS * level_.dt(own), false, SHORT_PROBE * seconds()});
@@ -139,7 +138,7 @@ void Tuner::plan() {
     double nx = std::max(static_cast<double>(largest.nx), least);
     for (;; nx *= 0.92) {
         double work = cost(sized(2 * nx, reference_way(level_, outcome_.sand.exists, outcome_.water.exists)));
-        for (const Way& each : ways(level_, outcome_.sand.exists, outcome_.water.exists, half_)) {
+        for (const Way& each : ways(level_, outcome_.sand.exists, outcome_.water.exists)) {
             work += 2 * cost(sized(LADDER[1] * nx, each));
             if (each.substeps == way.substeps) work += cost(sized(LADDER[0] * nx, each)) + cost(sized(LADDER[2] * nx, each));
         }
@@ -153,7 +152,7 @@ void Tuner::plan() {
 
 /// Every way on half of the largest grid, those with two substeps on two more.
 void Tuner::climb() {
-    const std::vector<Way> list = ways(level_, outcome_.sand.exists, outcome_.water.exists, half_);
+    const std::vector<Way> list = ways(level_, outcome_.sand.exists, outcome_.water.exists);
     const RunRequest request{piece_, true, 1e9};
     for (const Way& way : list) {
         for (const double share : LADDER) {

@@ -9,7 +9,6 @@ struct Request {
     double frames = 60;   // per second
     double minutes = 1;   // to measure for, about
     Device device;
-    bool half_storage = true;                     // on GPUs, it is among the settings to choose from
     std::function<void(const std::string&)> tell; // what is being done, a line at a time; may be empty
     std::function<bool()> stop;                   // true ends it with Stopped; may be empty
 };

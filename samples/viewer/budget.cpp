@@ -12,7 +12,6 @@ void Budget::start(const std::string& level_name, const SimulationChoice& choice
     request.budget_ms = milliseconds;
     request.minutes = minutes;
     request.device = {choice.backend, choice.device, choice.threads, false};
-    request.half_storage = false; // not on the viewer's own Vulkan device
     request.tell = [this](const std::string& text) {
         const std::lock_guard lock(mutex_);
         progress_ = text;

@@ -30,7 +30,6 @@ template <class T> struct StageBuffer {
 
 #define STAGE(NAME)                                                                                                    \
     template <unsigned EFFECTS> struct NAME {                                                                          \
-        typedef Stored<EFFECTS> float_or_half;                                                                         \
         WorldParams P;                                                                                                 \
         const StepInput& S;
 #define EXTENT(KIND)
@@ -96,7 +95,6 @@ FN float wtrunc(float x) { return __builtin_truncf(x); }
 FN float wfloor(float x) { return __builtin_floorf(x); }
 FN int float_bits(float x) { int r; __builtin_memcpy(&r, &x, 4); return r; }
 FN float bits_float(int x) { float r; __builtin_memcpy(&r, &x, 4); return r; }
-#include "half_storage.h"
 // Without short circuits: a branch inside a stage would stop the loop from vectorising.
 FN bool both(bool a, bool b) { return static_cast<bool>(static_cast<int>(a) & static_cast<int>(b)); }
 FN bool either(bool a, bool b) { return static_cast<bool>(static_cast<int>(a) | static_cast<int>(b)); }

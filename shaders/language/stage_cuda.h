@@ -12,7 +12,6 @@ typedef unsigned int uint;
 
 #define STAGE(NAME)                                                                                                    \
     template <unsigned EFFECTS> struct NAME {                                                                          \
-        typedef Stored<EFFECTS> float_or_half;                                                                         \
         WorldParams P;                                                                                                 \
         const StepInput& S;
 #define EXTENT(KIND)
@@ -88,4 +87,3 @@ FN int float_bits(float x) { return __float_as_int(x); }
 FN float bits_float(int x) { return __int_as_float(x); }
 FN bool both(bool a, bool b) { return a && b; }
 FN bool either(bool a, bool b) { return a || b; }
-#include "half_storage.h"

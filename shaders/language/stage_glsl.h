@@ -41,11 +41,3 @@ int float_bits(float x) { return floatBitsToInt(x); }
 float bits_float(int x) { return intBitsToFloat(x); }
 bool both(bool a, bool b) { return a && b; }
 bool either(bool a, bool b) { return a || b; }
-#ifdef WADI_HALF // a module of its own: the type of a buffer is no specialization constant
-#define float_or_half float16_t
-#include "half_storage.h"
-float to_stored(float x) { return half_of(x); }
-#else
-#define float_or_half float
-float to_stored(float x) { return x; }
-#endif

@@ -21,8 +21,7 @@ std::string where_bound(const Binding& b) { return b.condition == "0u" ? "" : "i
 // Stores for WIDE of a group's own cells: `from` is a field that a kept one copies, or empty, which is 0.
 std::string kept_store(const Binding& b, const std::string& from) {
     return "        " + where_bound(b) +
-           (from.empty() ? "KEEP_ZEROS(" + b.name + ", at, " + b.type + ");\n"
-                         : "KEEP_COPY(" + b.name + ", at, " + b.type + ", " + from + ");\n");
+           (from.empty() ? "KEEP_ZEROS(" + b.name + ", at);\n" : "KEEP_COPY(" + b.name + ", at, " + from + ");\n");
 }
 
 // Tiles of active cells are as wide as some multiple of WIDE.

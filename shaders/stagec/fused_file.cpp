@@ -63,7 +63,7 @@ void resolve(FusedStage& fused, const Effects& effects, std::set<std::string> te
     for (std::size_t n = 0; n < fused.parts.size(); ++n) {
         const auto& part = fused.parts[n];
         for (const auto& b : part.stage.bindings) {
-            if (b.type != "float" && !b.narrow()) fail(part.place + ": " + part.stage.name + " has a binding that is no float");
+            if (b.type != "float") fail(part.place + ": " + part.stage.name + " has a binding that is no float");
         }
         tested.insert(part.stage.tested.begin(), part.stage.tested.end());
         for (const auto& [name, field] : part.reads) {

@@ -111,7 +111,8 @@ std::string lean_writes(const FusedStage& fused, const Effects& effects);
 /// The phases in order, or what a group without content writes. The language gives LANE, LANES (a group's threads), BARRIER, ANY
 /// (whether a number is not 0 for one of them), ROLLED (a loop that is not unrolled), WIDE (elements that a thread copies at
 /// once, 1 or 4), COPY(to, at, from, at) of so many, COPIED ahead of the barrier behind all copies, HOLDS(field, at), whether one
-/// of WIDE elements is not 0, and KEEP_WIDE(field, at, type, from), which stores WIDE elements of another field, or zeros.
+/// of WIDE elements is not 0, and KEEP_COPY(field, at, from) and KEEP_ZEROS(field, at), which store WIDE elements of another
+/// field, or zeros.
 std::string phase_loops(const FusedStage& fused, const Effects& effects);
 /// Include lines of the parts' physics.
 std::string physics_includes(const FusedStage& fused);

@@ -51,8 +51,7 @@ struct Rewriter {
     std::string store(const std::string& binding, const std::string& at, const std::string& value) const {
         if (absent(binding)) return "NOT_KEPT(" + value + ");";
         const std::string& field = part.writes.at(binding);
-        const bool narrow = binding_of(part.stage, binding).narrow();
-        std::string out = "{ float stored = " + (narrow ? "to_stored(" + value + ")" : value) + ";";
+        std::string out = "{ float stored = " + value + ";";
         const Keeping keeping = fused.fields.at(field);
         if (keeping != Keeping::nowhere) out += " own_" + field + " = stored;";
         const auto kept = fused.kept.find(field);
@@ -60,8 +59,7 @@ struct Rewriter {
             const Kept& k = kept->second;
             const std::string rim = k.rim ? " && (i == 0 || j == 0 || i == P.nx || j == P.ny)" : "";
             const std::string on = k.condition != 0 ? " && HAS(" + std::to_string(k.condition) + "u)" : "";
-            out += " if (owned" + rim + on + ") KEEP_STORED(" + field + ", IN_MEMORY(" + at + "), " +
-                   (narrow ? "float_or_half" : "float") + ");";
+            out += " if (owned" + rim + on + ") KEEP_STORED(" + field + ", IN_MEMORY(" + at + "));";
         }
         return out + " }";
     }

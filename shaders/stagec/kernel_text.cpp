@@ -21,8 +21,7 @@ std::string guard(const std::string& extent) {
 
 bool marks(const Stage& s) {
     bool marks = s.extent == "CELLS" || s.extent == "FACES" || s.extent == "RIM";
-    for (const auto& b : s.bindings)
-        marks &= b.access == "IN" || b.type == "float" || b.narrow() || (s.extent == "RIM" && b.type == "uint");
+    for (const auto& b : s.bindings) marks &= b.access == "IN" || b.type == "float" || (s.extent == "RIM" && b.type == "uint");
     return marks;
 }
 
@@ -40,9 +39,8 @@ std::string marking(const Stage& s, const std::string& member) {
         if (b.access == "IN") continue;
         const std::string has = b.condition == "0u" ? "" : "if (HAS(" + b.condition + ")) ";
         for (const std::string& at : written(s, b)) {
-            const bool is_float = b.type == "float" || b.narrow();
-            const std::string old = "old" + std::to_string(count++), element = member + b.name + "[" + at + "]",
-                              value = b.narrow() ? "float(" + element + ")" : element;
+            const bool is_float = b.type == "float";
+            const std::string old = "old" + std::to_string(count++), value = member + b.name + "[" + at + "]";
             before << "    " << (is_float ? "float" : b.type) << " " << old << " = " << (is_float ? "0.0f" : "0u")
                    << ";\n    if (look) {\n        " << has << old << " = " << value << ";\n    }\n";
             after << "        " << has << "changed = changed || "

@@ -12,7 +12,7 @@ namespace {
 
 const std::set<std::string> extents = {"CELLS",  "FACES", "RIM",       "STRIPS",    "SOURCE_PIECES",
                                        "POINTS", "TILES", "TILE_ROWS", "TILE_LINES"};
-const std::set<std::string> types = {"float", "float_or_half", "uint", "int", "vec2", "vec4", "uvec2"};
+const std::set<std::string> types = {"float", "uint", "int", "vec2", "vec4", "uvec2"};
 
 std::string joined(const std::set<std::string>& words) {
     std::string text;
@@ -217,7 +217,6 @@ Stage parse_stage(const std::string& path) {
         if (access.count(word)) {
             stage.bindings.push_back(binding_at(source, at, word, stage.bindings.size()));
             tested.merge(effects_in(stage.bindings.back().condition));
-            if (stage.bindings.back().narrow()) tested.insert(half_storage);
         }
     });
     for (const auto& [at, a] : indices) {

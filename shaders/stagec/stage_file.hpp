@@ -12,8 +12,6 @@ struct Binding {
     std::string name, type, access, condition;
     int slot = 0;
     std::string empty = "0.0f"; // what the stage writes where it is empty
-    /// Lies in memory as 16-bit floats with EFFECT_HALF_STORAGE.
-    bool narrow() const { return type == "float_or_half"; }
 };
 
 /// Cells from the kernel's own index to the farthest that it reads.
@@ -40,7 +38,6 @@ struct Stage {
     std::vector<std::string> tested; // effect names that HAS() or a condition asks
 };
 
-inline constexpr const char* half_storage = "EFFECT_HALF_STORAGE";    // asked by every stage with a narrow binding
 inline constexpr const char* first_choice = "EFFECT_SEMI_LAGRANGIAN"; // from its bit on the bits are choices of method
 
 /// Refuses what it does not know, by file and line: words, types, extents, bindings out of order, a stage without a kernel.

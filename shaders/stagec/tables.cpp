@@ -7,10 +7,6 @@ namespace stagec {
 
 bool is_fused(const std::string& path) { return path.ends_with(".fused"); }
 
-static bool has_narrow(const Stage& s) {
-    return std::any_of(s.bindings.begin(), s.bindings.end(), [](const Binding& b) { return b.narrow(); });
-}
-
 static std::string lacks_of(const Stage& s, const Effects& effects) {
     if (s.lacks.empty()) return "";
     std::ostringstream o;
@@ -42,13 +38,8 @@ std::string stage_table(const std::vector<std::string>& paths, const Effects& ef
         const Stage& s = fused.stage;
         o << "constexpr StageBinding bindings_" << s.name << "[] = {\n";
         for (const auto& b : s.bindings) {
-            const std::map<std::string, std::string> types = {{"float", "f32"},
-                                                              {"uint", "u32"},
-                                                              {"int", "i32"},
-                                                              {"vec2", "vec2"},
-                                                              {"vec4", "vec4"},
-                                                              {"uvec2", "uvec2"},
-                                                              {"float_or_half", "f32_or_f16"}};
+            const std::map<std::string, std::string> types = {{"float", "f32"}, {"uint", "u32"},  {"int", "i32"},
+                                                              {"vec2", "vec2"}, {"vec4", "vec4"}, {"uvec2", "uvec2"}};
             const std::map<std::string, std::string> access = {{"IN", "in"}, {"OUT", "out"}, {"INOUT", "inout"}};
             o << "    {\"" << b.name << "\", " << b.slot << ", Access::" << access.at(b.access)
               << ", Scalar::" << types.at(b.type) << ", " << b.condition << ", " << b.empty << "},\n";
@@ -57,9 +48,6 @@ std::string stage_table(const std::vector<std::string>& paths, const Effects& ef
         if (spirv_dir != "-") {
             o << "constexpr std::uint32_t spirv_" << s.name << "[] = {" << word_list(spirv_dir + "/" + s.name + ".spv")
               << "\n};\n";
-            if (has_narrow(s))
-                o << "constexpr std::uint32_t half_spirv_" << s.name << "[] = {"
-                  << word_list(spirv_dir + "/" + s.name + ".half.spv") << "\n};\n";
         }
     }
     o << "constexpr StageInfo stages[] = {\n";
@@ -70,9 +58,8 @@ std::string stage_table(const std::vector<std::string>& paths, const Effects& ef
         o << "    {\"" << s.name << "\", Extent::" << extent << ", {" << s.reach.west << ", " << s.reach.south << ", "
           << s.reach.east << ", " << s.reach.north << "}, " << effect_bits(s.far, effects, s.path) << "u, "
           << (marks(s) ? "true" : "false") << ", " << tested_bits(s, effects) << "u, bindings_" << s.name << ", "
-          << (spirv_dir != "-" ? "spirv_" + s.name : "std::span<const std::uint32_t>{}") << ", "
-          << (spirv_dir != "-" && has_narrow(s) ? "half_spirv_" + s.name : "std::span<const std::uint32_t>{}") << ", "
-          << fused.parts.size() << ", " << fused.needs << "u, " << fused.without << "u, "
+          << (spirv_dir != "-" ? "spirv_" + s.name : "std::span<const std::uint32_t>{}") << ", " << fused.parts.size() << ", "
+          << fused.needs << "u, " << fused.without << "u, "
           << (s.lacks.empty() ? "std::span<const StageLack>{}" : "lacks_" + s.name) << "},\n";
     }
     o << "};\n} // namespace\nstd::span<const StageInfo> stage_table() {\n    return stages;\n}\n} // namespace wadi::compute\n";

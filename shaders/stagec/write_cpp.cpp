@@ -1,5 +1,4 @@
 #include "writers.hpp"
-#include <algorithm>
 #include <sstream>
 
 namespace stagec {
@@ -11,13 +10,13 @@ std::string buffer_members(const Stage& s) {
     std::ostringstream o;
     o << "#ifdef WADI_STAGE_CHECKED\n";
     for (const auto& b : s.bindings) {
-        const std::string element = element_type(b, "E"), type = (b.access == "IN" ? "const " : "") + element;
-        o << ",\n        {static_cast<" << type << "*>(b[" << b.slot << "]), sizes[" << b.slot << "] / sizeof(" << element
+        const std::string type = (b.access == "IN" ? "const " : "") + b.type;
+        o << ",\n        {static_cast<" << type << "*>(b[" << b.slot << "]), sizes[" << b.slot << "] / sizeof(" << b.type
           << "), \"" << s.name << "\", \"" << b.name << "\"}";
     }
     o << "\n#else\n";
     for (const auto& b : s.bindings)
-        o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << element_type(b, "E") << "*>(b[" << b.slot << "])";
+        o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << b.type << "*>(b[" << b.slot << "])";
     o << "\n#endif\n";
     return o.str();
 }
@@ -36,20 +35,11 @@ std::string file_head(const Stage& s, const std::string& isa) {
            ".\nnamespace wadi_stage_" + isa + " {\n#include \"language/stage_cpp.h\"\n";
 }
 
-// Base has every mask, and what a set lacks is that of the set below. Of masks with half storage avx2 has the largest of each
-// choice of methods, but of fused stages, which do not pay on a CPU, none.
+// Base has every mask, and what a set lacks is that of the set below.
 std::string select_function(const Stage& s, const std::string& isa, unsigned tested, std::vector<unsigned> masks,
                             const Effects& effects, bool all_masks) {
     const std::string below = isa == "base" ? "" : isa == "avx512" ? "avx2" : "base";
-    if (!below.empty()) {
-        const unsigned choices = ~(effects.at(first_choice) - 1);
-        const auto halves = std::stable_partition(masks.begin(), masks.end(),
-                                                  [&](unsigned mask) { return (mask & effects.at(half_storage)) == 0; });
-        const auto largest_halves = largest({halves, masks.end()}, choices);
-        masks.erase(halves, masks.end());
-        if (!all_masks) masks = largest(masks, choices);
-        if (isa == "avx2" && !s.fused) masks.insert(masks.end(), largest_halves.begin(), largest_halves.end());
-    }
+    if (!below.empty() && !all_masks) masks = largest(masks, ~(effects.at(first_choice) - 1));
     std::ostringstream o;
     o << "using Block = void (*)(void* const*, const unsigned long long*, const void*, const void*, int, int, int, int);\n";
     if (!below.empty()) o << "extern \"C\" Block wadi_cpu_" << below << "_" << s.name << "(unsigned effects);\n";
@@ -90,10 +80,10 @@ std::string write_cpp(const FusedStage& f, const std::string& isa, const Effects
       << physics_includes(f) << "struct Place { int x, y; };\n#define PLACE(X, Y) Place{X, Y}\n"
       << index_macros << shared_macros() << one_by_one
       << "#define LANE 0\n#define LANES 1\n#define BARRIER (void)0\n#define ANY(X) (X)\n#define ROLLED\n#define "
-         "KEEP_STORED(FIELD, AT, TYPE) FIELD[AT] = TYPE(stored);\n"
+         "KEEP_STORED(FIELD, AT) FIELD[AT] = stored;\n"
       << "#define PART_FUNCTION HELPER\n#define APART(X)\n#define NOT_KEPT(X) (void)(X)\n"
       << "template <unsigned FREE> struct " << s.struct_name << " {\n    static constexpr unsigned EFFECTS = FREE | " << f.needs
-      << "u;\n    typedef Stored<EFFECTS> float_or_half;\n    const WorldParams& P;\n    const StepInput& S;\n";
+      << "u;\n    const WorldParams& P;\n    const StepInput& S;\n";
     for (const auto& b : s.bindings)
         o << "    WADI_BUFFER(" << (b.access == "IN" ? "const " : "") << b.type << ") " << b.name << ";\n";
     for (const auto& rows : windows(f))

@@ -21,8 +21,7 @@ std::string cuda_active(const Stage& s) {
       << "run_active(const WorldParams P, const StepInput* __restrict__ input, const Slots b, const Active tiles) {\n"
       << "    const StepInput& S = *input;\n    const " << s.struct_name << "<EFFECTS> stage{P, S";
     for (const auto& b : s.bindings)
-        o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << element_type(b, "EFFECTS") << "*>(b.at[" << b.slot
-          << "])";
+        o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << b.type << "*>(b.at[" << b.slot << "])";
     const std::string look = "    const bool look = activity[tile] != uint(S.step);\n    bool changed = false;\n";
     o << "};\n    volatile uint* const activity = tiles.activity;\n";
     if (s.extent == "RIM") {
@@ -46,12 +45,6 @@ std::string cuda_active(const Stage& s) {
 // Rows of a group begin at multiples of four elements, in memory as in shared rows. Copies to shared memory are asynchronous
 // where the device has that. Buffers that are read are never written by the same pass: they may come through the read-only cache.
 const char* const four_at_once = R"(#define WIDE 4
-__device__ __forceinline__ float loaded(const float* from) { return __ldg(from); }
-__device__ __forceinline__ float loaded(const Half* from) {
-    Half stored(0.0f);
-    stored.bits = __ldg(&from->bits);
-    return float(stored);
-}
 __device__ __forceinline__ void copy(float* to, const float* from) {
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
     asm volatile("cp.async.cg.shared.global [%0], [%1], 16;" :: "r"(static_cast<unsigned>(__cvta_generic_to_shared(to))), "l"(from) : "memory");
@@ -59,16 +52,9 @@ __device__ __forceinline__ void copy(float* to, const float* from) {
     *reinterpret_cast<float4*>(to) = __ldg(reinterpret_cast<const float4*>(from));
 #endif
 }
-__device__ __forceinline__ void copy(float* to, const Half* from) {
-#pragma unroll
-    for (int k = 0; k < 4; ++k) to[k] = loaded(from + k);
-}
 __device__ __forceinline__ bool holds(const float* from) {
     const float4 v = __ldg(reinterpret_cast<const float4*>(from));
     return v.x != 0.0f || v.y != 0.0f || v.z != 0.0f || v.w != 0.0f;
-}
-__device__ __forceinline__ bool holds(const Half* from) {
-    return loaded(from) != 0.0f || loaded(from + 1) != 0.0f || loaded(from + 2) != 0.0f || loaded(from + 3) != 0.0f;
 }
 // Whether a bit changed, where `look` asks.
 __device__ __forceinline__ bool keep(float* to, float4 value, bool look) {
@@ -82,24 +68,7 @@ __device__ __forceinline__ bool keep(float* to, float4 value, bool look) {
     if (!look || changed) *place = value; // waits for what it looked at
     return changed;
 }
-__device__ __forceinline__ bool keep(Half* to, float4 value, bool look) {
-    const Half stored[4] = {Half(value.x), Half(value.y), Half(value.z), Half(value.w)};
-    bool changed = false;
-    if (look) {
-#pragma unroll
-        for (int k = 0; k < 4; ++k) changed = changed || to[k].bits != stored[k].bits;
-    }
-    if (!look || changed) {
-#pragma unroll
-        for (int k = 0; k < 4; ++k) to[k] = stored[k];
-    }
-    return changed;
-}
-__device__ __forceinline__ float4 four(const float* from) { return __ldg(reinterpret_cast<const float4*>(from)); }
-__device__ __forceinline__ float4 four(const Half* from) {
-    return make_float4(loaded(from), loaded(from + 1), loaded(from + 2), loaded(from + 3));
-}
-#define LOAD(FIELD, AT) loaded(FIELD + (AT))
+#define LOAD(FIELD, AT) __ldg(FIELD + (AT))
 #define COPY(TO, T, FROM, F) copy(TO + (T), FROM + (F))
 #define ZERO(TO, T) *reinterpret_cast<float4*>(TO + (T)) = make_float4(0.0f, 0.0f, 0.0f, 0.0f)
 #if defined(__CUDA_ARCH__) && __CUDA_ARCH__ >= 800
@@ -108,8 +77,8 @@ __device__ __forceinline__ float4 four(const Half* from) {
 #define COPIED
 #endif
 #define HOLDS(FIELD, AT) holds(FIELD + (AT))
-#define KEEP_ZEROS(FIELD, AT, TYPE) changed = keep(FIELD + (AT), make_float4(0.0f, 0.0f, 0.0f, 0.0f), look) || changed
-#define KEEP_COPY(FIELD, AT, TYPE, FROM) changed = keep(FIELD + (AT), four(FROM + (AT)), look) || changed
+#define KEEP_ZEROS(FIELD, AT) changed = keep(FIELD + (AT), make_float4(0.0f, 0.0f, 0.0f, 0.0f), look) || changed
+#define KEEP_COPY(FIELD, AT, FROM) changed = keep(FIELD + (AT), __ldg(reinterpret_cast<const float4*>(FROM + (AT))), look) || changed
 )";
 
 // Arrays in shared memory and their floats.
@@ -134,8 +103,7 @@ std::string write_cuda(const Stage& s, const Effects& effects, bool all_masks) {
          "const "
       << s.struct_name << "<E> stage{P, S";
     for (const auto& b : s.bindings)
-        o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << element_type(b, "E") << "*>(b.at[" << b.slot
-          << "])";
+        o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << b.type << "*>(b.at[" << b.slot << "])";
     o << "};\n    const int i = static_cast<int>(blockIdx.x * (X > 0 ? X : blockDim.x) + threadIdx.x);\n"
       << "    const int j = static_cast<int>(blockIdx.y * (Y > 0 ? Y : blockDim.y) + threadIdx.y);\n"
       << "    if (" << guard(s.extent) << ") stage.kernel(i, j);\n}\n"
@@ -181,7 +149,7 @@ std::string write_cuda(const FusedStage& f, const Effects& effects, bool all_mas
          "__forceinline__\n#define NOT_KEPT(X) (void)(X)\n"
       << keep_stored << active_argument << "struct Slots { void* at[" << s.bindings.size() << "]; };\n"
       << "template <unsigned FREE, bool ACTIVE> struct " << s.struct_name << " {\n    static constexpr unsigned EFFECTS = FREE | "
-      << f.needs << "u;\n    typedef Stored<EFFECTS> float_or_half;\n    const WorldParams& P;\n    const StepInput& S;\n";
+      << f.needs << "u;\n    const WorldParams& P;\n    const StepInput& S;\n";
     for (const auto& b : s.bindings)
         o << "    " << (b.access == "IN" ? "const " : "") << b.type << "* __restrict__ " << b.name << ";\n";
     const auto shared = shared_rows(f);
@@ -197,8 +165,7 @@ std::string write_cuda(const FusedStage& f, const Effects& effects, bool all_mas
       << "    __shared__ __align__(16) float shared[" << std::max<std::size_t>(4, bytes / sizeof(float)) << "];\n    "
       << s.struct_name << "<E, ACTIVE> stage{P, *input";
     for (const auto& b : s.bindings)
-        o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << element_type(b, "E") << "*>(b.at[" << b.slot
-          << "])";
+        o << ",\n        static_cast<" << (b.access == "IN" ? "const " : "") << b.type << "*>(b.at[" << b.slot << "])";
     int at = 0;
     for (const auto& [name, floats] : shared) {
         o << ",\n        shared + " << at;

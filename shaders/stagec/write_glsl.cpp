@@ -12,8 +12,7 @@ std::string tile_bindings(const Stage& s) {
            std::to_string(slots + 3) + ") buffer activity_block { uint activity[]; };\n";
 }
 
-const char* const head = "#version 450\n#extension GL_GOOGLE_include_directive : require\n#ifdef WADI_HALF\n"
-                         "#extension GL_EXT_shader_16bit_storage : require\n#endif\n#include \"language/stage_glsl.h\"\n";
+const char* const head = "#version 450\n#extension GL_GOOGLE_include_directive : require\n#include \"language/stage_glsl.h\"\n";
 
 // Rows of a group begin at multiples of four elements, in memory as in shared rows: each buffer has a second name, for four
 // floats at once.
@@ -24,8 +23,8 @@ const char* const four_floats =
     "#define HOLDS(FIELD, AT) any(notEqual(wide_##FIELD[(AT) >> 2], vec4(0.0f)))\n#define LOAD(FIELD, AT) FIELD[AT]\n"
     "#define KEEP_FOUR(PLACE, VALUE) { vec4 four = VALUE; if (look) changed = changed || any(notEqual(floatBitsToInt(PLACE), "
     "floatBitsToInt(four))); PLACE = four; }\n"
-    "#define KEEP_ZEROS(FIELD, AT, TYPE) KEEP_FOUR(wide_##FIELD[(AT) >> 2], vec4(0.0f))\n"
-    "#define KEEP_COPY(FIELD, AT, TYPE, FROM) KEEP_FOUR(wide_##FIELD[(AT) >> 2], wide_##FROM[(AT) >> 2])\n";
+    "#define KEEP_ZEROS(FIELD, AT) KEEP_FOUR(wide_##FIELD[(AT) >> 2], vec4(0.0f))\n"
+    "#define KEEP_COPY(FIELD, AT, FROM) KEEP_FOUR(wide_##FIELD[(AT) >> 2], wide_##FROM[(AT) >> 2])\n";
 
 std::string wide_names(const Stage& s) {
     std::string text;
@@ -35,47 +34,11 @@ std::string wide_names(const Stage& s) {
     return text;
 }
 
-// A stage's text from `at` to `stop` with what loads and stores the named buffers converted, which GLSL does for 16-bit floats
-// only where it is told.
-std::string converted(const Source& source, std::size_t at, std::size_t stop, const std::set<std::string>& narrow) {
-    const std::string& text = source.text;
-    std::string out;
-    while (at < stop) {
-        const std::string word = word_at(text, at);
-        at += word.size();
-        if (word.empty()) {
-            out += text[at++];
-        } else if (narrow.count(word) == 0 || text[at] != '[') {
-            out += word;
-        } else {
-            const std::size_t end = behind_bracket(source, at), next = skip_blanks(text, end);
-            const std::string element = word + "[" + converted(source, at + 1, end - 1, narrow) + "]";
-            at = end;
-            if (text[next] == '=' && text[next + 1] != '=') {
-                at = text.find(';', next);
-                out += element + " = float_or_half(to_stored(" + converted(source, next + 1, at, narrow) + "))";
-            } else {
-                out += "float(" + element + ")";
-            }
-        }
-    }
-    return out;
-}
-
-std::string converted(const Stage& s) {
-    std::set<std::string> narrow;
-    for (const auto& b : s.bindings)
-        if (b.narrow()) narrow.insert(b.name);
-    Stage copy = s;
-    copy.source.text = converted(s.source, 0, s.source.text.size(), narrow);
-    return stage_text(copy);
-}
-
 } // namespace
 
 std::string write_glsl(const Stage& s) {
     std::ostringstream o;
-    o << head << converted(s);
+    o << head << stage_text(s);
     if (marks(s)) o << tile_bindings(s);
     o << "void main() {\n    int i = int(gl_GlobalInvocationID.x);\n    int j = int(gl_GlobalInvocationID.y);\n";
     if (!marks(s)) {
@@ -106,10 +69,8 @@ std::string write_glsl(const FusedStage& whole, const Effects& effects) {
     std::ostringstream o;
     o << head << physics_includes(f) << "#undef HAS\n#define HAS(BITS) (((EFFECTS | " << f.needs << "u) & (BITS)) == (BITS))\n"
       << "#define Place ivec2\n#define PLACE(X, Y) ivec2(X, Y)\n"
-      << index_macros << shared_macros() << "#ifdef WADI_HALF\n"
-      << one_by_one << "#else\n"
-      << four_floats << wide_names(s) << "#endif\n#define LANE int(gl_LocalInvocationIndex)\n#define LANES "
-      << fused_group_x * fused_group_y
+      << index_macros << shared_macros() << four_floats << wide_names(s)
+      << "#define LANE int(gl_LocalInvocationIndex)\n#define LANES " << fused_group_x * fused_group_y
       << "\n#define BARRIER barrier()\n#define ROLLED\n#define APART(X)\n#define PART_FUNCTION\n#define NOT_KEPT(X)\n"
       << keep_stored;
     for (const auto& b : s.bindings) o << b.access << "(" << b.slot << ", " << b.type << ", " << b.name << ")\n";

@@ -23,20 +23,16 @@ std::string rim_place(const Stage& stage);
 /// as it is. A store never follows a load from its own place which is still under way: that holds up a multiprocessor's whole
 /// memory (an H100: three times the time).
 inline constexpr const char* keep_stored =
-    "#define KEEP_STORED(FIELD, AT, TYPE) { bool same = false; if (look && !changed) { same = float_bits(float(FIELD[AT])) == "
-    "float_bits(stored); changed = !same; } if (!same) FIELD[AT] = TYPE(stored); }\n";
+    "#define KEEP_STORED(FIELD, AT) { bool same = false; if (look && !changed) { same = float_bits(FIELD[AT]) == "
+    "float_bits(stored); changed = !same; } if (!same) FIELD[AT] = stored; }\n";
 /// Copies, looks and stores of fused stages where a thread takes one element at a time.
 inline constexpr const char* one_by_one =
-    "#define WIDE 1\n#define COPY(TO, T, FROM, F) TO[T] = float(FROM[F])\n#define ZERO(TO, T) TO[T] = 0.0f\n#define COPIED\n"
-    "#define HOLDS(FIELD, AT) float(FIELD[AT]) != 0.0f\n#define LOAD(FIELD, AT) float(FIELD[AT])\n"
-    "#define KEEP_ZEROS(FIELD, AT, TYPE) { float stored = 0.0f; KEEP_STORED(FIELD, AT, TYPE) }\n"
-    "#define KEEP_COPY(FIELD, AT, TYPE, FROM) { float stored = float(FROM[AT]); KEEP_STORED(FIELD, AT, TYPE) }\n";
+    "#define WIDE 1\n#define COPY(TO, T, FROM, F) TO[T] = FROM[F]\n#define ZERO(TO, T) TO[T] = 0.0f\n#define COPIED\n"
+    "#define HOLDS(FIELD, AT) FIELD[AT] != 0.0f\n#define LOAD(FIELD, AT) FIELD[AT]\n"
+    "#define KEEP_ZEROS(FIELD, AT) { float stored = 0.0f; KEEP_STORED(FIELD, AT) }\n"
+    "#define KEEP_COPY(FIELD, AT, FROM) { float stored = FROM[AT]; KEEP_STORED(FIELD, AT) }\n";
 /// SHARED_PITCH and SHARED_BESIDE, and nearest_index: the one in 0 ... last that is nearest.
 std::string shared_macros();
-/// The type of a buffer's elements in C++ and CUDA, where `effects` names the mask.
-inline std::string element_type(const Binding& binding, const std::string& effects) {
-    return binding.narrow() ? "Stored<" + effects + ">" : binding.type;
-}
 /// Where group `part` of an active tile begins and ends: own_i0 ... own_j1, members of `member`. `skip` leaves out a group that
 /// lies beyond the grid, as the last ones of a tile at the rim may: what it read would lie behind the end of fields.
 std::string tile_part(const std::string& member, const std::string& skip);

@@ -1,7 +1,5 @@
 #include "tests/conformance/bench.hpp"
-#include "engine/step/half.hpp"
 #include "tests/conformance/compare.hpp"
-#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -32,40 +30,12 @@ Status dispatch(compute::Device& device, int stage, std::uint32_t effects, const
     return status;
 }
 
-bool is_half(const compute::StageBinding& binding, std::uint32_t effects) {
-    return binding.type == compute::Scalar::f32_or_f16 && (effects & EFFECT_HALF_STORAGE) != 0;
-}
-
-Status upload(compute::Device& device, const BenchBuffer& from, bool half, compute::Buffer to) {
-    const std::size_t size = from.before.size() * (half ? 2 : 4);
+Status upload(compute::Device& device, const BenchBuffer& from, compute::Buffer to) {
+    const std::size_t size = from.before.size() * 4;
     std::vector<std::byte> bytes(size + guard_bytes);
-    if (half) {
-        for (std::size_t n = 0; n < from.before.size(); ++n) {
-            const std::uint16_t bits = to_half(std::bit_cast<float>(from.before[n]));
-            std::memcpy(bytes.data() + 2 * n, &bits, 2);
-        }
-    } else {
-        std::memcpy(bytes.data(), from.before.data(), size);
-    }
+    std::memcpy(bytes.data(), from.before.data(), size);
     for (std::size_t n = 0; n < guard_bytes; ++n) bytes[size + n] = guard_byte(n);
     return device.write(to, 0, bytes);
-}
-
-// What the device holds, as floats and behind them the guard.
-Status download(compute::Device& device, compute::Buffer from, bool half, BenchBuffer& to) {
-    const std::size_t count = to.before.size();
-    to.after.resize(count * 4 + guard_bytes);
-    if (!half) return device.read(from, 0, to.after);
-    std::vector<std::byte> bytes(count * 2 + guard_bytes);
-    if (auto status = device.read(from, 0, bytes); !status) return status;
-    for (std::size_t n = 0; n < count; ++n) {
-        std::uint16_t bits = 0;
-        std::memcpy(&bits, bytes.data() + 2 * n, 2);
-        const float value = from_half(bits);
-        std::memcpy(to.after.data() + 4 * n, &value, 4);
-    }
-    std::memcpy(to.after.data() + 4 * count, bytes.data() + 2 * count, guard_bytes);
-    return ok_status();
 }
 
 } // namespace
@@ -83,22 +53,18 @@ Status run_bench(compute::Device& device, int stage, std::uint32_t effects, cons
     for (std::size_t b = 0; b < buffers.size() && status; ++b) {
         if (!buffers[b].exists) continue;
         const std::string label = std::string(info.name) + "." + std::string(info.bindings[b].name);
-        const bool half = is_half(info.bindings[b], effects);
-        auto made = device.create_buffer({buffers[b].before.size() * (half ? 2 : 4) + guard_bytes, label});
+        auto made = device.create_buffer({buffers[b].before.size() * 4 + guard_bytes, label});
         if (made) slots[b] = *made;
-        status = made ? upload(device, buffers[b], half, *made) : made.status();
+        status = made ? upload(device, buffers[b], *made) : made.status();
     }
     if (status) status = dispatch(device, stage, effects, params, input, group, slots);
     for (std::size_t b = 0; b < buffers.size() && status; ++b) {
         if (!buffers[b].exists) continue;
-        status = download(device, slots[b], is_half(info.bindings[b], effects), buffers[b]);
+        buffers[b].after.resize(buffers[b].before.size() * 4 + guard_bytes);
+        status = device.read(slots[b], 0, buffers[b].after);
     }
     for (const compute::Buffer buffer : slots) device.destroy_buffer(buffer);
     return status;
-}
-
-void round_to_half(std::vector<std::uint32_t>& words) {
-    for (auto& word : words) word = std::bit_cast<std::uint32_t>(from_half(to_half(std::bit_cast<float>(word))));
 }
 
 Verdict check_guards(const compute::StageInfo& stage, const std::vector<BenchBuffer>& buffers, const FieldLayout& layout) {

@@ -27,9 +27,6 @@ Status run_bench(compute::Device& device, int stage, std::uint32_t effects, cons
                  compute::GroupSize group, std::vector<BenchBuffer>& buffers);
 
 /// Fails where a word outside may_change or a guard byte changed, or where NaN is left in a cell that the stage must write.
-/// Every float as a 16-bit float would keep it.
-void round_to_half(std::vector<std::uint32_t>& words);
-
 Verdict check_guards(const compute::StageInfo& stage, const std::vector<BenchBuffer>& buffers, const FieldLayout& layout);
 
 } // namespace wadi::conformance

@@ -175,7 +175,7 @@ void group_sizes(Session&, Device& device, Expect& expect) {
     for (const char* name : {"integrate_water_velocity", "compute_saturation", "account_sides", "apply_sources"}) {
         const int stage = compute::find_stage(name);
         const auto& info = compute::stage_table()[static_cast<std::size_t>(stage)];
-        auto scene = make_scene("65x3", "random", "default", largest_mask(stage, device));
+        auto scene = make_scene("65x3", "random", "default", stage_masks(stage).back());
         if (!scene) return expect.ok(scene.status(), "a scene");
         const Pilot pilot = make_pilot(*scene, name);
         const WorldParams params = derive_params(scene->settings, scene->effects);
@@ -206,7 +206,7 @@ void group_sizes(Session&, Device& device, Expect& expect) {
 }
 
 void steps_allocate_nothing(Session& session, Device& device, Expect& expect) {
-    auto scene = make_scene("33x17", "slope", "default", largest_mask(compute::find_stage("mark_limits"), device));
+    auto scene = make_scene("33x17", "slope", "default", stage_masks(compute::find_stage("mark_limits")).back());
     if (!scene) return expect.ok(scene.status(), "a scene");
     auto world = open_world(session, *scene);
     if (!world) return expect.ok(world.status(), "a World");

@@ -48,14 +48,13 @@ std::vector<CaseSpec> list() {
                 cases.push_back({std::string(stages[stage].name),
                                  {{"grid", grid}, {"effects", effects_text(mask | more)}, {"scene", scene}, {"method", method}}});
             };
-            const bool half = (mask & EFFECT_HALF_STORAGE) != 0; // the same phases with other reads and stores
             other = !other;
-            if (!many || !half || !other) add("70x50", "random", "default");
+            add("70x50", "random", "default");
             if (!many || !other) add("170x90", "patches", "default");
-            if (!half && (!many || !other) && ((mask | stages[stage].without) & EFFECT_OPEN_SIDES) == 0)
+            if ((!many || !other) && ((mask | stages[stage].without) & EFFECT_OPEN_SIDES) == 0)
                 add("33x17", "random", "default", EFFECT_OPEN_SIDES);
             if (many && !other) continue;
-            for (std::size_t n = 0; n < (half ? 1 : rounds); ++n, ++turn)
+            for (std::size_t n = 0; n < rounds; ++n, ++turn)
                 add(grids[turn % grids.size()], scenes[turn % scenes.size()], methods[turn % methods.size()]);
         }
     }

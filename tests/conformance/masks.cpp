@@ -114,9 +114,4 @@ std::vector<std::uint32_t> stage_masks(int stage) {
     return masks;
 }
 
-std::uint32_t largest_mask(int stage, const compute::Device& device) {
-    const auto mask = stage_masks(stage).back();
-    return device.capabilities().half_storage ? mask : mask & ~EFFECT_HALF_STORAGE;
-}
-
 } // namespace wadi::conformance

@@ -1,6 +1,6 @@
 // Which masks each stage can tell apart, and effect masks as text.
 #pragma once
-#include "engine/compute/device.hpp"
+#include "engine/compute/status.hpp"
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -15,7 +15,5 @@ Result<std::uint32_t> parse_effects(const std::string& text);
 /// For a stage of the table: one whole mask per set of tested effects that some legal mask gives it, the smallest such mask,
 /// in increasing order. A stage that no step plan holds (publish_*, mark_limits) sees every legal mask.
 std::vector<std::uint32_t> stage_masks(int stage);
-/// The last of them that the device can have: without half storage where it lacks that.
-std::uint32_t largest_mask(int stage, const compute::Device& device);
 
 } // namespace wadi::conformance

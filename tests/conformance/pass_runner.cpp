@@ -1,6 +1,5 @@
 #include "tests/conformance/pass_runner.hpp"
 #include "engine/step/field_store.hpp"
-#include "engine/step/half.hpp"
 #include "engine/step/source_shapes.hpp"
 #include "engine/step/world_params.hpp"
 #include <algorithm>
@@ -56,7 +55,7 @@ PassRunner::~PassRunner() {
 
 std::size_t PassRunner::words_of(const PlanField& field) const {
     if (field.role == FieldRole::shapes) return std::size_t{SOURCE_VECTORS * 4};
-    if (field.role != FieldRole::ledger) return layout().size() * static_cast<std::size_t>(field.element_bytes()) / 4;
+    if (field.role != FieldRole::ledger) return layout().size();
     if (field.name != "source_ledger") return 4 * static_cast<std::size_t>(layout().rim());
     return std::size_t{2 * LEDGER_ENTRIES} * static_cast<std::size_t>(params_.strips * params_.pitch);
 }
@@ -72,10 +71,7 @@ Status PassRunner::open() {
     for (const auto& field : plan_.fields) {
         if (field.role != FieldRole::state) continue;
         const auto values = initial_field(scene_, field.name);
-        std::vector<std::uint16_t> halves(field.half ? values.size() : 0);
-        if (field.half) std::transform(values.begin(), values.end(), halves.begin(), to_half);
-        const auto bytes = field.half ? std::as_bytes(std::span(halves)) : std::as_bytes(std::span(values));
-        if (auto status = device_.write(buffer(field.name), 0, bytes); !status) return status;
+        if (auto status = device_.write(buffer(field.name), 0, std::as_bytes(std::span(values))); !status) return status;
     }
     if (plan_.find("roughness") != nullptr) {
         const auto values = with_ghosts(layout(), scene_.settings.roughness, true);
@@ -151,9 +147,8 @@ double PassRunner::bytes_of(const PlanPass& pass) const {
         const auto& binding = stage.bindings[b];
         if (binding.name == "source_shapes") continue; // a few hundred bytes that every thread shares
         // A thread that walks rows of a field adds once to its counts in the ledger.
-        const double each = binding.type == compute::Scalar::f32 || binding.type == compute::Scalar::f32_or_f16 ? rows : 1;
-        const bool half = binding.type == compute::Scalar::f32_or_f16 && (plan_.effects & EFFECT_HALF_STORAGE) != 0;
-        bytes += threads * each * (binding.access == compute::Access::inout ? 2 : 1) * (half ? 2 : 4);
+        const double each = binding.type == compute::Scalar::f32 ? rows : 1;
+        bytes += threads * each * (binding.access == compute::Access::inout ? 2 : 1) * 4;
     }
     return bytes;
 }

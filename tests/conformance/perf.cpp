@@ -231,7 +231,8 @@ Status measure_step(Device& device, int size, const std::string& name, std::uint
     }
     const double cells = static_cast<double>(size) * size;
     for (const auto& field : runner.plan().fields)
-        if (field.role == FieldRole::state) row.floor_bytes += cells * field.element_bytes() * (field.name == "terrain" ? 1 : 2);
+        if (field.role == FieldRole::state)
+            row.floor_bytes += cells * PlanField::element_bytes * (field.name == "terrain" ? 1 : 2);
     const auto inputs = inputs_of(*scene, options.repeats + 2);
     auto times = status ? time_programs(device, timed, inputs, options.repeats) : Result<std::vector<double>>(status);
     auto host = times ? time_host(device, plain, inputs[0], 5 * options.repeats) : times;
@@ -381,7 +382,6 @@ Status run_perf(Session& session, const PerfOptions& options, bool first) {
             EFFECT_SEMI_LAGRANGIAN | EFFECT_WHOLE_STRAIN | EFFECT_EXPLICIT_DRAG | EFFECT_LAPLACE_DIFFUSION;
         constexpr std::pair<const char*, std::uint32_t> steps[] = {
             {"step, all effects", ALL},
-            {"step, half storage", ALL | EFFECT_HALF_STORAGE},
             {"step, sand of the paper", ALL & ~SAND_LAWS},
             {"step, published", (ALL & ~SAND_LAWS) | published},
             {"step, water only", EFFECT_WATER},

@@ -47,9 +47,7 @@ Verdict compare_with_reference(const StageRun& run) {
     std::map<std::string, std::vector<Output>> vectors;
     for (std::size_t b = 0; b < run.buffers.size(); ++b) {
         const auto& binding = run.stage.bindings[b];
-        if (!run.buffers[b].exists || binding.access == Access::in ||
-            (binding.type != compute::Scalar::f32 && binding.type != compute::Scalar::f32_or_f16))
-            continue;
+        if (!run.buffers[b].exists || binding.access == Access::in || binding.type != compute::Scalar::f32) continue;
         Output out{field_of(stage, std::string(binding.name), run.scene.effects), {}, {}, b};
         out.narrow = reference_field(narrow, stage, out.name, true);
         out.wide = reference_field(wide, stage, out.name, true);
@@ -75,35 +73,6 @@ Verdict compare_with_reference(const StageRun& run) {
     return verdict;
 }
 
-// A stage with half storage: what it computes without it from the same inputs, rounded where it is stored. Those that change a
-// cell more than once round in between.
-Verdict check_half_storage(compute::Device& device, int stage, std::uint32_t mask, const StageRun& run,
-                           const std::vector<BenchBuffer>& rounded, std::span<const BenchBuffer> got) {
-    std::vector<BenchBuffer> full = rounded;
-    if (auto status = run_bench(device, stage, mask & ~EFFECT_HALF_STORAGE, run.params, run.pilot.input, {}, full); !status)
-        return verdict_of(status);
-    const bool repeats = run.stage.name == "apply_edits" || run.stage.name == "apply_sources" || run.stage.name == "write_values";
-    Verdict verdict;
-    for (std::size_t b = 0; b < full.size(); ++b) {
-        const auto& binding = run.stage.bindings[b];
-        if (!full[b].exists || binding.access == Access::in) continue;
-        const bool half = binding.type == compute::Scalar::f32_or_f16;
-        std::vector<std::uint32_t> expected(full[b].words().begin(), full[b].words().end());
-        if (half) round_to_half(expected);
-        const auto words = got[b].words();
-        for (std::size_t n = 0; n < words.size(); ++n) {
-            if (words[n] == expected[n]) continue;
-            const double value = static_cast<double>(std::bit_cast<float>(words[n])),
-                         right = static_cast<double>(std::bit_cast<float>(expected[n]));
-            if (half && repeats && std::abs(value - right) <= 0x1p-9 * std::abs(right) + 0x1p-18) continue;
-            if (std::isnan(value) && std::isnan(right)) continue;
-            return failed(std::string(binding.name) + ": word " + std::to_string(n) + " is " + std::to_string(value) +
-                          ", without half storage and then rounded " + std::to_string(right));
-        }
-    }
-    return verdict;
-}
-
 std::vector<CaseSpec> list() {
     std::vector<CaseSpec> cases;
     const auto grids = grid_names(), scenes = scene_names(), methods = method_names_of_cases();
@@ -118,7 +87,6 @@ std::vector<CaseSpec> list() {
         const std::size_t rounds = masks.size() < 3 ? 2 * scenes.size() : masks.size() < 7 ? scenes.size() : scenes.size() / 2;
         std::size_t turn = 0;
         for (const std::uint32_t mask : masks) {
-            const bool half = (mask & EFFECT_HALF_STORAGE) != 0; // compared with the stage without it: three cases say it
             const auto add = [&](const char* grid, const std::string& scene, const std::string& method, std::uint32_t more = 0) {
                 cases.push_back({std::string(stages[stage].name),
                                  {{"grid", grid}, {"effects", effects_text(mask | more)}, {"scene", scene}, {"method", method}}});
@@ -129,7 +97,7 @@ std::vector<CaseSpec> list() {
                 add("33x17", "random", "default", EFFECT_OPEN_SIDES);
                 add("5x7", "slope", "plain", EFFECT_OPEN_SIDES);
             }
-            for (std::size_t n = 0; n < (half ? 1 : rounds); ++n, ++turn) {
+            for (std::size_t n = 0; n < rounds; ++n, ++turn) {
                 const std::string scene = scenes[(turn + 1) % scenes.size()],
                                   method = methods[(turn + 2 * stage) % methods.size()];
                 // A lake without a quantum is nothing but rounding: no reference says what it should be.
@@ -169,10 +137,7 @@ Verdict run_stage_case(const CaseSpec& spec, compute::Device& device, const Tamp
     const int stage = compute::find_stage(spec.name);
     auto mask = parse_effects(spec.get("effects", "none"));
     if (!mask) return verdict_of(mask.status());
-    const bool half = (*mask & EFFECT_HALF_STORAGE) != 0;
-    if (half && !device.capabilities().half_storage) return {Outcome::not_supported, "no buffers of 16-bit floats"};
-    auto scene = make_scene(spec.get("grid", "33x17"), spec.get("scene", "random"), spec.get("method", "default"),
-                            *mask & ~EFFECT_HALF_STORAGE);
+    auto scene = make_scene(spec.get("grid", "33x17"), spec.get("scene", "random"), spec.get("method", "default"), *mask);
     if (!scene) return verdict_of(scene.status());
     const auto& info = compute::stage_table()[static_cast<std::size_t>(stage)];
     Pilot pilot = make_pilot(*scene, spec.name);
@@ -181,17 +146,11 @@ Verdict run_stage_case(const CaseSpec& spec, compute::Device& device, const Tamp
     if (spec.name == "apply_edits") add_edits(*scene, pilot.input);
     if (spec.name == "write_values") add_values(*scene, pilot.input);
     auto buffers = stage_buffers(info, *scene, pilot, params);
-    if (half) {
-        for (std::size_t b = 0; b < buffers.size(); ++b)
-            if (info.bindings[b].type == compute::Scalar::f32_or_f16) round_to_half(buffers[b].before);
-    }
-    const std::vector<BenchBuffer> before = buffers;
     if (auto status = run_bench(device, stage, *mask, params, pilot.input, {}, buffers); !status) return verdict_of(status);
     if (tamper) tamper(info, buffers);
     Verdict guards = check_guards(info, buffers, {params.nx, params.ny});
     if (guards.outcome != Outcome::ok) return guards;
     const StageRun run{info, *scene, pilot, params, buffers};
-    if (half) return check_half_storage(device, stage, *mask, run, before, buffers);
     const Verdict definition = check_definition(run);
     return has_counterpart(spec.name) ? worse(definition, compare_with_reference(run)) : definition;
 }

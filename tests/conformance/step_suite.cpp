@@ -121,11 +121,6 @@ constexpr Row in_bits[] = {
     {"1x1", ALL, "random", "default", 40},
     {"1x1", ALL | TRACED, "random", "default", 20},
     {"9x1", ALL, "dam_break", "default", 40},
-    {"33x17", ALL | HALF, "random", "default", 20},
-    {"64x4", WET | HALF, "slope", "coarse", 30},
-    {"33x17", EFFECT_SAND | ELASTIC | HALF, "cliff", "default", 40},
-    {"33x17", EFFECT_WATER | EFFECT_SAND | EFFECT_DRAG | HALF, "islands", "plain", 30},
-    {"1x1", ALL | HALF, "random", "default", 20},
 };
 
 std::vector<CaseSpec> list() {

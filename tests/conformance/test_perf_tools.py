@@ -22,10 +22,10 @@ with tempfile.TemporaryDirectory() as folder:
     table = pathlib.Path(folder) / "perf.csv"
     table.write_text(run(sys.argv[1], "perf", "--backend", "cpu", "--max-size", 128, "--repeats", 2, "--output", "csv"))
     steps = [row for row in perf_table.read(table) if row["row"].startswith("step, ")]
-    assert len(steps) == 6, steps
+    assert len(steps) == 5, steps
     for row in steps:
         assert 0 < row["floor_ms"] < row["median_ms"] <= row["p95_ms"], row
-        assert row["bytes_per_cell"] == {"step, half storage": 108, "step, all effects": 144, "step, sand of the paper": 124}.get(row["row"], row["bytes_per_cell"]), row
+        assert row["bytes_per_cell"] == {"step, all effects": 144, "step, sand of the paper": 124}.get(row["row"], row["bytes_per_cell"]), row
         assert row["world_bytes"] > row["bytes_per_cell"] * 128 * 128 and row["host_us_median"] > 0, row
     # Half a dozen of 289 tiles move: left out, the others cost nothing and change no bit.
     tiles = run(sys.argv[1], "perf-tiles", "--backend", "cpu", "--size", 256, "--shares", 0.01, "--tiles", "0,16", "--steps", 10, "--repeats", 1)

@@ -296,9 +296,7 @@ Outcome run_case(const Case& c, Devices& devices, Weaken weaken, const std::stri
     };
     const auto image = static_cast<Image>(random.whole(0, 2));
     made("image", 0.5, [&](Random&) { return there(check_image(weakened, any, base, image)); });
-    // The reference keeps every bit of what it computes.
-    made("reference", weakened.scene.settings.method.half_storage ? 0 : 0.5,
-         [&](Random&) { return there(check_reference(weakened, any)); });
+    made("reference", 0.5, [&](Random&) { return there(check_reference(weakened, any)); });
     made("driver", 0.4, [&](Random& own) { return there(check_driver(weakened, any, base, own)); });
     made("save", 0.4, [&](Random& own) { return there(check_save(weakened, any, base, own)); });
     made("log", 0.4, [&](Random&) { return there(check_log(weakened, any, base)); });

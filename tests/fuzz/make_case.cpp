@@ -230,14 +230,9 @@ Case make_case(std::uint64_t seed) {
     make_commands(random, c, size);
     // Drawn last, as they came: seeds keep the rest of their cases.
     if (random.chance(0.4)) s.method.water_transport_order = 2;
-    const Method& m = s.method;
-    const bool plain = m.velocity_transport == VelocityTransport::flux_form &&
-                       m.strain_transport == StrainTransport::left_stretch && m.drag_friction == DragFriction::joint &&
-                       m.diffusion == Diffusion::limited && m.water_transport_order == 1;
-    if (random.chance(0.4) && plain) s.method.half_storage = true;
     make_sand_laws(random, s);
     if (random.chance(0.3)) s.method.prestress = true;
-    if (random.chance(0.3) && !s.method.half_storage) s.method.sand_transport_order = 2;
+    if (random.chance(0.3)) s.method.sand_transport_order = 2;
     if (random.chance(0.2)) s.material.manning = random.log(1e-3, 1);
     if (random.chance(0.1)) s.roughness = drawn(s.grid, relief(random, s.grid, random.log(1e-3, 1)));
     for (Side& side : s.sides)

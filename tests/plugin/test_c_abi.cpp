@@ -153,30 +153,6 @@ TEST_CASE("same level, same hash; profiling names every stage and changes nothin
     CHECK(hashes[0] == hashes[1]);
 }
 
-TEST_CASE("half storage gives a warning on the CPU alone, and no world has it unasked") {
-    for (const auto& backend : wadi::test::abi_backends())
-        for (const bool half : {false, true}) {
-            CAPTURE(backend);
-            CAPTURE(half);
-            std::vector<float> terrain, water;
-            auto arrays = pond(terrain, water);
-            const std::string settings = arrays.settings_json;
-            const std::string with_half = settings.substr(0, settings.rfind('}')) + R"(, "method": {"half_storage": true}})";
-            if (half) arrays.settings_json = with_half.c_str();
-            auto options = wadi_default_device_options();
-            options.backend = backend.c_str();
-            wadi_world_id id{};
-            REQUIRE_MESSAGE(wadi_create_world_from_arrays(&arrays, &options, &id) == WADI_OK, std::string(wadi_get_last_error()));
-            auto info = wadi_default_world_info();
-            REQUIRE(wadi_world_get_info(id, &info) == WADI_OK);
-            int told = 0;
-            for (uint32_t n = 0; n < info.warning_count; ++n)
-                told += std::string(wadi_world_get_warning(id, n)).find("half_storage") != std::string::npos ? 1 : 0;
-            CHECK(told == (half && backend == "cpu" ? 1 : 0));
-            CHECK(wadi_destroy_world(id) == WADI_OK);
-        }
-}
-
 TEST_CASE("null and destroyed ids are refused by every call") {
     Pond world;
     const auto dead = world.id;

@@ -77,8 +77,7 @@ std::vector<float> heights(const wadi_region& region, double quantum, float base
 
 TEST_CASE("values that are checked on the device give the bits and counts of those checked on the host") {
     const std::vector<std::string> methods = {"", R"(, "method": {"name": "published"})", R"(, "method": {"name": "paper_like"})",
-                                              R"(, "method": {"prestress": false, "half_storage": true})",
-                                              R"(, "method": {"half_storage": true}, "active_tiles": 8)"};
+                                              R"(, "method": {"prestress": false})", R"(, "active_tiles": 8)"};
     for (const auto& backend : abi_backends()) {
         CAPTURE(backend);
         for (const auto& method : methods) {

@@ -121,7 +121,7 @@ WorldParams content_params(std::uint32_t effects) {
 
 /// Masks that the stage has code for, some of them where there are many, all effects among them.
 std::vector<std::uint32_t> content_masks(int stage, const InstructionSet& set) {
-    const std::uint32_t tested = compute::stage_table()[static_cast<std::size_t>(stage)].tested_effects & ~EFFECT_HALF_STORAGE;
+    const std::uint32_t tested = compute::stage_table()[static_cast<std::size_t>(stage)].tested_effects;
     std::vector<std::uint32_t> masks;
     std::uint32_t mask = 0;
     do {

@@ -268,8 +268,6 @@ TEST_CASE("level: settings by name") {
     CHECK(s.method.diffusion == Diffusion::laplacian);
     CHECK(s.method.water_transport_order == 2);
     CHECK(s.method.sand_transport_order == 2);
-    CHECK(!s.method.half_storage);
-    CHECK(must(parse(R"("method": {"half_storage": true})")).settings.method.half_storage);
     CHECK(s.sides[1].kind == SideKind::level);
     CHECK(s.sides[1].to == 3);
     CHECK(s.sides[1].value.at(5) == 2);
@@ -361,13 +359,6 @@ TEST_CASE("level: an accuracy preset scales cells and time step and sets the sub
     CHECK(accurate.settings.grid.nx == 2 * plain.settings.grid.nx);
     CHECK(accurate.settings.method.water_transport_order == 2);
     CHECK(draft.settings.method.water_transport_order == 1);
-    for (const auto* preset : {"draft", "balanced", "accurate"}) {
-        overrides.accuracy = preset;
-        for (const auto* method : {"robust", "paper_like", "published"}) {
-            overrides.method = method;
-            CHECK(!must(parse("", "", overrides)).settings.method.half_storage); // only a level asks for it
-        }
-    }
     overrides = {};
     CHECK(must(parse(R"("accuracy": "draft", "method": {"water_transport_order": 2})")).settings.method.water_transport_order ==
           2);

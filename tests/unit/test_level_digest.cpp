@@ -40,9 +40,6 @@ TEST_CASE("level digest: of a level that sets everything") {
             "strain_rim": "one_sided"})");
     REQUIRE_MESSAGE(level, message(level));
     CHECK_MESSAGE(level_digest(level->settings) == 4087223593442456772u, level_digest(level->settings));
-    const auto half = parse(R"("method": {"half_storage": true})");
-    REQUIRE_MESSAGE(half, message(half));
-    CHECK_MESSAGE(level_digest(half->settings) == 12943527201114364301u, level_digest(half->settings));
 }
 
 TEST_CASE("level digest: roughness counts, cell by cell") {

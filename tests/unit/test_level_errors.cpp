@@ -96,8 +96,6 @@ TEST_CASE("level errors: material, method, effects") {
     refuses(R"("method": {"substeps": 0})", "method.substeps: 0 is outside 1 ... 64");
     refuses(R"("method": {"substeps": 2.5})", "2.5 is not a whole number");
     refuses(R"("method": {"outflow_limiter": 1})", "expected true or false, found 1");
-    refuses(R"("method": {"half_storage": true, "water_transport_order": 2})", "method.half_storage: true goes only with");
-    refuses(R"("method": {"half_storage": true, "sand_transport_order": 2})", "method.half_storage: true goes only with");
     refuses(R"("effects": {"cohesoin": "off"})", "effects.cohesoin: unknown key, did you mean \"cohesion\"?");
     refuses(R"("effects": {"cohesion": "offf"})", "\"offf\" is not known, did you mean \"off\"?");
     refuses(R"("effects": {"cohesion": false})", "expected a text, found false");

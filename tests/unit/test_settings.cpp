@@ -108,18 +108,6 @@ TEST_CASE("settings: saturation, quantum, caps, names") {
     CHECK(refusal([](Settings& s) { s.method.sand_transport_order = 2; }).empty());
     CHECK(says(refusal([](Settings& s) { s.method.sand_transport_order = 0; }),
                "method.sand_transport_order: 0 is outside 1 ... 2"));
-    CHECK(refusal([](Settings& s) { s.method.half_storage = true; }).empty());
-    for (const auto& spoil :
-         {+[](Method& m) { m.velocity_transport = VelocityTransport::semi_lagrangian; },
-          +[](Method& m) { m.strain_transport = StrainTransport::polar; },
-          +[](Method& m) { m.strain_transport = StrainTransport::direct; },
-          +[](Method& m) { m.drag_friction = DragFriction::sequence; }, +[](Method& m) { m.diffusion = Diffusion::laplacian; },
-          +[](Method& m) { m.water_transport_order = 2; }, +[](Method& m) { m.sand_transport_order = 2; }})
-        CHECK(says(refusal([&](Settings& s) {
-                       s.method.half_storage = true;
-                       spoil(s.method);
-                   }),
-                   "method.half_storage: true goes only with velocity_transport"));
     CHECK(says(refusal([](Settings& s) { s.method.name = "robst"; }), "did you mean \"robust\"?"));
     CHECK(says(refusal([](Settings& s) { s.effects = {{"cohesoin", Force::off}}; }), "did you mean \"cohesion\"?"));
     CHECK(refusal([](Settings& s) { s.effects = {{"bed_friction", Force::on}}; }).empty());

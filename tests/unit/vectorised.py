@@ -21,10 +21,6 @@ def effects(mask, source):
     return "+".join(name for name, bit in bits(source).items() if mask & bit) or "no effect"
 
 
-def half_bit(source):
-    return bits(source)["half_storage"]
-
-
 def stage_text(stage, stagec, source, isa, masks):
     with tempfile.TemporaryDirectory() as folder:
         code = pathlib.Path(folder) / "stage.cpp"
@@ -67,8 +63,6 @@ def main():
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         found = list(pool.map(lambda one: fails(texts[one[0]], one[1], source, cxx, isa), asked))
     bad = [f"{name} {effects(mask, source)}" for (name, mask), failed in zip(asked, found) if failed]
-    if not names and not any(mask & half_bit(source) for _, mask in asked):
-        bad.append("half storage: of no stage")
     for name in bad:
         print(f"FAIL {name}: no row in vectors; see rule 8 of shaders/README.md")
     branch = "{ if (i % 7 == 3) return; local.kernel(i, j); }"  # leaves the loop: nothing to vectorise

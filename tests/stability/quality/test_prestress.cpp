@@ -256,41 +256,37 @@ TEST_CASE("the strain of sand in balance is that of its definition") {
 
 TEST_CASE("prestress: the same bits on every backend, however strain is kept and a step is run, and in a loaded snapshot") {
     for (const auto transport : {StrainTransport::left_stretch, StrainTransport::polar, StrainTransport::direct}) {
-        for (const bool half : {false, true}) {
-            if (half && transport != StrainTransport::left_stretch) continue;
-            auto scene = on_slope(0.1, true, [](double x, double y) { return box(x, y) * (0.2 + 0.1 * x); });
-            auto& m = scene.settings.material;
-            m.cohesion_wet = m.cohesion_capillary = 5e3;
-            scene.fill(scene.fields.water, [](double x, double y) { return 0.3 * box(x, y); });
-            scene.settings.method.strain_transport = transport;
-            scene.settings.method.half_storage = half;
-            scene = with_source(scene, {"source", nothing, {}, 0.2});
-            scene.settings.sources[0].center[0] += 0.5;
-            const auto run = [](World& world) {
-                step(world, 10);
-                edit_world(world, {brush(EditLayer::sand, box_middle - 0.5, box_middle, 0.7, 0.4),
-                                   brush(EditLayer::sand, box_middle, box_middle, 0.3, -0.3)});
-                step(world, 10);
-            };
-            on_every_backend(scene, run);
-            auto world = make_world(scene);
-            const auto begun = save(*world);
-            run(*world);
-            const auto hash = hash_of(*world);
-            auto tiled = scene;
-            tiled.settings.active_tiles = 8;
-            tiled.settings.fused_stages = FusedStages::never;
-            auto other = make_world(tiled);
-            run(*other);
-            CHECK(hash_of(*other) == hash);
-            auto bare = scene;
-            bare.fields.sand.clear();
-            bare.fields.water.clear();
-            auto loaded = make_world(bare);
-            REQUIRE(loaded->snapshots().load(begun));
-            run(*loaded);
-            CHECK(hash_of(*loaded) == hash);
-        }
+        auto scene = on_slope(0.1, true, [](double x, double y) { return box(x, y) * (0.2 + 0.1 * x); });
+        auto& m = scene.settings.material;
+        m.cohesion_wet = m.cohesion_capillary = 5e3;
+        scene.fill(scene.fields.water, [](double x, double y) { return 0.3 * box(x, y); });
+        scene.settings.method.strain_transport = transport;
+        scene = with_source(scene, {"source", nothing, {}, 0.2});
+        scene.settings.sources[0].center[0] += 0.5;
+        const auto run = [](World& world) {
+            step(world, 10);
+            edit_world(world, {brush(EditLayer::sand, box_middle - 0.5, box_middle, 0.7, 0.4),
+                               brush(EditLayer::sand, box_middle, box_middle, 0.3, -0.3)});
+            step(world, 10);
+        };
+        on_every_backend(scene, run);
+        auto world = make_world(scene);
+        const auto begun = save(*world);
+        run(*world);
+        const auto hash = hash_of(*world);
+        auto tiled = scene;
+        tiled.settings.active_tiles = 8;
+        tiled.settings.fused_stages = FusedStages::never;
+        auto other = make_world(tiled);
+        run(*other);
+        CHECK(hash_of(*other) == hash);
+        auto bare = scene;
+        bare.fields.sand.clear();
+        bare.fields.water.clear();
+        auto loaded = make_world(bare);
+        REQUIRE(loaded->snapshots().load(begun));
+        run(*loaded);
+        CHECK(hash_of(*loaded) == hash);
     }
 }
 
@@ -343,20 +339,16 @@ TEST_CASE("prestress follows a change of material: sand that gets its elasticity
     CHECK(weak(true) > 0);
     CHECK(weak(true) == weak(false));
     // Ahead of the first step nothing of the other material's balance is left, not even its rounding; behind it sand keeps it.
-    for (const bool half : {false, true}) {
-        auto soft = scene, stiff = scene;
-        soft.settings.method.half_storage = stiff.settings.method.half_storage = half;
-        stiff.settings.material.young_modulus *= 1.3;
-        const auto bits = [&](const Scene& level, int steps_before) {
-            auto world = make_world(level);
-            step(*world, steps_before);
-            set(*world, "young_modulus", stiff.settings.material.young_modulus);
-            return cells_of(*world, "stretch_xx").values;
-        };
-        CAPTURE(half);
-        CHECK(bits(soft, 0) == bits(stiff, 0));
-        CHECK(bits(soft, 1) != bits(stiff, 1));
-    }
+    auto soft = scene, stiff = scene;
+    stiff.settings.material.young_modulus *= 1.3;
+    const auto bits = [&](const Scene& level, int steps_before) {
+        auto world = make_world(level);
+        step(*world, steps_before);
+        set(*world, "young_modulus", stiff.settings.material.young_modulus);
+        return cells_of(*world, "stretch_xx").values;
+    };
+    CHECK(bits(soft, 0) == bits(stiff, 0));
+    CHECK(bits(soft, 1) != bits(stiff, 1));
 }
 
 TEST_CASE("the castle without its wave stays as it is drawn") {

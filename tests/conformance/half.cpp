@@ -1,8 +1,8 @@
-#include "engine/step/half.hpp"
+#include "tests/conformance/half.hpp"
 #include <algorithm>
 #include <cmath>
 
-namespace wadi {
+namespace wadi::conformance {
 
 namespace {
 constexpr int mantissa_bits = 10, least_exponent = -14, bias = 15;
@@ -20,11 +20,6 @@ std::uint16_t to_half(float value) {
     return magnitude == 0 ? std::uint16_t{0} : static_cast<std::uint16_t>(sign | magnitude);
 }
 
-float half_at_most(float value) {
-    const auto nearest = to_half(value);
-    return from_half(from_half(nearest) > value ? static_cast<std::uint16_t>(nearest - 1) : nearest);
-}
-
 float from_half(std::uint16_t bits) {
     const int exponent = (bits >> mantissa_bits) & 31, mantissa = bits & 1023;
     const float size = exponent == 31  ? NAN
@@ -33,4 +28,4 @@ float from_half(std::uint16_t bits) {
     return (bits & 0x8000) != 0 ? -size : size;
 }
 
-} // namespace wadi
+} // namespace wadi::conformance
