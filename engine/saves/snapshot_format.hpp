@@ -1,6 +1,6 @@
 // A snapshot as bytes: what lies where, the checksum, and for which level it is.
 //
-// Little-endian, version 3:
+// Little-endian, version 4:
 //      0  char[8]  "WADISNAP"
 //      8  u32      version
 //     12  u32      number of fields
@@ -24,7 +24,7 @@
 
 namespace wadi {
 
-constexpr std::uint32_t snapshot_version = 3;
+constexpr std::uint32_t snapshot_version = 4;
 
 /// Bytes of what lies in memory already: they fit, also where size_t has 32 bits.
 constexpr std::size_t in_memory(std::uint64_t bytes) { return static_cast<std::size_t>(bytes); }

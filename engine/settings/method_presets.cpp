@@ -24,7 +24,7 @@ void choose_paper_like(Method& chosen) {
     // The one guard that the paper names is the velocity clamp, without a number: it stays that of robust. So does the
     // outflow limiter, without which the paper's mass claim does not hold.
     chosen.quantum = 0;
-    chosen.gravity_cap = chosen.gravity_cap_least = chosen.sand_gravity_cap = chosen.elastic_cap = 0;
+    chosen.gravity_cap = chosen.sand_gravity_cap = chosen.elastic_cap = 0;
     chosen.rest_rule = false;
     chosen.shock_viscosity = 0;
     chosen.passive_pressure = chosen.gradient_clamp = chosen.cohesion_cap = 0;

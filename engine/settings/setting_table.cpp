@@ -109,8 +109,6 @@ constexpr Setting rows[] = {
      "speeds stay below velocity_clamp * dx / dt"},
     {"method.gravity_cap", method<&Method::gravity_cap>, {0, 1e6}, "", EFFECT_WATER,
      "slows waves that dt cannot follow; 0 = off"},
-    {"method.gravity_cap_least", method<&Method::gravity_cap_least>, {0, 1e6}, "", EFFECT_WATER,
-     "gravity_cap in fast water; at most gravity_cap"},
     {"method.sand_gravity_cap", method<&Method::sand_gravity_cap>, {0, 1e6}, "", EFFECT_SAND, "gravity_cap of sand; 0 = off"},
     {"method.elastic_cap", method<&Method::elastic_cap>, {0, 1e6}, "", EFFECT_ELASTOPLASTIC,
      "softens sand that the sand substep cannot follow; 0 = off"},
@@ -126,8 +124,6 @@ constexpr Setting rows[] = {
      "largest strain increment of a sand substep; 0 = off"},
     {"method.cohesion_cap", method<&Method::cohesion_cap>, {0, 1e6}, "", EFFECT_COHESION,
      "largest tension that cohesion bears / (sand_density g depth); 0 = off"},
-    {"method.stress_taper", method<&Method::stress_taper>, {0, 1e3}, "m", EFFECT_ELASTOPLASTIC,
-     "stress fades in between this depth and twice it; 0 = off"},
     {"method.prestress", method<&Method::prestress>, flag, "", EFFECT_ELASTOPLASTIC,
      "sand drawn, poured or stamped starts in balance if cohesion holds it", InDigest::where_set},
     {"method.saturation_smoothing", method<&Method::saturation_smoothing>, {0, 2}, "cells", EFFECT_COHESION,
@@ -158,8 +154,6 @@ constexpr Setting rows[] = {
      "side of tiles, left out at rest; 0 = off, 1, 2 = where that gains", InDigest::no},
     {"fused_stages", at<&Settings::fused_stages>, words(fused_stages), "", several,
      "several stages in one pass; auto: where the device gains from it", InDigest::no},
-    {"active_tiles_most", at<&Settings::active_tiles_most>, {0, 1}, "", several,
-     "share of active tiles above which the log is told", InDigest::no},
 };
 // clang-format on
 

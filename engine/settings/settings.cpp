@@ -70,9 +70,10 @@ Status check_method(const Method& method) {
     const auto& names = method_names();
     if (std::find(names.begin(), names.end(), method.name) == names.end())
         return refuse("method.name: \"" + method.name + "\" is not a method" + suggestion(method.name, names));
-    if (method.gravity_cap > 0 && method.gravity_cap_least > method.gravity_cap)
-        return refuse(outside_text("method.gravity_cap_least", method.gravity_cap_least, 0, method.gravity_cap) +
-                      " (at most gravity_cap)");
+    if (method.gravity_cap > 0 && static_cast<float>(method.gravity_cap) < GRAVITY_CAP_LEAST)
+        return refuse(outside_text("method.gravity_cap", method.gravity_cap, static_cast<double>(GRAVITY_CAP_LEAST),
+                                   find_setting("method.gravity_cap")->values.most) +
+                      " (or 0: off)");
     if (method.velocity_transport == VelocityTransport::semi_lagrangian && method.velocity_clamp > SEMI_LAGRANGIAN_CLAMP_MOST)
         return refuse(outside_text("method.velocity_clamp", method.velocity_clamp, 0.01, SEMI_LAGRANGIAN_CLAMP_MOST) +
                       " (semi_lagrangian looks one cell back)");

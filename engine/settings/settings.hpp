@@ -76,14 +76,13 @@ enum class StrainRim : std::uint8_t { one_sided, extrapolated };
 /// How water and sand are stepped. Every guard is off at a neutral value, so that any one can be studied alone.
 struct Method {
     std::string name = "robust";
-    int substeps = 3;             // T
-    bool outflow_limiter = true;  // NUMERICS 2.2
-    double quantum = -1;          // NUMERICS 2.2
-    double largest_height = 16;   // of H + hs + W
-    double dry_threshold = 1e-5;  // eps
-    double velocity_clamp = 0.35; // alpha: |u| <= alpha dx/dt
-    double gravity_cap = 0.55;    // NUMERICS 2.4b
-    double gravity_cap_least = 0.15;
+    int substeps = 3;               // T
+    bool outflow_limiter = true;    // NUMERICS 2.2
+    double quantum = -1;            // NUMERICS 2.2
+    double largest_height = 16;     // of H + hs + W
+    double dry_threshold = 1e-5;    // eps
+    double velocity_clamp = 0.35;   // alpha: |u| <= alpha dx/dt
+    double gravity_cap = 0.55;      // NUMERICS 2.4b
     double sand_gravity_cap = 0.25; // NUMERICS 2.7
     double elastic_cap = 0.2;       // lambda + 2 mu <= elastic_cap rho_s dx^2/dts^2
     double shock_viscosity = 0.25;  // c1 of NUMERICS 2.3
@@ -92,8 +91,7 @@ struct Method {
     double passive_pressure = 1;    // K of the compression cap, NUMERICS 2.7
     double gradient_clamp = 0.4;    // largest |dts grad v| entry
     double cohesion_cap = 0.9;      // tension <= cohesion_cap rho_s g hs, NUMERICS 2.7
-    double stress_taper = 0;
-    bool prestress = true; // NUMERICS 2.20
+    bool prestress = true;          // NUMERICS 2.20
     int saturation_smoothing = 2;
     VelocityTransport velocity_transport = VelocityTransport::flux_form; // semi_lagrangian: velocity_clamp at most 1
     StrainTransport strain_transport = StrainTransport::left_stretch;
@@ -172,7 +170,6 @@ struct Settings {
     int active_tiles = tiles_where_cheap; // side [cells]; 0 = off; the two words above: the world chooses while it runs
     /// Every bit stays.
     FusedStages fused_stages = FusedStages::automatic;
-    double active_tiles_most = 1; // 1 = the log is never told
     /// Of active tiles [cells]; 0 = there are none.
     int tile_side() const {
         return active_tiles == tiles_where_they_gain || active_tiles == tiles_where_cheap ? chosen_tile_side : active_tiles;

@@ -60,7 +60,6 @@ ActiveCount::Newest ActiveCount::newest() {
         std::memcpy(counts.data(), state_.device().mapped(slot.buffer).data(), lists * sizeof(std::uint32_t));
         newest_ = *std::max_element(counts.begin(), counts.end());
         seen_ = slot.ticket.value;
-        report(newest_);
     }
     return {seen_, newest_};
 }
@@ -68,15 +67,6 @@ ActiveCount::Newest ActiveCount::newest() {
 bool ActiveCount::asleep() {
     const auto [seen, count] = newest();
     return count == 0 && seen > woken_;
-}
-
-void ActiveCount::report(std::uint32_t count) {
-    const std::uint64_t tiles = state_.tiles().count();
-    const bool above = static_cast<double>(count) > state_.settings().active_tiles_most * static_cast<double>(tiles);
-    if (above && !above_)
-        state_.tell(1, std::to_string(count) + " of " + std::to_string(tiles) +
-                           " tiles are active, more than active_tiles_most allows");
-    above_ = above;
 }
 
 } // namespace wadi

@@ -22,8 +22,7 @@ class ActiveCount {
         std::uint32_t count;
     };
     Newest newest();
-    /// A submission that nothing has woken since has finished and ran over no tile. Tells the log where the share of active tiles
-    /// passes settings.active_tiles_most.
+    /// A submission that nothing has woken since has finished and ran over no tile.
     bool asleep();
 
   private:
@@ -31,13 +30,10 @@ class ActiveCount {
         compute::Buffer buffer;
         compute::Ticket ticket; // of the newest submission; 0 = none
     };
-    void report(std::uint32_t count);
-
     WorldState& state_;
     std::array<Slot, 2> slots_{};
     std::uint64_t woken_ = 0, seen_ = 0; // tickets: of the newest submission that woke tiles, and of the newest count
     std::uint32_t newest_ = 1;
-    bool above_ = false;
     bool two_lists_ = false; // in the newest submission
 };
 

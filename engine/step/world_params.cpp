@@ -82,7 +82,6 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     p.water_velocity_clamp = velocity_limit(w, k);
     p.shock_viscosity = f(w.shock_viscosity * k * std::sqrt(gravity));
     p.gravity_cap_base = w.gravity_cap > 0 ? f(w.gravity_cap) : gravity_cap_off;
-    p.gravity_cap_floor = f(w.gravity_cap_least);
     p.inv_k2 = f(1 / (k * k));
     const double rest_surface = 2 * ledger_quantum(w);
     p.rest_surface = w.rest_rule ? f(rest_surface) : -1.0F;
@@ -158,7 +157,6 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     p.inv_friction_yield = f(1 / m.yield_friction);
     p.force_scale = f(ks / m.sand_density);
     p.gradient_clamp = w.gradient_clamp > 0 ? f(w.gradient_clamp) : off;
-    p.stress_taper = w.stress_taper > 0 ? f(1 / w.stress_taper) : off;
     p.cohesion_cap = w.cohesion_cap > 0 ? f(2 * m.yield_friction * w.cohesion_cap * weight) : off;
     const auto [phi1, phi2, phi3] = m.saturation;
     const double apex = (effects & EFFECT_ALGORITHM_1) != 0 ? 1 : yield_cohesion(m);

@@ -10,7 +10,7 @@ BACK = {  # a choice of published that paper_like does not make, and what that h
 }
 WITH_IT = {"mixed_pressure": ("layer_exchange",), "sand_substep": ("corner_shear", "strain_rim")}  # go only with it
 JOINT = {**BACK, "drag_friction": "joint"}
-CAPS = {"gravity_cap": 0.55, "gravity_cap_least": 0.15}  # robust's
+CAPS = {"gravity_cap": 0.55}  # robust's
 CASES = (("dam_break", None, (96, 96), 7.5), ("letters", None, (160, 80), 7), ("seepage", "high", (128, 64), 40))  # level, variant, cells, end [s]
 BED_LOAD = (("seepage", "medium", (64, 32), 90), ("seepage", "low", (64, 32), 90))
 

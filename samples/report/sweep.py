@@ -10,7 +10,6 @@ CHOICES = {
     "paper_like": {"name": "paper_like"},
     "second_order": {"water_transport_order": 2},
     "second_order_sand": {"water_transport_order": 2, "sand_transport_order": 2},
-    "half_storage": {"half_storage": True},
     "semi_lagrangian": {"velocity_transport": "semi_lagrangian"},
     "polar": {"strain_transport": "polar"},
     "direct": {"strain_transport": "direct"},
@@ -18,7 +17,7 @@ CHOICES = {
     "laplacian": {"diffusion": "laplacian"},
     "no_limiter": {"outflow_limiter": False},
     "no_quantum": {"quantum": 0},
-    "no_gravity_caps": {"gravity_cap": 0, "gravity_cap_least": 0, "sand_gravity_cap": 0},
+    "no_gravity_caps": {"gravity_cap": 0, "sand_gravity_cap": 0},
     "no_elastic_cap": {"elastic_cap": 0},
     "no_rest_rule": {"rest_rule": False},
     "no_shock_viscosity": {"shock_viscosity": 0},
@@ -29,8 +28,8 @@ GUARDS = [choice for choice in CHOICES if choice.startswith("no_")]
 METHODS = [choice for choice in CHOICES if not choice.startswith("no_")]
 EFFECTS = ("elastoplastic", "cohesion", "drag", "diffusion", "mixture")
 NEEDED_BY = {"elastoplastic": "cohesion", "mixture": "diffusion"}  # what needs an effect goes with it
-CHOICES_OF = {"water": ("robust", "paper_like", "second_order", "half_storage", "semi_lagrangian"),
-              "dry sand": ("robust", "paper_like", "second_order_sand", "half_storage", "semi_lagrangian", "polar", "direct"),
+CHOICES_OF = {"water": ("robust", "paper_like", "second_order", "semi_lagrangian"),
+              "dry sand": ("robust", "paper_like", "second_order_sand", "semi_lagrangian", "polar", "direct"),
               "wet sand": tuple(METHODS)}  # what a kind of scene has something of to show
 STEPS = (0.25, 0.5, 1, 2, 4)
 RATIOS = (1, 2, 3, 4, 6)

@@ -15,7 +15,7 @@ constexpr double PI = 3.14159265358979323846;
 constexpr std::array grids = {"33x17", "1x1", "1x9", "9x1", "63x5", "64x4", "65x3", "70x50"};
 constexpr std::array scenes = {"random", "dam_break",    "lake",      "cliff", "islands", "slope",
                                "flat",   "one_wet_cell", "thin_film", "deep",  "creep",   "brimful"};
-constexpr std::array methods = {"default", "plain", "bare", "tapered", "coarse"};
+constexpr std::array methods = {"default", "plain", "bare", "unsmoothed", "coarse"};
 
 // Position in a scene: metres are x, y; u, v run from 0 to 1, s along the longer axis.
 struct Place {
@@ -160,11 +160,10 @@ bool set_method(Method& method, const std::string& name) {
     if (name == "plain") {
         method.quantum = 0;
     } else if (name == "bare") { // every guard off
-        method.quantum = method.gravity_cap = method.gravity_cap_least = method.sand_gravity_cap = method.elastic_cap = 0;
+        method.quantum = method.gravity_cap = method.sand_gravity_cap = method.elastic_cap = 0;
         method.passive_pressure = method.gradient_clamp = method.cohesion_cap = 0;
         method.outflow_limiter = method.rest_rule = false;
-    } else if (name == "tapered") {
-        method.stress_taper = 0.15;
+    } else if (name == "unsmoothed") {
         method.saturation_smoothing = 0;
         method.substeps = 1;
     } else if (name == "coarse") {

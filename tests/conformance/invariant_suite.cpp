@@ -37,7 +37,7 @@ std::vector<CaseSpec> list() {
     add("bounds", "33x17", EFFECT_WATER | EFFECT_SAND | EFFECT_DRAG, "dam_break", "default", 300);
     add("bounds", "33x17", WET, "deep", "default", 300);
     add("bounds", "64x48", ALL, "random", "default", 300);
-    add("bounds", "64x48", ALL, "dam_break", "tapered", 300);
+    add("bounds", "64x48", ALL, "dam_break", "unsmoothed", 300);
     add("bounds", "33x17", ALL, "thin_film", "default", 300);
     add("bounds", "33x17", WET | ELASTIC | EFFECT_COHESION, "cliff", "plain",
         300); // closed: its ledger would count rounded quanta

@@ -115,7 +115,10 @@ std::vector<CaseSpec> list() {
                 // A film is so level that what its slopes withhold of the push, 1 - C r, is rounding, unless quanta are coarse.
                 const bool level_film =
                     scene == "thin_film" && stages[stage].name == "integrate_sand_velocity" && (mask & EFFECT_SLOPE_NORMAL) != 0;
-                add(grid, scene, level_film ? "coarse" : rounding_only || unresolved || film || one_value ? "tapered" : method);
+                add(grid, scene,
+                    level_film                                         ? "coarse"
+                    : rounding_only || unresolved || film || one_value ? "unsmoothed"
+                                                                       : method);
             }
         }
         if (stages[stage].name == "apply_sources") {

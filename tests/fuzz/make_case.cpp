@@ -120,7 +120,6 @@ void make_method(Random& random, Settings& s) {
     if (random.chance(0.1)) m.rest_rule = false;
     if (random.chance(0.3)) m.shock_viscosity = random.real(0, 1);
     if (random.chance(0.3)) m.bulk_viscosity = random.real(0, 1);
-    if (random.chance(0.1)) m.stress_taper = random.log(1e-4, 1);
     m.saturation_smoothing = random.whole(0, 2);
     if (random.chance(0.1)) m.velocity_transport = VelocityTransport::semi_lagrangian;
     if (random.chance(0.15)) m.strain_transport = random.pick({StrainTransport::polar, StrainTransport::direct});

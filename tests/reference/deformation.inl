@@ -256,11 +256,6 @@ template <class Real> void Solver<Real>::project_deformation_gradient() {
         }
         sxx[c] += after - before;
         syy[c] += after - before;
-        // It fades out in thin layers where the taper is on.
-        const Real fade = P.taper > Real(0) ? std::clamp(sand[c] / P.taper - Real(1), Real(0), Real(1)) : Real(1);
-        sxx[c] *= fade;
-        syy[c] *= fade;
-        sxy[c] *= fade;
         if (!has(EFFECT_DIRECT_STRAIN)) continue;
         const Real Pxx = Vxx[c];
         const Real Pxy = Vxy[c];

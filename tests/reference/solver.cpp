@@ -54,7 +54,6 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
     P.quantum = static_cast<Real>(quantum);
     P.alpha = static_cast<Real>(method.velocity_clamp);
     P.gravity_cap = static_cast<Real>(method.gravity_cap);
-    P.gravity_cap_least = static_cast<Real>(method.gravity_cap_least);
     P.sand_gravity_cap = static_cast<Real>(method.sand_gravity_cap);
     P.rest_surface = P.rest_velocity = Real(-1);
     if (method.rest_rule) { // two quanta, and the speed that one step's push of three gives; without a quantum those of the float
@@ -67,7 +66,6 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
     P.gradient_clamp = static_cast<Real>(method.gradient_clamp);
     P.shock_viscosity = static_cast<Real>(method.shock_viscosity);
     P.cohesion_cap = static_cast<Real>(method.cohesion_cap);
-    P.taper = static_cast<Real>(method.stress_taper);
     P.chi = static_cast<Real>(material.slope_normal);
     P.wedge = static_cast<Real>(material.friction + std::sqrt(material.friction * material.friction + 1 / material.slope_normal));
     P.spread_friction = static_cast<Real>(material.internal_friction);

@@ -31,12 +31,11 @@ template <class Real> struct Constants {
     Real quantum{}, largest_height{}; // [m]; quantum 0 = plain arithmetic
     Real clamp{}, clamp_sand{};       // alpha dx/dt, alpha dx/substep [m/s]
     Real alpha{};                     // the clamp's factor
-    Real gravity_cap{}, gravity_cap_least{}, sand_gravity_cap{};
+    Real gravity_cap{}, sand_gravity_cap{};
     Real rest_surface{}, rest_velocity{}; // [m], [m/s]
     Real passive_pressure{}, gradient_clamp{}, cohesion_cap{};
     Real shock_viscosity{}; // c1 of 2.3
     Real viscosity{};       // bulk viscosity of sand [Pa s], bounded for stability (2.7)
-    Real taper{};           // h_el [m]
     Real chi{}, wedge{};    // 2.18: slope-normal factor, slope s* of Coulomb's wedge (infinite without chi)
     Real spread_friction{}; // 2.18: b, share of mu
     Real shear_number{};    // 2.18: nu substep/dx^2 of the in-plane viscosity, bounded for stability

@@ -353,32 +353,6 @@ TEST_CASE("active tiles: a world asleep submits nothing until something wakes it
     }
 }
 
-TEST_CASE("active tiles: more of them than settings.active_tiles_most are told to the log, once") {
-    auto scene = pond_and_pile();
-    scene.settings.active_tiles_most = 0.9;
-    scene.settings.active_tiles = 8;
-    auto world = make_world(scene);
-    std::vector<std::string> told;
-    world->set_log([&](int severity, const std::string& text) {
-        if (severity == 1) told.push_back(text);
-    });
-    const auto run = [&](int steps) {
-        for (int n = 0; n < steps; ++n) {
-            step(*world, 1);
-            CHECK(hash_of(*world) != 0); // waits
-        }
-    };
-    run(6);
-    REQUIRE(told.size() == 1);
-    CHECK(told[0].find("357 of 357 tiles are active, more than active_tiles_most") != std::string::npos);
-    run(20); // few are active by then
-    CHECK(told.size() == 1);
-    const std::vector<float> heights(1, 0.1F);
-    REQUIRE(world->commands().write_region(EditLayer::terrain, {3, 3, 1, 1}, heights)); // wakes all
-    run(4);
-    CHECK(told.size() == 2);
-}
-
 TEST_CASE("active tiles: steps in parts and profiled steps are the same steps") {
     Twins twins(pond_and_pile(), 8);
     const int steps = few_steps ? 8 : 30;

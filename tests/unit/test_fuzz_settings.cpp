@@ -35,7 +35,7 @@ std::map<std::string, Drawn> drawn_by(std::uint64_t seeds) {
 bool free_number(const Setting& row) {
     const std::string path = row.path;
     return row.at.kind == SettingKind::number && row.object() != "grid" && row.object() != "" && !row.element() &&
-           path != "method.quantum" && path != "method.gravity_cap_least" && path != "method.gravity_cap";
+           path != "method.quantum" && path != "method.gravity_cap";
 }
 
 } // namespace

@@ -95,7 +95,8 @@ TEST_CASE("settings: saturation, quantum, caps, names") {
     CHECK(says(refusal([](Settings& s) { s.method.quantum = 0.001; }), "not a power of two; the next below is 0.000976562"));
     CHECK(says(refusal([](Settings& s) { s.method.quantum = std::ldexp(1.0, -30); }), "largest_height / 2^24"));
     CHECK(says(refusal([](Settings& s) { s.method.quantum = -0.5; }), "neither -1"));
-    CHECK(says(refusal([](Settings& s) { s.method.gravity_cap_least = 0.6; }), "0.6 is outside 0 ... 0.55"));
+    CHECK(says(refusal([](Settings& s) { s.method.gravity_cap = 0.1; }), "method.gravity_cap: 0.1 is outside 0.15 ..."));
+    CHECK(refusal([](Settings& s) { s.method.gravity_cap = 0; }).empty());
     CHECK(says(refusal([](Settings& s) {
                    s.method.velocity_transport = VelocityTransport::semi_lagrangian;
                    s.method.velocity_clamp = 1.5;

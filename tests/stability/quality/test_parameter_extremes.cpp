@@ -42,7 +42,6 @@ Scene all_at_once(DragFriction form) {
     auto& method = scene.settings.method;
     method.largest_height = 64;
     method.bulk_viscosity = 0.3;
-    method.stress_taper = 0.01;
     method.drag_friction = form;
     if (form == DragFriction::sequence) method.strain_transport = StrainTransport::polar;
     scene.settings.sources = {{SourceShape::disc, SourceMaterial::water, {0.6, 0.9}, 0.5, {}, {{{0, 0.5}}}, true, {3, 0}}};
