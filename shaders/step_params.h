@@ -23,7 +23,7 @@
 #define FUSED_COLUMNS 32 // cells that one group of a fused stage covers along x; sides of active tiles are multiples or parts of it
 #define FUSED_ROWS 16    // and along y
 #define MAX_WAKES 36     // rectangles of active tiles that one step wakes: all sources and all sides have room
-#define GRAVITY_CAP_LEAST 0.15f // what gravity_cap comes down to in fast water, NUMERICS 2.4b
+#define LEAST_GRAVITY_CAP 0.15f // what gravity_cap comes down to in fast water, NUMERICS 2.4b
 #define SAMPLE_FLOATS 12 // results per point of sample_points
 #define SOURCE_DISC 0
 #define SOURCE_BOX 1
@@ -75,7 +75,7 @@ struct WorldParams {
     float k;                    // dt/dx [s/m]
     float water_velocity_clamp; // alpha dx/dt [m/s]
     float shock_viscosity;      // c1 dt sqrt(g)/dx [1/sqrt(m)], NUMERICS 2.3; 0 = off
-    float gravity_cap_base;     // 0.55 in NUMERICS 2.4b (dimensionless), at least GRAVITY_CAP_LEAST; 1e9 = no cap
+    float gravity_cap_base;     // 0.55 in NUMERICS 2.4b (dimensionless), at least LEAST_GRAVITY_CAP; 1e9 = no cap
     float inv_k2;               // 1/k^2 [m2/s2]
     float rest_surface;         // eta_rest [m]; negative = rule off
     float rest_velocity;        // v_rest [m/s]; negative = rule off

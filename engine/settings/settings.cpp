@@ -70,8 +70,8 @@ Status check_method(const Method& method) {
     const auto& names = method_names();
     if (std::find(names.begin(), names.end(), method.name) == names.end())
         return refuse("method.name: \"" + method.name + "\" is not a method" + suggestion(method.name, names));
-    if (method.gravity_cap > 0 && static_cast<float>(method.gravity_cap) < GRAVITY_CAP_LEAST)
-        return refuse(outside_text("method.gravity_cap", method.gravity_cap, static_cast<double>(GRAVITY_CAP_LEAST),
+    if (method.gravity_cap > 0 && static_cast<float>(method.gravity_cap) < LEAST_GRAVITY_CAP)
+        return refuse(outside_text("method.gravity_cap", method.gravity_cap, static_cast<double>(LEAST_GRAVITY_CAP),
                                    find_setting("method.gravity_cap")->values.most) +
                       " (or 0: off)");
     if (method.velocity_transport == VelocityTransport::semi_lagrangian && method.velocity_clamp > SEMI_LAGRANGIAN_CLAMP_MOST)

@@ -133,7 +133,7 @@ FN void exchange_gained(REF(float) pure, REF(float) mixed, float gained_low, flo
 // Gravity as a face may use it at this time step (NUMERICS 2.4b): the cap keeps the wave CFL number where the scheme
 // damps instead of ringing, and gets tighter the faster the water moves.
 FN float water_gravity(float gravity, float speed, float deepest, float k, float base, float inv_k2) {
-    float margin = wmax(GRAVITY_CAP_LEAST, base - k * speed);
+    float margin = wmax(LEAST_GRAVITY_CAP, base - k * speed);
     float cap = margin * margin * inv_k2; // of gravity times depth
     bool over = gravity * deepest > cap;
     float used = gravity;

@@ -52,7 +52,7 @@ std::string locate_against_reference(compute::Device& device, const Scene& scene
             if (auto status = runner.run(*passes[n], input); !status) return where(runner, step, n, status.message);
             references.run_stage(stage);
             for (const Written& out : written) {
-                if (out.type != compute::Scalar::f32 && out.type != compute::Scalar::f32_or_f16) continue;
+                if (out.type != compute::Scalar::f32) continue;
                 auto words = runner.read(out.buffer, out.field);
                 if (!words) return words.status().message;
                 const auto got = as_floats(*words);

@@ -64,7 +64,7 @@ struct Marks {
             if (!sand) {
                 double speed = std::abs(y ? v('w', i, j) : u('w', i, j));
                 if (has(EFFECT_MIXTURE)) speed = std::max(speed, std::abs(y ? v('m', i, j) : u('m', i, j)));
-                const double room = std::max(static_cast<double>(GRAVITY_CAP_LEAST),
+                const double room = std::max(static_cast<double>(LEAST_GRAVITY_CAP),
                                              static_cast<double>(p.gravity_cap_base) - static_cast<double>(p.k) * speed);
                 cap = room * room * static_cast<double>(p.inv_k2);
             }
