@@ -105,8 +105,8 @@ std::string describe_effects() {
 
 // Fields that have a partner in some plan.
 bool takes_turns(std::string_view field) {
-    for (const bool traced : {false, true}) {
-        const StepPlan plan = make_step_plan(traced ? all_effects | never_half : all_effects, 1);
+    for (const std::uint32_t mask : {all_effects, (all_effects & ~never_published) | EFFECT_PUBLISHED}) {
+        const StepPlan plan = make_step_plan(mask, 1);
         const PlanField* found = plan.find(std::string(field));
         if (found != nullptr && found->ping_pong) return true;
     }

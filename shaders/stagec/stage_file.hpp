@@ -41,7 +41,7 @@ struct Stage {
 };
 
 inline constexpr const char* half_storage = "EFFECT_HALF_STORAGE";    // asked by every stage with a narrow binding
-inline constexpr const char* first_choice = "EFFECT_SEMI_LAGRANGIAN"; // from its bit on the bits are choices of method
+inline constexpr const char* first_choice = "EFFECT_PUBLISHED";   // from its bit on the bits are choices of method
 
 /// Refuses what it does not know, by file and line: words, types, extents, bindings out of order, a stage without a kernel.
 Stage parse_stage(const std::string& path);

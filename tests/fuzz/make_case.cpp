@@ -105,7 +105,7 @@ void make_method(Random& random, Settings& s) {
     Method& m = s.method;
     m.substeps = random.whole(1, 6);
     if (random.chance(0.08)) {
-        choose_method(s, "paper_like");
+        choose_method(s, "published");
         return;
     }
     if (random.chance(0.15)) m.quantum = 0;
@@ -122,10 +122,6 @@ void make_method(Random& random, Settings& s) {
     if (random.chance(0.3)) m.bulk_viscosity = random.real(0, 1);
     if (random.chance(0.1)) m.stress_taper = random.log(1e-4, 1);
     m.saturation_smoothing = random.whole(0, 2);
-    if (random.chance(0.1)) m.velocity_transport = VelocityTransport::semi_lagrangian;
-    if (random.chance(0.15)) m.strain_transport = random.pick({StrainTransport::polar, StrainTransport::direct});
-    if (random.chance(0.1)) m.drag_friction = DragFriction::sequence;
-    if (random.chance(0.1)) m.diffusion = Diffusion::laplacian;
 }
 
 void make_rims_and_sources(Random& random, Settings& s, double size) {
@@ -230,14 +226,11 @@ Case make_case(std::uint64_t seed) {
     make_commands(random, c, size);
     // Drawn last, as they came: seeds keep the rest of their cases.
     if (random.chance(0.4)) s.method.water_transport_order = 2;
-    const Method& m = s.method;
-    const bool plain = m.velocity_transport == VelocityTransport::flux_form &&
-                       m.strain_transport == StrainTransport::left_stretch && m.drag_friction == DragFriction::joint &&
-                       m.diffusion == Diffusion::limited && m.water_transport_order == 1;
+    const bool plain = !s.method.published() && s.method.water_transport_order == 1;
     if (random.chance(0.4) && plain) s.method.half_storage = true;
     make_sand_laws(random, s);
     if (random.chance(0.3)) s.method.prestress = true;
-    if (random.chance(0.3) && !s.method.half_storage) s.method.sand_transport_order = 2;
+    if (random.chance(0.3) && !s.method.half_storage && !s.method.published()) s.method.sand_transport_order = 2;
     if (random.chance(0.2)) s.material.manning = random.log(1e-3, 1);
     if (random.chance(0.1)) s.roughness = drawn(s.grid, relief(random, s.grid, random.log(1e-3, 1)));
     for (Side& side : s.sides)
@@ -247,9 +240,11 @@ Case make_case(std::uint64_t seed) {
         source.discharge = {{{0, source.rate.samples[0].second * s.grid.dx * s.grid.dx * random.real(0.5, 20)}}};
         source.rate = {};
     }
-    if (s.method.name == "paper_like" && random.chance(0.2)) s.method.outflow_limiter = false;
+    if (s.method.published()) {
+        s.method.outflow_limiter = random.chance(0.5);
+        s.method.strain_transport = random.pick({StrainTransport::polar, StrainTransport::direct});
+    }
     if (random.chance(0.2)) c.at_ends = draw_ends(random, c);
-    if (s.method.name == "paper_like" && random.chance(0.5)) choose_method(s, "published");
     return c;
 }
 

@@ -1,5 +1,6 @@
 // validate() and TimeSeries of engine/settings/settings.hpp.
 #include "engine/settings/messages.hpp"
+#include "engine/settings/method_presets.hpp"
 #include "engine/settings/setting_table.hpp"
 #include "tests/unit/level_text.hpp"
 #include <algorithm>
@@ -97,10 +98,17 @@ TEST_CASE("settings: saturation, quantum, caps, names") {
     CHECK(says(refusal([](Settings& s) { s.method.quantum = -0.5; }), "neither -1"));
     CHECK(says(refusal([](Settings& s) { s.method.gravity_cap_least = 0.6; }), "0.6 is outside 0 ... 0.55"));
     CHECK(says(refusal([](Settings& s) {
-                   s.method.velocity_transport = VelocityTransport::semi_lagrangian;
+                   choose_method(s, "published");
                    s.method.velocity_clamp = 1.5;
                }),
-               "method.velocity_clamp: 1.5 is outside 0.01 ... 1 (semi_lagrangian"));
+               "method.velocity_clamp: 1.5 is outside 0.01 ... 1 (method published"));
+    CHECK(says(refusal([](Settings& s) { s.method.strain_transport = StrainTransport::direct; }),
+               "method.strain_transport: \"direct\" goes only with method \"published\""));
+    CHECK(says(refusal([](Settings& s) {
+                   choose_method(s, "published");
+                   s.method.shock_viscosity = 0.1;
+               }),
+               "method.name: \"published\" goes only with shock_viscosity 0"));
     CHECK(refusal([](Settings& s) { s.method.velocity_clamp = 1.5; }).empty());
     CHECK(refusal([](Settings& s) { s.method.water_transport_order = 2; }).empty());
     CHECK(says(refusal([](Settings& s) { s.method.water_transport_order = 3; }),
@@ -109,17 +117,16 @@ TEST_CASE("settings: saturation, quantum, caps, names") {
     CHECK(says(refusal([](Settings& s) { s.method.sand_transport_order = 0; }),
                "method.sand_transport_order: 0 is outside 1 ... 2"));
     CHECK(refusal([](Settings& s) { s.method.half_storage = true; }).empty());
-    for (const auto& spoil :
-         {+[](Method& m) { m.velocity_transport = VelocityTransport::semi_lagrangian; },
-          +[](Method& m) { m.strain_transport = StrainTransport::polar; },
-          +[](Method& m) { m.strain_transport = StrainTransport::direct; },
-          +[](Method& m) { m.drag_friction = DragFriction::sequence; }, +[](Method& m) { m.diffusion = Diffusion::laplacian; },
-          +[](Method& m) { m.water_transport_order = 2; }, +[](Method& m) { m.sand_transport_order = 2; }})
+    for (const auto& spoil : {+[](Method& m) {
+                                  m.name = "published";
+                                  m.shock_viscosity = 0;
+                              },
+                              +[](Method& m) { m.water_transport_order = 2; }, +[](Method& m) { m.sand_transport_order = 2; }})
         CHECK(says(refusal([&](Settings& s) {
                        s.method.half_storage = true;
                        spoil(s.method);
                    }),
-                   "method.half_storage: true goes only with velocity_transport"));
+                   "method.half_storage: true goes only without method"));
     CHECK(says(refusal([](Settings& s) { s.method.name = "robst"; }), "did you mean \"robust\"?"));
     CHECK(says(refusal([](Settings& s) { s.effects = {{"cohesoin", Force::off}}; }), "did you mean \"cohesion\"?"));
     CHECK(refusal([](Settings& s) { s.effects = {{"bed_friction", Force::on}}; }).empty());
