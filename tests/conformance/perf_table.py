@@ -24,6 +24,4 @@ def by_row_and_size(path):
     for row in read(path):
         total, count = sums.get((row["row"], row["size"]), (0.0, 0))
         sums[row["row"], row["size"]] = (total + row["median_ms"], count + 1)
-    return {
-key: total / count for key, (total, count) in sums.items()
-}
+    return {key: total / count for key, (total, count) in sums.items()}
