@@ -40,35 +40,22 @@ inline constexpr EffectRow effect_rows[] = {
 /// Choices of method: bits of the same mask above those, from `method` and never from content. Without what it needs a choice has
 /// nothing to act on.
 inline constexpr EffectRow choice_rows[] = {
-    {EFFECT_SEMI_LAGRANGIAN, "semi_lagrangian", 0, "velocities are traced back instead of moved by the mass fluxes"},
-    {EFFECT_WHOLE_STRAIN, "whole_strain", EFFECT_ELASTOPLASTIC, "sand keeps F with its rotation and moves it ahead of friction"},
-    {EFFECT_DIRECT_STRAIN, "direct_strain", EFFECT_WHOLE_STRAIN, "F is moved as it is, not as angle and stretch"},
-    {EFFECT_EXPLICIT_DRAG, "explicit_drag", EFFECT_DRAG, "drag is an explicit step of its own ahead of friction"},
-    {EFFECT_LAPLACE_DIFFUSION, "laplace_diffusion", EFFECT_DIFFUSION, "mixed water spreads by the Laplacian of its height"},
+    {EFFECT_PUBLISHED, "published", 0, "the paper's own method, Algorithm 1, in stages of its own"},
+    {EFFECT_DIRECT_STRAIN, "direct_strain", EFFECT_PUBLISHED | EFFECT_ELASTOPLASTIC,
+     "F is moved as it is, not as angle and stretch"},
     {EFFECT_SECOND_ORDER_WATER, "second_order_water", EFFECT_WATER,
      "heights and flux-form velocities of water move by limited slopes"},
     {EFFECT_SECOND_ORDER_SAND, "second_order_sand", EFFECT_SAND,
      "heights and flux-form velocities of sand move by limited slopes"},
     {EFFECT_SHOCK_VISCOSITY, "shock_viscosity", EFFECT_WATER,
      "numerical viscosity of water where it is compressed: bores do not ring"},
-    {EFFECT_WHOLE_PRESSURE, "whole_pressure", EFFECT_MIXTURE, "the water's slope pushes mixed water once a water step"},
-    {EFFECT_EXPLICIT_EXCHANGE, "explicit_exchange", EFFECT_MIXTURE | EFFECT_SEMI_LAGRANGIAN | EFFECT_WHOLE_PRESSURE,
-     "water that changes layer accelerates both"},
-    {EFFECT_DIFFUSION_AHEAD, "diffusion_ahead", EFFECT_LAPLACE_DIFFUSION | EFFECT_SEMI_LAGRANGIAN,
-     "mixed water spreads ahead of transport"},
-    {EFFECT_ALGORITHM_1, "algorithm_1", EFFECT_SAND | EFFECT_SEMI_LAGRANGIAN,
-     "the sand substep of the paper's Algorithm 1, unguarded"},
-    {EFFECT_CENTRAL_SHEAR, "central_shear", EFFECT_WHOLE_STRAIN | EFFECT_ALGORITHM_1,
-     "shear at corners is the mean of depth times stress"},
-    {EFFECT_STRAIN_BEYOND, "strain_beyond", EFFECT_WHOLE_STRAIN | EFFECT_ALGORITHM_1,
-     "velocity, angle and stretch go on beyond the rim of the sand"},
 };
 
 inline constexpr std::uint32_t all_effects = (1u << std::size(effect_rows)) - 1;
 
-/// The stages of Algorithm 1 know nothing of these.
-inline constexpr std::uint32_t never_algorithm_1 =
-    EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION | EFFECT_RETENTION | EFFECT_DIRECT_STRAIN | EFFECT_SECOND_ORDER_SAND;
+/// The paper's own stages know nothing of these.
+inline constexpr std::uint32_t never_published =
+    EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION | EFFECT_RETENTION | EFFECT_SECOND_ORDER_SAND | EFFECT_SHOCK_VISCOSITY;
 
 /// The mask with all that its effects and choices need.
 constexpr std::uint32_t with_needs(std::uint32_t mask) {
@@ -80,15 +67,9 @@ constexpr std::uint32_t with_needs(std::uint32_t mask) {
     return mask;
 }
 
-/// True when every effect in the mask and choice in the mask has what it needs, and Algorithm 1 strain and drag as the paper
-/// has them.
+/// True when every effect and choice in the mask has what it needs, and the paper's method nothing that it is without.
 constexpr bool is_legal(std::uint32_t mask) {
-    const auto both_or_neither = [mask](std::uint32_t one, std::uint32_t other) {
-        return ((mask & one) != 0) == ((mask & other) != 0);
-    };
-    const bool algorithm_1 = (mask & never_algorithm_1) == 0 && both_or_neither(EFFECT_ELASTOPLASTIC, EFFECT_WHOLE_STRAIN) &&
-                             both_or_neither(EFFECT_DRAG, EFFECT_EXPLICIT_DRAG);
-    return with_needs(mask) == mask && ((mask & EFFECT_ALGORITHM_1) == 0 || algorithm_1);
+    return with_needs(mask) == mask && ((mask & EFFECT_PUBLISHED) == 0 || (mask & never_published) == 0);
 }
 
 constexpr bool rows_follow_bits() {

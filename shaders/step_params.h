@@ -90,7 +90,7 @@ struct WorldParams {
     float bed_slope_number;     // 2/dx: how the bed's slope turns bed load downhill [1/m]
     float bed_slope_cap;        // keeps that stable: 0.2 dx/dt [m/s]
     float limiter;              // 1 = outflow limiter on, 0 = off
-    float inv_substeps;         // 1/T; whole_pressure: 1
+    float inv_substeps;         // 1/T
 
     // sand substep
     float ks;                   // dts/dx [s/m]

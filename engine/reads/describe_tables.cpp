@@ -105,7 +105,7 @@ std::string describe_effects() {
 
 // Fields that have a partner in some plan.
 bool takes_turns(std::string_view field) {
-    const auto turns = [field](std::uint32_t mask) {
+    for (const std::uint32_t mask : {all_effects, (all_effects & ~never_published) | EFFECT_PUBLISHED}) {
         const StepPlan plan = make_step_plan(mask, 1);
         const PlanField* found = plan.find(std::string(field));
         return found != nullptr && found->ping_pong;

@@ -25,9 +25,9 @@ consteval EffectRow row(std::uint32_t bit) {
     throw "no such row"; // is no constant: the build stops
 }
 
-// The paper's substep has stages of its own, without these laws.
-Why of_own_substep(const Settings& s, Why why) {
-    if (s.method.sand_substep == SandSubstep::algorithm_1) return {false, "sand_substep is algorithm_1"};
+// The paper's method has stages of its own, without these laws.
+Why unless_published(const Settings& s, Why why) {
+    if (s.method.published()) return {false, "the method is published"};
     return why;
 }
 
@@ -95,15 +95,15 @@ constexpr Effect effects[] = {
     {row(EFFECT_BED_SHEAR), "bed_shear > 0",
      [](const Settings& s, Content) { return above_zero("bed_shear", s.material.bed_shear); }},
     {row(EFFECT_SLOPE_NORMAL), "slope_normal > 0",
-     [](const Settings& s, Content) { return of_own_substep(s, above_zero("slope_normal", s.material.slope_normal)); }},
+     [](const Settings& s, Content) { return unless_published(s, above_zero("slope_normal", s.material.slope_normal)); }},
     {row(EFFECT_INTERNAL_FRICTION), "internal_friction or sand_viscosity > 0",
      [](const Settings& s, Content) {
          const auto& m = s.material;
-         return of_own_substep(s, m.internal_friction > 0 ? above_zero("internal_friction", m.internal_friction)
-                                                          : above_zero("sand_viscosity", m.sand_viscosity));
+         return unless_published(s, m.internal_friction > 0 ? above_zero("internal_friction", m.internal_friction)
+                                                            : above_zero("sand_viscosity", m.sand_viscosity));
      }},
     {row(EFFECT_RETENTION), "retention > 0",
-     [](const Settings& s, Content) { return of_own_substep(s, above_zero("retention", s.material.retention)); }},
+     [](const Settings& s, Content) { return unless_published(s, above_zero("retention", s.material.retention)); }},
     {row(EFFECT_ROUGHNESS), "the level has roughness",
      [](const Settings& s, Content) -> Why {
          return {!s.roughness.empty(), s.roughness.empty() ? "the level has none" : "the level has roughness"};
@@ -111,47 +111,17 @@ constexpr Effect effects[] = {
 };
 
 constexpr Choice choices[] = {
-    {row(EFFECT_SEMI_LAGRANGIAN), "velocity_transport semi_lagrangian",
-     [](const Method& m) { return m.velocity_transport == VelocityTransport::semi_lagrangian; },
-     [](Method& m) { m.velocity_transport = VelocityTransport::semi_lagrangian; }},
-    {row(EFFECT_WHOLE_STRAIN), "strain_transport polar, direct",
-     [](const Method& m) { return m.strain_transport != StrainTransport::left_stretch; },
-     [](Method& m) { m.strain_transport = StrainTransport::polar; }},
+    {row(EFFECT_PUBLISHED), "name published", [](const Method& m) { return m.published(); },
+     [](Method& m) { m.name = "published"; }},
     {row(EFFECT_DIRECT_STRAIN), "strain_transport direct",
      [](const Method& m) { return m.strain_transport == StrainTransport::direct; },
      [](Method& m) { m.strain_transport = StrainTransport::direct; }},
-    {row(EFFECT_EXPLICIT_DRAG), "drag_friction sequence",
-     [](const Method& m) { return m.drag_friction == DragFriction::sequence; },
-     [](Method& m) { m.drag_friction = DragFriction::sequence; }},
-    {row(EFFECT_LAPLACE_DIFFUSION), "diffusion laplacian, laplacian_ahead",
-     [](const Method& m) { return m.diffusion != Diffusion::limited; }, [](Method& m) { m.diffusion = Diffusion::laplacian; }},
     {row(EFFECT_SECOND_ORDER_WATER), "water_transport_order 2", [](const Method& m) { return m.water_transport_order == 2; },
      [](Method& m) { m.water_transport_order = 2; }},
     {row(EFFECT_SECOND_ORDER_SAND), "sand_transport_order 2", [](const Method& m) { return m.sand_transport_order == 2; },
      [](Method& m) { m.sand_transport_order = 2; }},
     {row(EFFECT_SHOCK_VISCOSITY), "shock_viscosity > 0", [](const Method& m) { return m.shock_viscosity > 0; },
      [](Method& m) { m.shock_viscosity = Method{}.shock_viscosity; }},
-    {row(EFFECT_WHOLE_PRESSURE), "mixed_pressure at_once",
-     [](const Method& m) { return m.mixed_pressure == MixedPressure::at_once; },
-     [](Method& m) { m.mixed_pressure = MixedPressure::at_once; }},
-    {row(EFFECT_EXPLICIT_EXCHANGE), "layer_exchange explicit",
-     [](const Method& m) { return m.layer_exchange == LayerExchange::accelerate; },
-     [](Method& m) { m.layer_exchange = LayerExchange::accelerate; }},
-    {row(EFFECT_DIFFUSION_AHEAD), "diffusion laplacian_ahead",
-     [](const Method& m) { return m.diffusion == Diffusion::laplacian_ahead; },
-     [](Method& m) { m.diffusion = Diffusion::laplacian_ahead; }},
-    {row(EFFECT_ALGORITHM_1), "sand_substep algorithm_1",
-     [](const Method& m) { return m.sand_substep == SandSubstep::algorithm_1; },
-     [](Method& m) {
-         m.sand_substep = SandSubstep::algorithm_1;
-         m.strain_transport = StrainTransport::polar; // no bits of their own without strain and drag, but it goes only with them
-         m.drag_friction = DragFriction::sequence;
-     }},
-    {row(EFFECT_CENTRAL_SHEAR), "corner_shear central", [](const Method& m) { return m.corner_shear == CornerShear::central; },
-     [](Method& m) { m.corner_shear = CornerShear::central; }},
-    {row(EFFECT_STRAIN_BEYOND), "strain_rim extrapolated",
-     [](const Method& m) { return m.strain_rim == StrainRim::extrapolated; },
-     [](Method& m) { m.strain_rim = StrainRim::extrapolated; }},
 };
 
 constexpr bool has_rule(const Effect& effect) { return effect.why != nullptr; }

@@ -40,9 +40,9 @@ Result<EffectChoice> effects_required(const Settings& settings, Content content)
     }
     for (const auto& made : choice_table())
         if (made.chosen(settings.method) && (choice.mask & made.needs) == made.needs) choice.mask |= made.bit;
-    const std::uint32_t unknown = choice.mask & never_algorithm_1;
-    if ((choice.mask & EFFECT_ALGORITHM_1) != 0 && unknown != 0)
-        return error(Code::bad_argument, "method.sand_substep: \"algorithm_1\" goes only without " + effect_names(unknown));
+    const std::uint32_t unknown = choice.mask & never_published;
+    if ((choice.mask & EFFECT_PUBLISHED) != 0 && unknown != 0)
+        return error(Code::bad_argument, "method.name: \"published\" goes only without " + effect_names(unknown));
     return choice;
 }
 

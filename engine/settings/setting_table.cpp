@@ -9,15 +9,7 @@ namespace wadi {
 namespace {
 
 // The words of a choice, in the order of its enumerators.
-constexpr const char* velocity_transports[] = {"flux_form", "semi_lagrangian"};
-constexpr const char* strain_transports[] = {"left_stretch", "polar", "direct"};
-constexpr const char* drag_frictions[] = {"joint", "sequence"};
-constexpr const char* diffusions[] = {"limited", "laplacian", "laplacian_ahead"};
-constexpr const char* mixed_pressures[] = {"in_substeps", "at_once"};
-constexpr const char* layer_exchanges[] = {"convex", "explicit"};
-constexpr const char* sand_substeps[] = {"own", "algorithm_1"};
-constexpr const char* corner_shears[] = {"least_depth", "central"};
-constexpr const char* strain_rims[] = {"one_sided", "extrapolated"};
+constexpr const char* strain_transports[] = {"polar", "direct"};
 constexpr const char* fused_stages[] = {"auto", "always", "never"};
 
 constexpr Values words(std::span<const char* const> names) { return {0, static_cast<double>(names.size()) - 1, names}; }
@@ -128,28 +120,12 @@ constexpr Setting rows[] = {
      "sand drawn, poured or stamped starts in balance if cohesion holds it", InDigest::where_set},
     {"method.saturation_smoothing", method<&Method::saturation_smoothing>, {0, 2}, "cells", EFFECT_COHESION,
      "radius of the low-pass of saturation"},
-    {"method.velocity_transport", method<&Method::velocity_transport>, words(velocity_transports), "", several,
-     "velocities move with the fluxes, or are traced back"},
-    {"method.strain_transport", method<&Method::strain_transport>, words(strain_transports), "", EFFECT_ELASTOPLASTIC,
-     "what of strain moves with the sand"},
-    {"method.drag_friction", method<&Method::drag_friction>, words(drag_frictions), "", EFFECT_DRAG,
-     "one implicit solve, or explicit drag and then friction"},
-    {"method.diffusion", method<&Method::diffusion>, words(diffusions), "", EFFECT_DIFFUSION,
-     "a limited flux, or the height's Laplacian"},
     {"method.water_transport_order", method<&Method::water_transport_order>, {1, 2}, "", EFFECT_WATER,
      "2: heights and flux-form velocities move with limited slopes"},
     {"method.sand_transport_order", method<&Method::sand_transport_order>, {1, 2}, "", EFFECT_SAND,
      "2: heights and flux-form velocities of sand move with limited slopes", InDigest::where_set},
-    {"method.mixed_pressure", method<&Method::mixed_pressure>, words(mixed_pressures), "", EFFECT_MIXTURE,
-     "when the water's slope pushes the water inside sand", InDigest::where_set},
-    {"method.layer_exchange", method<&Method::layer_exchange>, words(layer_exchanges), "", EFFECT_MIXTURE,
-     "momentum of water that changes layer; explicit: the paper's", InDigest::where_set},
-    {"method.sand_substep", method<&Method::sand_substep>, words(sand_substeps), "", EFFECT_SAND,
-     "order of the sand substep; algorithm_1: the paper's, unguarded", InDigest::where_set},
-    {"method.corner_shear", method<&Method::corner_shear>, words(corner_shears), "", EFFECT_ELASTOPLASTIC,
-     "depth that bears shear; central: algorithm_1", InDigest::where_set},
-    {"method.strain_rim", method<&Method::strain_rim>, words(strain_rims), "", EFFECT_ELASTOPLASTIC,
-     "strain at the rim; extrapolated: algorithm_1", InDigest::where_set},
+    {"method.strain_transport", method<&Method::strain_transport>, words(strain_transports), "", EFFECT_ELASTOPLASTIC,
+     "published: angle and stretch move apart, or F as it is", InDigest::where_set},
     {"active_tiles", at<&Settings::active_tiles>, tile_sides, "cells", several,
      "side of tiles, left out at rest; 0 = off, 1, 2 = where that gains", InDigest::no},
     {"fused_stages", at<&Settings::fused_stages>, words(fused_stages), "", several,

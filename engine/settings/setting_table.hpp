@@ -65,8 +65,8 @@ std::span<const Setting> setting_table();
 /// Null for an unknown path.
 const Setting* find_setting(std::string_view path);
 
-/// What semi-Lagrangian transport can follow: it looks one cell back.
-inline constexpr double SEMI_LAGRANGIAN_CLAMP_MOST = 1;
+/// What the method published can follow: its transport of velocities looks one cell back.
+inline constexpr double PUBLISHED_CLAMP_MOST = 1;
 
 inline constexpr int GRID_MOST = 16384;
 inline constexpr double DX_LEAST = 1e-4, DX_MOST = 1e4; // [m]

@@ -74,26 +74,13 @@ Status check_method(const Method& method) {
         return refuse(outside_text("method.gravity_cap", method.gravity_cap, static_cast<double>(LEAST_GRAVITY_CAP),
                                    find_setting("method.gravity_cap")->values.most) +
                       " (or 0: off)");
-    if (method.velocity_transport == VelocityTransport::semi_lagrangian && method.velocity_clamp > SEMI_LAGRANGIAN_CLAMP_MOST)
-        return refuse(outside_text("method.velocity_clamp", method.velocity_clamp, 0.01, SEMI_LAGRANGIAN_CLAMP_MOST) +
-                      " (semi_lagrangian looks one cell back)");
-    const bool traced = method.velocity_transport == VelocityTransport::semi_lagrangian;
-    if (!traced && method.diffusion == Diffusion::laplacian_ahead)
-        return refuse("method.diffusion: \"laplacian_ahead\" goes only with velocity_transport \"semi_lagrangian\"");
-    if (method.layer_exchange == LayerExchange::accelerate && !(traced && method.mixed_pressure == MixedPressure::at_once))
-        return refuse("method.layer_exchange: \"explicit\" goes only with velocity_transport \"semi_lagrangian\" and "
-                      "mixed_pressure \"at_once\"");
-    const bool printed = method.sand_substep == SandSubstep::algorithm_1;
-    if (printed && !(traced && method.strain_transport == StrainTransport::polar &&
-                     method.drag_friction == DragFriction::sequence && method.sand_transport_order == 1))
-        return refuse(
-            "method.sand_substep: \"algorithm_1\" goes only with velocity_transport \"semi_lagrangian\", strain_transport "
-            "\"polar\", drag_friction \"sequence\" and sand_transport_order 1");
-    if (!printed && (method.corner_shear != CornerShear::least_depth || method.strain_rim != StrainRim::one_sided))
-        return refuse(
-            std::string("method.") +
-            (method.corner_shear != CornerShear::least_depth ? "corner_shear: \"central\"" : "strain_rim: \"extrapolated\"") +
-            " goes only with sand_substep \"algorithm_1\"");
+    if (method.published() && method.velocity_clamp > PUBLISHED_CLAMP_MOST)
+        return refuse(outside_text("method.velocity_clamp", method.velocity_clamp, 0.01, PUBLISHED_CLAMP_MOST) +
+                      " (method published looks one cell back)");
+    if (method.published() && (method.shock_viscosity > 0 || method.sand_transport_order != 1))
+        return refuse("method.name: \"published\" goes only with shock_viscosity 0 and sand_transport_order 1");
+    if (!method.published() && method.strain_transport != StrainTransport::polar)
+        return refuse("method.strain_transport: \"direct\" goes only with method \"published\"");
     if (method.quantum < 0 && method.quantum > -1)
         return refuse("method.quantum: " + number_text(method.quantum) +
                       " is neither -1 (chosen), nor 0 (off), nor a positive height");

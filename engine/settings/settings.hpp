@@ -43,35 +43,9 @@ struct Material {
     friend bool operator==(const Material&, const Material&) = default;
 };
 
-/// How velocities move with the flow (NUMERICS 2.3): by the mass fluxes, or traced back along the velocity as the paper does.
-enum class VelocityTransport : std::uint8_t { flux_form, semi_lagrangian };
-
-/// What moves with the sand of its deformation gradient F (NUMERICS 2.5, 2.13): the left stretch V (F = V R), the angle of R and
-/// the right stretch P apart (F = R P, the paper's choice), or F as it is.
-enum class StrainTransport : std::uint8_t { left_stretch, polar, direct };
-
-/// Drag and friction (NUMERICS 2.8, 2.14): one implicit solve, or explicit drag and then friction, as the paper has it.
-enum class DragFriction : std::uint8_t { joint, sequence };
-
-/// Diffusion of mixed water (NUMERICS 2.1, 2.15): a limited flux, zero in a lake at rest, or the Laplacian of the paper, within
-/// the transport or in a step of its own ahead of it, as the paper has it.
-enum class Diffusion : std::uint8_t { limited, laplacian, laplacian_ahead };
-
-/// The push of the water's slope on mixed water (NUMERICS 2.4b, 2.21): in equal parts in the sand substeps, or at once in the
-/// water step, as the paper has it.
-enum class MixedPressure : std::uint8_t { in_substeps, at_once };
-
-/// Momentum of water that changes layer (NUMERICS 2.4a, 2.21): a convex mix, or the paper's explicit acceleration.
-enum class LayerExchange : std::uint8_t { convex, accelerate };
-
-/// Order and guards of the sand substep (NUMERICS 3, 2.22): Wadi's own, or the paper's Algorithm 1.
-enum class SandSubstep : std::uint8_t { own, algorithm_1 };
-
-/// Shear of sand at corners (NUMERICS 2.7, 2.22): the least of four depths times the mean stress, or the mean of their products.
-enum class CornerShear : std::uint8_t { least_depth, central };
-
-/// Strain at the rim of the sand (NUMERICS 2.6, 2.22): one-sided gradients, or the paper's extrapolation beyond it.
-enum class StrainRim : std::uint8_t { one_sided, extrapolated };
+/// What moves with the sand of its deformation gradient F in the method published (NUMERICS 2.13): the angle of R and the right
+/// stretch P apart (F = R P), or F as it is.
+enum class StrainTransport : std::uint8_t { polar, direct };
 
 /// How water and sand are stepped. Every guard is off at a neutral value, so that any one can be studied alone.
 struct Method {
@@ -93,17 +67,11 @@ struct Method {
     double cohesion_cap = 0.9;      // tension <= cohesion_cap rho_s g hs, NUMERICS 2.7
     bool prestress = true;          // NUMERICS 2.20
     int saturation_smoothing = 2;
-    VelocityTransport velocity_transport = VelocityTransport::flux_form; // semi_lagrangian: velocity_clamp at most 1
-    StrainTransport strain_transport = StrainTransport::left_stretch;
-    DragFriction drag_friction = DragFriction::joint;
-    Diffusion diffusion = Diffusion::limited;
-    MixedPressure mixed_pressure = MixedPressure::in_substeps;
-    LayerExchange layer_exchange = LayerExchange::convex;
-    SandSubstep sand_substep = SandSubstep::own; // algorithm_1: only with the paper's other choices for sand
-    CornerShear corner_shear = CornerShear::least_depth;
-    StrainRim strain_rim = StrainRim::one_sided;
-    int water_transport_order = 1; // NUMERICS 2.2, 2.3, 2.16
-    int sand_transport_order = 1;  // the same
+    StrainTransport strain_transport = StrainTransport::polar; // direct: published only
+    int water_transport_order = 1;                             // NUMERICS 2.2, 2.3, 2.16
+    int sand_transport_order = 1;                              // the same
+
+    bool published() const { return name == "published"; }
 };
 
 /// A value over time: linear between samples, constant outside. One sample = constant.

@@ -1,4 +1,4 @@
-#include "engine/step/step_plan.hpp"
+#include "engine/step/plan_builder.hpp"
 #include <algorithm>
 #include <array>
 
@@ -9,102 +9,21 @@ namespace {
 // What a list of active tiles consists of: the dispatches of a pass over tiles name them too.
 constexpr std::array tile_fields = {"activity", "active_tiles", "active_counts", "active_list", "active_dispatch"};
 
-using Names = std::map<std::string, std::string>; // a stage's binding name -> the plan's field name
-
-class Builder {
-  public:
-    Builder(const StepPlan& plan, std::vector<PlanPass>& passes, bool in_substep)
-        : plan_(plan), effects_(plan.effects), passes_(passes), in_substep_(in_substep), fused_(plan.fused),
-          by_material_(plan.tiles_by_material) {}
-
-    bool has(std::uint32_t bits) const { return (effects_ & bits) == bits; }
-
-    /// Whether the plan has fused stages and the mask allows this one.
-    bool can_fuse(const char* stage) const {
-        const auto& info = compute::stage_table()[static_cast<std::size_t>(compute::find_stage(stage))];
-        return fused_ && has(info.needs) && (effects_ & info.without) == 0;
-    }
-    bool fuse(const char* stage, std::vector<std::string> flips, const Names& names = {}) {
-        if (!can_fuse(stage)) return false;
-        run(stage, std::move(flips), names);
-        return true;
-    }
-    /// In one pass with what accelerates the sand. That pass moves the water's velocities to their other buffers, which tiles
-    /// without sand would have to do as well.
-    bool fuses_momentum_exchange() const { return !by_material_ && can_fuse("accelerate_mixture"); }
-    /// Whether active tiles have a list for each material.
-    bool tiles_by_material() const { return by_material_; }
-    std::vector<std::string> tile_lists() const { return plan_.tile_lists(); }
-
-    void run(const char* stage, std::vector<std::string> flips = {}, const Names& names = {}) {
-        PlanPass pass;
-        pass.stage = compute::find_stage(stage);
-        pass.in_substep = in_substep_;
-        pass.flips = std::move(flips);
-        if (by_material_) pass.tiles = in_substep_ ? "_sand" : "_water";
-        for (const auto& binding : compute::stage_table()[static_cast<std::size_t>(pass.stage)].bindings) {
-            const bool exists = (effects_ & binding.condition) == binding.condition;
-            const std::string name(binding.name);
-            const auto renamed = names.find(base_name(name));
-            const std::string field = renamed == names.end() ? name
-                                      : is_next(name)        ? next_name(renamed->second)
-                                                             : renamed->second;
-            pass.fields.push_back(exists ? field : std::string());
-        }
-        passes_.push_back(std::move(pass));
-    }
-    /// The latest pass changes nothing but where water and sand meet.
-    void only_where_both_run() {
-        if (by_material_) passes_.back().tiles = "_mixture";
-    }
-
-  private:
-    const StepPlan& plan_;
-    std::uint32_t effects_;
-    std::vector<PlanPass>& passes_;
-    bool in_substep_, fused_, by_material_;
-};
-
-// Semi-Lagrangian transport of one layer's velocities, by the boundary types from before its height moved (NUMERICS 2.12).
-void plan_backtrace(Builder& b, const std::string& layer, const char* backtrace) {
-    const std::string velocity = layer + "_velocity_", type = layer + "_face_type_";
-    const Names names = {
-        {"velocity_x", velocity + "x"}, {"velocity_y", velocity + "y"}, {"face_type_x", type + "x"}, {"face_type_y", type + "y"}};
-    b.run("extrapolate_velocity", {}, names);
-    b.run(backtrace, {velocity + "x", velocity + "y"}, names);
-}
-
-void account_water(Builder& b) {
-    b.run("account_sides", {}, {{"flux_x", "water_flux_x"}, {"flux_y", "water_flux_y"}, {"side_ledger", "water_side_ledger"}});
-    if (!b.has(EFFECT_MIXTURE)) return;
-    b.run("account_sides", {}, {{"flux_x", "mixed_flux_x"}, {"flux_y", "mixed_flux_y"}, {"side_ledger", "water_side_ledger"}});
-}
-
-// What has spread ahead of transport is moved as mixed water, whether the sand is that high or not.
-Names spread_heights(const Builder& b) {
-    return b.has(EFFECT_DIFFUSION_AHEAD) ? Names{{"sand_height", "mixed_diffused"}} : Names{};
-}
-
-void plan_water_fluxes(Builder& b) {
-    if (b.has(EFFECT_DIFFUSION) && !b.has(EFFECT_DIFFUSION_AHEAD)) b.run("diffuse_mixed_water");
-    b.run("limit_water_outflow", {}, spread_heights(b));
-    b.run("compute_water_flux", {}, spread_heights(b));
-}
-
-// The paper's explicit exchange between the layers, from velocities ahead of advection to those behind it (NUMERICS 2.21).
-Names exchange_over(const std::string& before, const std::string& after) {
-    return {{"sand_before", before}, {"sand_after", after}};
+void plan_water_fluxes(PlanBuilder& b) {
+    if (b.has(EFFECT_DIFFUSION)) b.run("diffuse_mixed_water");
+    b.run("limit_water_outflow");
+    b.run("compute_water_flux");
 }
 
 // Both layers' fluxes and the new height.
-void plan_water_transport(Builder& b) {
+void plan_water_transport(PlanBuilder& b) {
     plan_water_fluxes(b);
     if (b.has(EFFECT_OPEN_SIDES)) account_water(b);
-    b.run("integrate_water_height", {"water_height"}, spread_heights(b));
+    b.run("integrate_water_height", {"water_height"});
 }
 
 // Momentum advection of second order takes the pure water's velocities at the time of the heights, the mixed water's as they are.
-void plan_water_velocity(Builder& b, std::vector<std::string> flips, Names names) {
+void plan_water_velocity(PlanBuilder& b, std::vector<std::string> flips, Names names) {
     if (b.has(EFFECT_SECOND_ORDER_WATER)) b.run("center_water_velocity", {}, names);
     names["centered_mixed_velocity_x"] = "mixed_velocity_x";
     names["centered_mixed_velocity_y"] = "mixed_velocity_y";
@@ -112,7 +31,7 @@ void plan_water_velocity(Builder& b, std::vector<std::string> flips, Names names
 }
 
 // Height and velocities of the water.
-void plan_water_motion(Builder& b) {
+void plan_water_motion(PlanBuilder& b) {
     std::vector<std::string> moved = {"water_velocity_x", "water_velocity_y"};
     if (b.has(EFFECT_MIXTURE)) moved.insert(moved.end(), {"mixed_velocity_x", "mixed_velocity_y"});
     std::vector<std::string> all = moved;
@@ -122,33 +41,20 @@ void plan_water_motion(Builder& b) {
         return;
     }
     plan_water_transport(b);
-    if (b.has(EFFECT_EXPLICIT_EXCHANGE)) b.run("measure_layer_exchange", {}, exchange_over("mixed_predicted", "sand_height"));
-    if (b.has(EFFECT_SEMI_LAGRANGIAN)) {
-        plan_backtrace(b, "water", "backtrace_water_velocity");
-        if (b.has(EFFECT_MIXTURE)) plan_backtrace(b, "mixed", "backtrace_water_velocity");
-    }
-    if (b.has(EFFECT_EXPLICIT_EXCHANGE)) {
-        b.run("give_layer_exchange", {}, exchange_over("mixed_predicted", "sand_height"));
-        b.run("renew_split");
-    }
     plan_water_velocity(b, moved, {});
 }
 
-// What comes from outside.
-void plan_inflow(Builder b) {
+// What comes from outside; the published method spreads mixed water between that and the sides.
+void plan_inflow(PlanBuilder b) {
     if (b.has(EFFECT_SOURCES)) b.run("apply_sources");
     if (b.has(EFFECT_RAIN)) b.run("apply_rain");
-    if (b.has(EFFECT_DIFFUSION_AHEAD)) {
-        b.run("diffuse_mixed_velocity", {"mixed_velocity_x", "mixed_velocity_y"});
-        b.run("diffuse_mixed_height");
-        b.run("spread_mixed_water");
-    }
+    if (b.has(EFFECT_PUBLISHED)) plan_published_diffusion(b);
     if (b.has(EFFECT_WATER | EFFECT_OPEN_SIDES)) b.run("open_sides");
 }
 
 // A step's heights and velocities are tried in the other buffers of their fields, and velocities go half the way there.
-void plan_start(Builder b) {
-    if (!b.has(EFFECT_SECOND_ORDER_WATER) || b.has(EFFECT_SEMI_LAGRANGIAN)) return;
+void plan_start(PlanBuilder b) {
+    if (!b.has(EFFECT_SECOND_ORDER_WATER) || b.has(EFFECT_PUBLISHED)) return;
     plan_water_fluxes(b);
     b.run("integrate_water_height");
     plan_water_velocity(b, {}, {{"water_height", "water_height_next"}});
@@ -160,115 +66,38 @@ void plan_start(Builder b) {
     b.run("start_water_velocity", {}, names);
 }
 
-void plan_water(Builder b) {
+void plan_water(PlanBuilder b) {
     if (!b.has(EFFECT_WATER)) return;
-    const bool traced = b.has(EFFECT_SEMI_LAGRANGIAN);
-    if (traced) b.run("update_water_boundary_types", {}, spread_heights(b));
-    // In flux form the diffusive flux carries its momentum; traced velocities need a pass for it.
-    if (traced && b.has(EFFECT_LAPLACE_DIFFUSION) && !b.has(EFFECT_DIFFUSION_AHEAD))
-        b.run("diffuse_mixed_velocity", {"mixed_velocity_x", "mixed_velocity_y"});
     plan_water_motion(b);
-    if (b.has(EFFECT_WHOLE_PRESSURE)) b.run("push_mixed_water");
     if (b.has(EFFECT_BED_SHEAR)) b.run("compute_bed_load");
-    // Algorithm 1 takes each cell's own, of the moment.
-    if (b.has(EFFECT_COHESION) && !b.has(EFFECT_ALGORITHM_1) && !b.fuse("smooth_saturation", {})) b.run("compute_saturation");
-}
-
-void account_sand(Builder& b) {
-    if (!b.has(EFFECT_OPEN_SIDES)) return;
-    b.run("account_sides", {}, {{"flux_x", "sand_flux_x"}, {"flux_y", "sand_flux_y"}, {"side_ledger", "sand_side_ledger"}});
-}
-
-void plan_sand_height(Builder& b) {
-    b.run("limit_sand_outflow");
-    b.run("compute_sand_flux");
-    account_sand(b);
-    b.run("integrate_sand_height");
+    if (b.has(EFFECT_COHESION) && !b.fuse("smooth_saturation", {})) b.run("compute_saturation");
 }
 
 // Stretch and sand height move.
-void plan_sand_transport(Builder& b) {
+void plan_sand_transport(PlanBuilder& b) {
     const std::vector<std::string> stretch = {"stretch_xx", "stretch_xy", "stretch_yy"};
     if (b.fuse("transport_sand", stretch)) {
         account_sand(b);
         return;
     }
     plan_sand_height(b);
-    if (b.has(EFFECT_WHOLE_STRAIN))
-        b.run("advect_deformation_gradient", {"stretch_xx", "stretch_xy", "stretch_yy", "rotation"});
-    else if (b.has(EFFECT_ELASTOPLASTIC))
-        b.run("evolve_deformation_gradient", stretch);
+    if (b.has(EFFECT_ELASTOPLASTIC)) b.run("evolve_deformation_gradient", stretch);
 }
 
-// The water's layers behind a change of the sand's height.
-void plan_layer_exchange(Builder& b) {
-    if (!b.has(EFFECT_EXPLICIT_EXCHANGE)) {
-        b.run("compute_momentum_exchange");
-        b.only_where_both_run();
-        return;
-    }
-    for (const char* stage : {"measure_layer_exchange", "give_layer_exchange"}) {
-        b.run(stage, {}, exchange_over("sand_height", next_name("sand_height")));
-        b.only_where_both_run();
-    }
-}
-
-// The water that drags the sand, by the names of the stages that do it.
-Names drag_names(const Builder& b) {
-    if (!b.has(EFFECT_DRAG)) return {};
-    const std::string layer = b.has(EFFECT_MIXTURE) ? "mixed_velocity_" : "water_velocity_";
-    return {{"drag_velocity_x", layer + "x"}, {"drag_velocity_y", layer + "y"}};
-}
-
-// Lines 5 to 9 of the paper's Algorithm 1 (NUMERICS 2.22).
-void plan_algorithm_1(Builder& b) {
-    const std::vector<std::string> strain = {"stretch_xx", "stretch_xy", "stretch_yy", "rotation"};
-    const Names moved = {{"sand_height", next_name("sand_height")}};
-    plan_sand_height(b);
-    plan_backtrace(b, "sand", "backtrace_sand_velocity");
-    Names push = drag_names(b);
-    push.merge(Names(moved));
-    b.run("push_sand", {}, push);
-    if (b.has(EFFECT_WHOLE_STRAIN)) {
-        b.run("yield_right_stretch", {}, moved);
-        b.run("advect_deformation_gradient", strain);
-        b.run("compute_sand_stress", {}, moved);
-        b.run("apply_sand_stress", {}, moved);
-        Names stretched = moved;
-        if (b.has(EFFECT_STRAIN_BEYOND)) {
-            b.run("update_sand_boundary_types", {}, moved);
-            b.run("extrapolate_velocity", {},
-                  {{"velocity_x", "sand_velocity_x"},
-                   {"velocity_y", "sand_velocity_y"},
-                   {"face_type_x", "sand_face_type_x"},
-                   {"face_type_y", "sand_face_type_y"}});
-            stretched.merge(
-                Names{{"sand_velocity_x", "extrapolated_velocity_x"}, {"sand_velocity_y", "extrapolated_velocity_y"}});
-        }
-        b.run("stretch_deformation_gradient", {}, stretched);
-        if (b.has(EFFECT_STRAIN_BEYOND)) b.run("extrapolate_strain", strain, moved);
-    }
-    if (b.has(EFFECT_MIXTURE)) plan_layer_exchange(b);
-}
-
-void plan_sand(Builder b) {
+void plan_sand(PlanBuilder b) {
     if (!b.has(EFFECT_SAND)) return;
     if (b.has(EFFECT_OPEN_SIDES)) b.run("open_sand_sides");
-    if (b.has(EFFECT_SEMI_LAGRANGIAN)) b.run("update_sand_boundary_types");
-    if (b.has(EFFECT_ALGORITHM_1)) {
-        plan_algorithm_1(b);
-        return;
-    }
     plan_sand_transport(b);
+    if (!b.has(EFFECT_MIXTURE) || b.fuses_momentum_exchange()) return;
     // Touches only the water's velocities, which the sand's velocity stage does not read: here both sand heights are at hand.
-    if (b.has(EFFECT_MIXTURE) && !b.fuses_momentum_exchange()) plan_layer_exchange(b);
+    b.run("compute_momentum_exchange");
+    b.only_where_both_run();
 }
 
 // After the sand height has become current.
-void plan_sand_forces(Builder b) {
+void plan_sand_forces(PlanBuilder b) {
     if (!b.has(EFFECT_SAND)) return;
-    const bool printed = b.has(EFFECT_ALGORITHM_1); // only friction is left
-    if (b.has(EFFECT_ELASTOPLASTIC) && !printed && !b.can_fuse("transport_sand")) b.run("project_deformation_gradient");
+    if (b.has(EFFECT_ELASTOPLASTIC) && !b.can_fuse("transport_sand")) b.run("project_deformation_gradient");
     const std::vector<std::string> sand = {"sand_velocity_x", "sand_velocity_y"};
     std::vector<std::string> moved = sand;
     if (b.fuses_momentum_exchange()) {
@@ -279,17 +108,12 @@ void plan_sand_forces(Builder b) {
     const Names drag = drag_names(b);
     for (const auto& [binding, field] : drag) moved.push_back(field);
     if (b.fuse("accelerate_sand", moved, drag)) return;
-    if (!printed) {
-        if (b.has(EFFECT_SEMI_LAGRANGIAN)) plan_backtrace(b, "sand", "backtrace_sand_velocity");
-        b.run("integrate_sand_velocity", sand);
-        if (b.has(EFFECT_WHOLE_STRAIN)) b.run("stretch_deformation_gradient");
-        if (b.has(EFFECT_EXPLICIT_DRAG)) b.run("apply_drag", {}, drag);
-    }
+    b.run("integrate_sand_velocity", sand);
     b.run("apply_friction", moved, drag);
 }
 
 // One list of tiles, or one for the water's passes, one for the sand's and one for those of both.
-void plan_active_tiles(Builder b) {
+void plan_active_tiles(PlanBuilder b) {
     if (!b.tiles_by_material()) {
         for (const char* stage : {"mark_active_tiles", "count_active_tiles", "list_active_tiles"}) b.run(stage);
         return;
@@ -395,15 +219,16 @@ StepPlan make_step_plan(std::uint32_t effects, int substeps, PlanChoice choice) 
     plan.effects = effects;
     plan.substeps = substeps;
     plan.tiles_by_material = choice.active_tiles && tells_materials_apart(effects);
-    const Builder water(plan, plan.water_passes, false), substep(plan, plan.substep_passes, true);
+    const PlanBuilder water(plan, plan.water_passes, false), substep(plan, plan.substep_passes, true);
     if (choice.active_tiles) plan_active_tiles(water);
     plan_inflow(water);
     plan.start_at = plan.water_passes.size();
     plan_start({plan, plan.start_passes, false});
-    plan_water(water);
-    plan_sand(substep);
+    const bool published = water.has(EFFECT_PUBLISHED);
+    published ? plan_published_water(water) : plan_water(water);
+    published ? plan_published_sand(substep) : plan_sand(substep);
     if (!plan.substep_passes.empty()) plan.substep_passes.back().flips.push_back("sand_height");
-    plan_sand_forces(substep);
+    published ? plan_published_friction(substep) : plan_sand_forces(substep);
 
     plan.fields.push_back({"terrain", field_row("terrain").role});
     plan.fields.push_back({"source_ledger", field_row("source_ledger").role}); // edits count there in any world

@@ -86,8 +86,7 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     const double rest_surface = 2 * ledger_quantum(w);
     p.rest_surface = w.rest_rule ? f(rest_surface) : -1.0F;
     p.rest_velocity = w.rest_rule ? f(1.5 * k * gravity * rest_surface) : -1.0F; // rounding of the push does not decide
-    const double spreads =
-        (effects & EFFECT_DIFFUSION_AHEAD) != 0 ? m.diffusion_rate : std::min(m.diffusion_rate, 0.2 * dx * dx / dt);
+    const double spreads = (effects & EFFECT_PUBLISHED) != 0 ? m.diffusion_rate : std::min(m.diffusion_rate, 0.2 * dx * dx / dt);
     p.diffusion_number = f(spreads * dt / (dx * dx));
     p.bed_friction_dt = f(dt * m.bed_friction);
     p.manning = f(m.manning);
@@ -100,7 +99,7 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     p.bed_slope_number = f(2 / dx);
     p.bed_slope_cap = f(0.2 * dx / dt);
     p.limiter = w.outflow_limiter ? 1.0F : 0.0F;
-    p.inv_substeps = (effects & EFFECT_WHOLE_PRESSURE) != 0 ? 1.0F : f(1.0 / w.substeps);
+    p.inv_substeps = f(1.0 / w.substeps);
 
     p.ks = f(ks);
     p.dts = f(dts);
@@ -159,7 +158,7 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     p.gradient_clamp = w.gradient_clamp > 0 ? f(w.gradient_clamp) : off;
     p.cohesion_cap = w.cohesion_cap > 0 ? f(2 * m.yield_friction * w.cohesion_cap * weight) : off;
     const auto [phi1, phi2, phi3] = m.saturation;
-    const double apex = (effects & EFFECT_ALGORITHM_1) != 0 ? 1 : yield_cohesion(m);
+    const double apex = (effects & EFFECT_PUBLISHED) != 0 ? 1 : yield_cohesion(m);
     p.cohesion0 = f(apex * m.cohesion_dry);
     p.cohesion1 = f(apex * m.cohesion_wet);
     p.phi1 = f(phi1);

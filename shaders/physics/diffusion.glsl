@@ -19,7 +19,7 @@ FN float limited_diffusion(WetSand low, WetSand high, float number, float dry) {
     return both(s != 0.0f, sand) ? -number * s : 0.0f;
 }
 
-// By the height alone, sand or not (method.diffusion = laplacian).
+// By the height alone, sand or not (method published).
 FN float laplace_diffusion(WetSand low, WetSand high, float number) { return number * (mixed_of(low) - mixed_of(high)); }
 
 // Share of a flux that the cell which it would leave lets go.

@@ -174,10 +174,10 @@ void pipelines(Session&, Device& device, Expect& expect) {
     expect.that(a && b && a->id == b->id, "equal requests do not share a pipeline");
     expect.that(a && untested && a->id == untested->id, "an effect that the stage does not test makes another pipeline");
     expect.that(a && other && a->id != other->id, "a tested effect makes no other pipeline");
-    // All that a world can have at once: Algorithm 1 with its own choices, or what it knows nothing of.
-    constexpr std::uint32_t printed = EFFECT_ALGORITHM_1 | EFFECT_CENTRAL_SHEAR | EFFECT_STRAIN_BEYOND;
+    // All that a world can have at once: the paper's method with its own choice, or what it knows nothing of.
+    constexpr std::uint32_t published = EFFECT_PUBLISHED | EFFECT_DIRECT_STRAIN;
     for (int stage = 0; stage < stages; ++stage)
-        for (const std::uint32_t mask : {~printed, ~never_algorithm_1, all_effects}) {
+        for (const std::uint32_t mask : {~published, ~never_published, all_effects}) {
             const auto& info = compute::stage_table()[static_cast<std::size_t>(stage)];
             const auto made = device.create_pipeline(stage, mask, {});
             if (info.fused() && !device.capabilities().fused_stages) {

@@ -71,8 +71,7 @@ FieldName field_of(const std::string& stage, const std::string& binding, std::ui
     }
     if (name.base == "sand_before") name.base = "mixed_predicted"; // as in the water step
     if (name.base == "sand_after") name.base = "sand_height";
-    if (stage == "stretch_deformation_gradient" && (effects & EFFECT_STRAIN_BEYOND) != 0 &&
-        name.base.starts_with("sand_velocity"))
+    if (stage == "stretch_deformation_gradient" && name.base.starts_with("sand_velocity"))
         name.base = "extrapolated" + name.base.substr(4);
     if (stage == "account_sides" && name.base.starts_with("flux")) name.base = "water_" + name.base;
     // Stages that read published fields, or velocities that were tried: any fields do, equal in some places and not in others.

@@ -51,7 +51,7 @@ class HalfTurn {
         : strain_(strain), stage_(compute::find_stage(strain == Strain::left_stretch ? "evolve_deformation_gradient"
                                                                                      : "advect_deformation_gradient")) {
         effects_ = EFFECT_SAND | EFFECT_ELASTOPLASTIC;
-        if (strain != Strain::left_stretch) effects_ |= EFFECT_WHOLE_STRAIN;
+        if (strain != Strain::left_stretch) effects_ |= EFFECT_PUBLISHED;
         if (strain == Strain::direct) effects_ |= EFFECT_DIRECT_STRAIN;
         Settings settings;
         settings.grid = {2, states, 1};

@@ -41,15 +41,13 @@ std::vector<CaseSpec> list() {
     add("bounds", "33x17", ALL, "thin_film", "default", 300);
     add("bounds", "33x17", WET | ELASTIC | EFFECT_COHESION, "cliff", "plain",
         300); // closed: its ledger would count rounded quanta
-    add("bounds", "33x17", ALL | TRACED, "random", "default", 300);
     add("bounds", "33x17", ALL | SECOND, "random", "default", 300);
     add("bounds", "33x17", ALL | SECOND, "thin_film", "default", 300);
     add("bounds", "33x17", ALL | SAND_SECOND, "random", "default", 300);
     add("bounds", "33x17", EFFECT_SAND | ELASTIC | SLOPES | SAND_SECOND, "cliff", "default", 300);
     add("bounds", "33x17", WET | ELASTIC | EFFECT_COHESION | SECOND, "cliff", "plain", 300);
-    add("bounds", "33x17", ALL | TRACED | POLAR, "random", "default", 300);
-    add("bounds", "33x17", ALL | DIRECT, "random", "default", 300);
     add("bounds", "33x17", ALL_PUBLISHED, "random", "default", 300);
+    add("bounds", "33x17", ALL_PUBLISHED | DIRECT, "random", "default", 300);
     for (int seed = 1; seed <= 8; ++seed)
         add("bounds", "24x20", ALL & ~EFFECT_SOURCES, "random", ("fuzz" + std::to_string(seed)).c_str(), 80);
     add("lake_at_rest", "33x17", EFFECT_WATER, "lake_at_rest", "default", 200);
@@ -57,12 +55,12 @@ std::vector<CaseSpec> list() {
     add("lake_at_rest", "33x17", WET | ELASTIC | EFFECT_COHESION, "lake_at_rest", "default", 200);
     add("lake_at_rest", "33x17", WET | EFFECT_BED_SHEAR, "lake_at_rest", "default", 200);
     add("lake_at_rest", "33x17", EFFECT_WATER | EFFECT_SAND | EFFECT_DRAG | EFFECT_BED_FRICTION, "lake_at_rest", "default", 200);
-    add("lake_at_rest", "33x17", WET | ELASTIC | EFFECT_COHESION | TRACED, "lake_at_rest", "default", 200);
+    add("lake_at_rest", "33x17", EFFECT_WATER | PUBLISHED, "lake_at_rest", "default", 200);
     add("lake_at_rest", "33x17", WET | SLOPES | EFFECT_RETENTION, "lake_at_rest", "default", 200);
     add("lake_at_rest", "33x17", WET | ELASTIC | EFFECT_COHESION | SLOPES | EFFECT_RETENTION, "lake_at_rest", "default", 200);
     add("lake_at_rest", "33x17", EFFECT_WATER | SECOND, "lake_at_rest", "default", 200);
     add("lake_at_rest", "33x17", WET | ELASTIC | EFFECT_COHESION | SECOND, "lake_at_rest", "default", 200);
-    add("static_pile", "33x17", EFFECT_SAND | TRACED, "static_pile", "default", 200);
+    add("static_pile", "33x17", EFFECT_SAND | PUBLISHED, "static_pile", "default", 200);
     add("static_pile", "33x17", EFFECT_SAND, "static_pile", "default", 200);
     add("static_pile", "65x33", EFFECT_SAND | ELASTIC, "static_pile", "default", 200);
     add("static_pile", "33x17", EFFECT_SAND | ELASTIC, "static_pile", "bare", 200);
@@ -70,7 +68,6 @@ std::vector<CaseSpec> list() {
     add("static_pile", "33x17", EFFECT_SAND | ELASTIC | SLOPES, "static_pile", "default", 200);
     add("static_pile", "33x17", EFFECT_SAND | SAND_SECOND, "static_pile", "default", 200);
     add("static_pile", "33x17", EFFECT_SAND | ELASTIC | SLOPES | SAND_SECOND, "static_pile", "default", 200);
-    add("static_pile", "33x17", EFFECT_SAND | SLOPES | TRACED, "static_pile", "default", 200);
     add("static_pile", "33x17", WET | SLOPES | EFFECT_RETENTION, "static_pile", "default", 200);
     for (const char* symmetry : {"mirror_x", "mirror_y", "transpose"}) {
         add(symmetry, "33x17", EFFECT_WATER | EFFECT_OPEN_SIDES | EFFECT_BED_FRICTION, "islands", "default", 40);
@@ -79,11 +76,9 @@ std::vector<CaseSpec> list() {
         add(symmetry, "33x17", EFFECT_SAND | SLOPES, "cliff", "default", 40);
         add(symmetry, "33x17", WET | ELASTIC | EFFECT_COHESION | SLOPES | EFFECT_RETENTION, "cliff", "default", 40);
         add(symmetry, "33x17", ALL, "random", "default", 40);
-        add(symmetry, "33x17", ALL | TRACED, "random", "default", 40);
         add(symmetry, "33x17", ALL | SECOND, "random", "default", 40);
         add(symmetry, "33x17", ALL | SAND_SECOND, "random", "default", 40);
-        add(symmetry, "33x17", ALL | POLAR, "random", "default", 40);
-        add(symmetry, "33x17", ALL | DIRECT, "random", "default", 40);
+        add(symmetry, "33x17", ALL_PUBLISHED | DIRECT, "random", "default", 40);
         add(symmetry, "33x17", ALL_PUBLISHED, "random", "default", 40);
         add(symmetry, "65x3", ALL, "random", "plain", 30);
     }

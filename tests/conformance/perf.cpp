@@ -378,12 +378,10 @@ Status run_perf(Session& session, const PerfOptions& options, bool first) {
         for (const bool fused : kinds)
             if (auto status = told(measure_stages(**device, size, fused, options, rows)); !status) return status;
         if (!options.stage.empty()) continue;
-        constexpr std::uint32_t published =
-            EFFECT_SEMI_LAGRANGIAN | EFFECT_WHOLE_STRAIN | EFFECT_EXPLICIT_DRAG | EFFECT_LAPLACE_DIFFUSION;
         constexpr std::pair<const char*, std::uint32_t> steps[] = {
             {"step, all effects", ALL},
             {"step, sand of the paper", ALL & ~SAND_LAWS},
-            {"step, published", (ALL & ~SAND_LAWS) | published},
+            {"step, published", ALL_PUBLISHED},
             {"step, water only", EFFECT_WATER},
             {"step, dry sand", EFFECT_SAND | EFFECT_ELASTOPLASTIC | EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION}};
         for (const auto& [name, effects] : steps) {

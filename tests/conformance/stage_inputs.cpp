@@ -26,14 +26,14 @@ constexpr std::array stages_with_stale_ghosts = {"center_water_velocity",
                                                  "compute_saturation",
                                                  "compute_momentum_exchange",
                                                  "integrate_sand_velocity",
-                                                 "apply_drag",
                                                  "apply_friction",
                                                  "measure_layer_exchange",
                                                  "give_layer_exchange",
-                                                 "renew_split",
+                                                 "push_water",
                                                  "push_sand",
                                                  "yield_right_stretch",
-                                                 "apply_sand_stress"};
+                                                 "apply_sand_stress",
+                                                 "apply_frictional_force"};
 
 std::size_t components_of(compute::Scalar type) {
     return type == compute::Scalar::vec4 ? 4 : type == compute::Scalar::vec2 || type == compute::Scalar::uvec2 ? 2 : 1;

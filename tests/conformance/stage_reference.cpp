@@ -23,46 +23,46 @@ constexpr Step<Real> steps[] = {
     {"apply_rain", &Solver<Real>::apply_rain, EFFECT_RAIN},
     {"open_sides", &Solver<Real>::update_open_sides, EFFECT_OPEN_SIDES | EFFECT_WATER},
     {"split_water", &Solver<Real>::split_water, 0},
-    {"update_water_boundary_types", &Solver<Real>::update_water_boundary_types, EFFECT_SEMI_LAGRANGIAN | EFFECT_WATER},
-    {"diffuse_mixed_velocity", &Solver<Real>::diffuse_mixed_velocity, EFFECT_SEMI_LAGRANGIAN | EFFECT_LAPLACE_DIFFUSION},
-    {"diffuse_mixed_water", &Solver<Real>::diffuse_mixed_water, EFFECT_DIFFUSION},
+    {"diffuse_mixed_velocity", &Solver<Real>::diffuse_mixed_velocity, EFFECT_PUBLISHED | EFFECT_DIFFUSION},
+    {"diffuse_mixed_height", &Solver<Real>::diffuse_mixed_height, EFFECT_PUBLISHED | EFFECT_DIFFUSION},
+    {"spread_mixed_water", &Solver<Real>::spread_mixed_water, EFFECT_PUBLISHED | EFFECT_DIFFUSION},
+    {"update_water_boundary_types", &Solver<Real>::update_water_boundary_types, EFFECT_PUBLISHED | EFFECT_WATER},
+    {"diffuse_mixed_water", &Solver<Real>::diffuse_mixed_water, EFFECT_DIFFUSION, EFFECT_PUBLISHED},
     {"limit_water_outflow", &Solver<Real>::limit_water_outflow, EFFECT_WATER},
-    {"diffuse_mixed_height", &Solver<Real>::diffuse_mixed_height, EFFECT_DIFFUSION_AHEAD},
-    {"spread_mixed_water", &Solver<Real>::spread_mixed_water, EFFECT_DIFFUSION_AHEAD},
     {"compute_water_flux", &Solver<Real>::compute_water_flux, EFFECT_WATER},
     {"account_sides", nullptr, EFFECT_OPEN_SIDES},
     {"integrate_water_height", &Solver<Real>::integrate_water_height, EFFECT_WATER},
-    {"measure_layer_exchange", &Solver<Real>::measure_layer_exchange, EFFECT_EXPLICIT_EXCHANGE},
-    {"extrapolate_velocity", &Solver<Real>::extrapolate_pure_velocity, EFFECT_SEMI_LAGRANGIAN | EFFECT_WATER},
-    {"backtrace_water_velocity", &Solver<Real>::backtrace_pure_velocity, EFFECT_SEMI_LAGRANGIAN | EFFECT_WATER},
-    {"transport_mixed_velocity", &Solver<Real>::transport_mixed_velocity, EFFECT_SEMI_LAGRANGIAN | EFFECT_MIXTURE},
-    {"give_layer_exchange", &Solver<Real>::give_layer_exchange, EFFECT_EXPLICIT_EXCHANGE},
-    {"renew_split", &Solver<Real>::renew_split, EFFECT_EXPLICIT_EXCHANGE},
-    {"center_water_velocity", &Solver<Real>::center_water_velocity, EFFECT_SECOND_ORDER_WATER},
-    {"integrate_water_velocity", &Solver<Real>::integrate_water_velocity, EFFECT_WATER},
-    {"push_mixed_water", &Solver<Real>::push_mixed_water, EFFECT_WHOLE_PRESSURE},
+    {"measure_layer_exchange", &Solver<Real>::measure_layer_exchange, EFFECT_PUBLISHED | EFFECT_MIXTURE},
+    {"extrapolate_velocity", &Solver<Real>::extrapolate_pure_velocity, EFFECT_PUBLISHED | EFFECT_WATER},
+    {"backtrace_water_velocity", &Solver<Real>::backtrace_pure_velocity, EFFECT_PUBLISHED | EFFECT_WATER},
+    {"transport_mixed_velocity", &Solver<Real>::transport_mixed_velocity, EFFECT_PUBLISHED | EFFECT_MIXTURE},
+    {"give_layer_exchange", &Solver<Real>::give_layer_exchange, EFFECT_PUBLISHED | EFFECT_MIXTURE},
+    {"push_water", &Solver<Real>::push_water, EFFECT_PUBLISHED | EFFECT_WATER},
+    {"center_water_velocity", &Solver<Real>::center_water_velocity, EFFECT_SECOND_ORDER_WATER, EFFECT_PUBLISHED},
+    {"integrate_water_velocity", &Solver<Real>::integrate_water_velocity, EFFECT_WATER, EFFECT_PUBLISHED},
     {"compute_bed_load", &Solver<Real>::compute_bed_load, EFFECT_BED_SHEAR},
-    {"compute_saturation", &Solver<Real>::compute_saturation, EFFECT_COHESION},
+    {"compute_saturation", &Solver<Real>::compute_saturation, EFFECT_COHESION, EFFECT_PUBLISHED},
     {"open_sand_sides", &Solver<Real>::update_open_sand_sides, EFFECT_OPEN_SIDES | EFFECT_SAND},
-    {"update_sand_boundary_types", &Solver<Real>::update_sand_boundary_types, EFFECT_SEMI_LAGRANGIAN | EFFECT_SAND},
+    {"update_sand_boundary_types", &Solver<Real>::update_sand_boundary_types, EFFECT_PUBLISHED | EFFECT_SAND},
     {"limit_sand_outflow", &Solver<Real>::limit_sand_outflow, EFFECT_SAND},
     {"compute_sand_flux", &Solver<Real>::compute_sand_flux, EFFECT_SAND},
     {"integrate_sand_height", &Solver<Real>::integrate_sand_height, EFFECT_SAND},
-    {"evolve_deformation_gradient", &Solver<Real>::evolve_deformation_gradient, EFFECT_ELASTOPLASTIC, EFFECT_WHOLE_STRAIN},
-    {"advect_deformation_gradient", &Solver<Real>::advect_deformation_gradient, EFFECT_WHOLE_STRAIN},
-    {"compute_momentum_exchange", &Solver<Real>::compute_momentum_exchange, EFFECT_MIXTURE, EFFECT_EXPLICIT_EXCHANGE},
-    {"project_deformation_gradient", &Solver<Real>::project_deformation_gradient, EFFECT_ELASTOPLASTIC, EFFECT_ALGORITHM_1},
-    {"extrapolate_sand_velocity", &Solver<Real>::extrapolate_sand_velocity, EFFECT_SEMI_LAGRANGIAN | EFFECT_SAND},
-    {"backtrace_sand_velocity", &Solver<Real>::backtrace_sand_velocity, EFFECT_SEMI_LAGRANGIAN | EFFECT_SAND},
-    {"integrate_sand_velocity", &Solver<Real>::integrate_sand_velocity, EFFECT_SAND, EFFECT_ALGORITHM_1},
-    {"push_sand", &Solver<Real>::push_sand, EFFECT_ALGORITHM_1},
-    {"yield_right_stretch", &Solver<Real>::yield_right_stretch, EFFECT_ALGORITHM_1 | EFFECT_WHOLE_STRAIN},
-    {"compute_sand_stress", &Solver<Real>::compute_sand_stress, EFFECT_ALGORITHM_1 | EFFECT_WHOLE_STRAIN},
-    {"apply_sand_stress", &Solver<Real>::apply_sand_stress, EFFECT_ALGORITHM_1 | EFFECT_WHOLE_STRAIN},
-    {"extrapolate_strain", &Solver<Real>::extrapolate_strain, EFFECT_STRAIN_BEYOND},
-    {"stretch_deformation_gradient", &Solver<Real>::stretch_deformation_gradient, EFFECT_WHOLE_STRAIN},
-    {"apply_drag", &Solver<Real>::apply_drag, EFFECT_EXPLICIT_DRAG, EFFECT_ALGORITHM_1},
-    {"apply_friction", &Solver<Real>::apply_friction, EFFECT_SAND},
+    {"evolve_deformation_gradient", &Solver<Real>::evolve_deformation_gradient, EFFECT_ELASTOPLASTIC, EFFECT_PUBLISHED},
+    {"compute_momentum_exchange", &Solver<Real>::compute_momentum_exchange, EFFECT_MIXTURE, EFFECT_PUBLISHED},
+    {"project_deformation_gradient", &Solver<Real>::project_deformation_gradient, EFFECT_ELASTOPLASTIC, EFFECT_PUBLISHED},
+    {"integrate_sand_velocity", &Solver<Real>::integrate_sand_velocity, EFFECT_SAND, EFFECT_PUBLISHED},
+    {"apply_friction", &Solver<Real>::apply_friction, EFFECT_SAND, EFFECT_PUBLISHED},
+    {"extrapolate_sand_velocity", &Solver<Real>::extrapolate_sand_velocity, EFFECT_PUBLISHED | EFFECT_SAND},
+    {"backtrace_sand_velocity", &Solver<Real>::backtrace_sand_velocity, EFFECT_PUBLISHED | EFFECT_SAND},
+    {"push_sand", &Solver<Real>::push_sand, EFFECT_PUBLISHED | EFFECT_SAND},
+    {"yield_right_stretch", &Solver<Real>::yield_right_stretch, EFFECT_PUBLISHED | EFFECT_ELASTOPLASTIC},
+    {"advect_deformation_gradient", &Solver<Real>::advect_deformation_gradient, EFFECT_PUBLISHED | EFFECT_ELASTOPLASTIC},
+    {"compute_sand_stress", &Solver<Real>::compute_sand_stress, EFFECT_PUBLISHED | EFFECT_ELASTOPLASTIC},
+    {"apply_sand_stress", &Solver<Real>::apply_sand_stress, EFFECT_PUBLISHED | EFFECT_ELASTOPLASTIC},
+    {"extrapolate_rim_velocity", &Solver<Real>::extrapolate_rim_velocity, EFFECT_PUBLISHED | EFFECT_ELASTOPLASTIC},
+    {"stretch_deformation_gradient", &Solver<Real>::stretch_deformation_gradient, EFFECT_PUBLISHED | EFFECT_ELASTOPLASTIC},
+    {"extrapolate_strain", &Solver<Real>::extrapolate_strain, EFFECT_PUBLISHED | EFFECT_ELASTOPLASTIC},
+    {"apply_frictional_force", &Solver<Real>::apply_frictional_force, EFFECT_PUBLISHED | EFFECT_SAND},
 };
 
 // V on a grid of 2^-22, so that V - I is exact in float; a strain that reaches the yield surface and beyond where wanted.
@@ -78,7 +78,7 @@ void settle_stretch(Solver<float>& s, bool rough) {
                 s.Vxx[c] += size * band_limited(21, i, j);
                 s.Vxy[c] += size * band_limited(22, i, j);
                 s.Vyy[c] += size * band_limited(23, i, j);
-                if (s.has(EFFECT_WHOLE_STRAIN)) s.rotation[c] += 20 * size * band_limited(24, i, j);
+                if (s.has(EFFECT_PUBLISHED)) s.rotation[c] += 20 * size * band_limited(24, i, j);
             }
             s.Vxx[c] = snap(s.Vxx[c]);
             s.Vxy[c] = snap(s.Vxy[c]);
@@ -167,7 +167,7 @@ Pilot make_pilot(const Scene& scene, const std::string& stage) {
     pilot.input.interpolation = 0.3F;
     pilot.input.point_count = stage == "sample_points" ? sampled_points : 0;
     // A rotation that is rounding alone would prove nothing.
-    if (scene.rough_stretch || s.has(EFFECT_WHOLE_STRAIN)) settle_stretch(s, true);
+    if (scene.rough_stretch || s.has(EFFECT_PUBLISHED)) settle_stretch(s, true);
     const bool in_step =
         std::any_of(std::begin(steps<float>), std::end(steps<float>), [&](const auto& step) { return stage == step.stage; });
     for (const auto& step : steps<float>) {

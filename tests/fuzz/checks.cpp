@@ -137,7 +137,7 @@ std::string check_fused(const Case& c, Session& session, const Base& base) {
 std::string check_image(const Case& c, Session& session, Base& base, Image image) {
     const auto& method = c.scene.settings.method;
     const bool may_invert = method.gradient_clamp <= 0 || method.gradient_clamp >= 0.5;
-    if (may_invert && method.strain_transport != StrainTransport::left_stretch) return {};
+    if (may_invert && method.published()) return {};
     const Case turned = image_of(c, image);
     Run run = open(turned, session);
     queue(run, turned);
@@ -184,7 +184,7 @@ std::string check_reference(const Case& c, Session& session) {
     const auto& s = c.scene.settings;
     if (c.at_ends) return {};
     // Explicit drag beyond its bound flips velocities between the clamps by the sign of a rounding.
-    if (s.method.drag_friction == DragFriction::sequence && s.dt * s.material.exchange_rate > s.material.water_density) return {};
+    if (s.method.published() && s.dt * s.material.exchange_rate > s.material.water_density) return {};
     // Without gravity no depth of an inflow is critical: each solver has a floor of its own.
     for (const Side& side : s.sides)
         if (side.kind == SideKind::discharge && s.gravity <= 0) return {};

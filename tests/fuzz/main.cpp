@@ -22,7 +22,7 @@ struct Options {
     std::uint64_t scenes = 0, seed = 1;
     int jobs = 0, most_failures = 5;
     std::vector<std::string> backends;
-    std::string out = "fuzz-failures", csv, level, check, plain_set = "base", sand_substep;
+    std::string out = "fuzz-failures", csv, level, check, plain_set = "base", method;
     Weaken weaken = Weaken::nothing;
 };
 
@@ -74,8 +74,7 @@ class Campaign {
             if (options_.scenes > 0 && seed >= options_.seed + options_.scenes) break;
             const double began = now();
             const Case c = make_case(seed);
-            const bool published = c.scene.settings.method.sand_substep == SandSubstep::algorithm_1;
-            if (!options_.sand_substep.empty() && published != (options_.sand_substep == "algorithm_1")) continue;
+            if (!options_.method.empty() && options_.method != c.scene.settings.method.name) continue;
             places_[n].seed = seed;
             places_[n].since = began;
             const Outcome outcome = run_case(c, *devices, options_.weaken, options_.check);
@@ -206,9 +205,8 @@ int main(int argc, char** argv) {
     app.add_option("--plain-set", options.plain_set,
                    "instruction set of the plain CPU: base, or a quicker one (base costs most of the time)");
     app.add_option("--check", options.check, "this check alone, in every scene")->check(CLI::IsMember(check_names()));
-    app.add_option("--sand-substep", options.sand_substep,
-                   "only scenes whose method has this one; --scenes counts the others as well")
-        ->check(CLI::IsMember({"own", "algorithm_1"}));
+    app.add_option("--method", options.method, "only scenes of this method; --scenes counts the others as well")
+        ->check(CLI::IsMember({"robust", "published"}));
     app.add_option("--level", options.level, "runs a level that a failure left, instead of random scenes");
     app.add_option("--out", options.out, "folder for the levels of failures");
     app.add_option("--csv", options.csv, "a line per scene");

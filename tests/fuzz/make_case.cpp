@@ -105,7 +105,7 @@ void make_method(Random& random, Settings& s) {
     Method& m = s.method;
     m.substeps = random.whole(1, 6);
     if (random.chance(0.08)) {
-        choose_method(s, "paper_like");
+        choose_method(s, "published");
         return;
     }
     if (random.chance(0.15)) m.quantum = 0;
@@ -121,10 +121,6 @@ void make_method(Random& random, Settings& s) {
     if (random.chance(0.3)) m.shock_viscosity = random.real(0, 1);
     if (random.chance(0.3)) m.bulk_viscosity = random.real(0, 1);
     m.saturation_smoothing = random.whole(0, 2);
-    if (random.chance(0.1)) m.velocity_transport = VelocityTransport::semi_lagrangian;
-    if (random.chance(0.15)) m.strain_transport = random.pick({StrainTransport::polar, StrainTransport::direct});
-    if (random.chance(0.1)) m.drag_friction = DragFriction::sequence;
-    if (random.chance(0.1)) m.diffusion = Diffusion::laplacian;
 }
 
 void make_rims_and_sources(Random& random, Settings& s, double size) {
@@ -231,7 +227,7 @@ Case make_case(std::uint64_t seed) {
     if (random.chance(0.4)) s.method.water_transport_order = 2;
     make_sand_laws(random, s);
     if (random.chance(0.3)) s.method.prestress = true;
-    if (random.chance(0.3)) s.method.sand_transport_order = 2;
+    if (random.chance(0.3) && !s.method.published()) s.method.sand_transport_order = 2;
     if (random.chance(0.2)) s.material.manning = random.log(1e-3, 1);
     if (random.chance(0.1)) s.roughness = drawn(s.grid, relief(random, s.grid, random.log(1e-3, 1)));
     for (Side& side : s.sides)
@@ -241,9 +237,11 @@ Case make_case(std::uint64_t seed) {
         source.discharge = {{{0, source.rate.samples[0].second * s.grid.dx * s.grid.dx * random.real(0.5, 20)}}};
         source.rate = {};
     }
-    if (s.method.name == "paper_like" && random.chance(0.2)) s.method.outflow_limiter = false;
+    if (s.method.published()) {
+        s.method.outflow_limiter = random.chance(0.5);
+        s.method.strain_transport = random.pick({StrainTransport::polar, StrainTransport::direct});
+    }
     if (random.chance(0.2)) c.at_ends = draw_ends(random, c);
-    if (s.method.name == "paper_like" && random.chance(0.5)) choose_method(s, "published");
     return c;
 }
 

@@ -76,7 +76,8 @@ std::vector<float> heights(const wadi_region& region, double quantum, float base
 } // namespace
 
 TEST_CASE("values that are checked on the device give the bits and counts of those checked on the host") {
-    const std::vector<std::string> methods = {"", R"(, "method": {"name": "published"})", R"(, "method": {"name": "paper_like"})",
+    const std::vector<std::string> methods = {"", R"(, "method": {"name": "published"})",
+                                              R"(, "method": {"name": "published", "strain_transport": "direct"})",
                                               R"(, "method": {"prestress": false})", R"(, "active_tiles": 8)"};
     for (const auto& backend : abi_backends()) {
         CAPTURE(backend);

@@ -40,7 +40,7 @@ template <class Real> void Solver<Real>::advect_stretch() {
 /// Substep times the velocity gradient of a cell (xx, xy, yx, yy) by the rules of 2.6, wet cells being those of `depth`.
 template <class Real> std::array<Real, 4> Solver<Real>::velocity_gradient(const Field<Real>& depth, int i, int j) const {
     const Axis x = axis(false);
-    const bool beyond = has(EFFECT_STRAIN_BEYOND); // 2.22: velocities go on beyond the rim
+    const bool beyond = has(EFFECT_PUBLISHED); // 2.22: velocities go on beyond the rim
     const Faces<Real>& velocity = beyond ? extrapolated : sand_velocity;
     // d(velocity along ax)/d(across ax), times the substep; `known` is false where no neighbour across is wet.
     const auto shear_rate = [&](const Axis& ax, int a, int b, bool& known) {
@@ -162,26 +162,6 @@ template <class Real> void Solver<Real>::project_deformation_gradient() {
         const Real cliff = P.yield_friction * P.rho_s * P.gravity * sand[c];
         if (cliff > Real(0)) cohesive_share[c] = std::min(Real(1), Real(4) * coh / cliff);
         if (sand[c] <= P.eps) continue;
-        // 2.13: the right stretch and the rotation (cs, sn) that F is kept with.
-        Real cs(1);
-        Real sn(0);
-        if (has(EFFECT_DIRECT_STRAIN)) {
-            const Real fxy = Vxy[c] - rotation[c];
-            const Real fyx = Vxy[c] + rotation[c];
-            const Real size = std::hypot(Vxx[c] + Vyy[c], fyx - fxy);
-            if (size > Real(0)) {
-                cs = (Vxx[c] + Vyy[c]) / size;
-                sn = (fyx - fxy) / size;
-            }
-            const Real Pxx = cs * Vxx[c] + sn * fyx;
-            const Real Pyy = cs * Vyy[c] - sn * fxy;
-            Vxy[c] = mean(cs * fxy + sn * Vyy[c], cs * fyx - sn * Vxx[c]);
-            Vxx[c] = Pxx;
-            Vyy[c] = Pyy;
-        } else if (has(EFFECT_WHOLE_STRAIN)) {
-            cs = std::cos(rotation[c]);
-            sn = std::sin(rotation[c]);
-        }
         // Logarithmic strain of V from b = V V^T, without angles.
         const Real bxx = Vxx[c] * Vxx[c] + Vxy[c] * Vxy[c];
         const Real byy = Vxy[c] * Vxy[c] + Vyy[c] * Vyy[c];
@@ -231,17 +211,6 @@ template <class Real> void Solver<Real>::project_deformation_gradient() {
         sxx[c] = (lm * tr + Real(2) * P.shear * dd) * per_J;
         syy[c] = (lm * tr - Real(2) * P.shear * dd) * per_J;
         sxy[c] = Real(2) * P.shear * dxy * per_J;
-        // 2.13: the stress belongs to the left stretch, R S R^T; (cs, sn) = (1, 0) otherwise.
-        const Real half = mean(sxx[c], syy[c]);
-        const Real along = mean(sxx[c], -syy[c]);
-        const Real across = sxy[c];
-        const Real c2 = cs * cs - sn * sn;
-        const Real s2 = Real(2) * sn * cs;
-        if (has(EFFECT_WHOLE_STRAIN)) {
-            sxx[c] = half + (along * c2 - across * s2);
-            syy[c] = half - (along * c2 - across * s2);
-            sxy[c] = across * c2 + along * s2;
-        }
         // Bulk viscosity, which takes the mean stress no further than yield does.
         const int i = static_cast<int>(c) % x.nx;
         const int j = static_cast<int>(c) / x.nx;
@@ -256,14 +225,6 @@ template <class Real> void Solver<Real>::project_deformation_gradient() {
         }
         sxx[c] += after - before;
         syy[c] += after - before;
-        if (!has(EFFECT_DIRECT_STRAIN)) continue;
-        const Real Pxx = Vxx[c];
-        const Real Pxy = Vxy[c];
-        const Real Pyy = Vyy[c];
-        Vxx[c] = cs * Pxx - sn * Pxy;
-        Vyy[c] = cs * Pyy + sn * Pxy;
-        Vxy[c] = cs * Pxy + sn * mean(Pxx, -Pyy);
-        rotation[c] = sn * mean(Pxx, Pyy);
     }
 }
 

@@ -40,7 +40,7 @@ template <class Real> void Solver<Real>::add_stress(const Axis& ax, int a, int b
     const auto corner = [&](int row) {
         if (row == 0 || row == ax.across()) return Real(0);
         const std::array<std::size_t, 4> c = {ax.cell(a - 1, row - 1), ax.cell(a, row), ax.cell(a, row - 1), ax.cell(a - 1, row)};
-        if (mean_corner_shear || has(EFFECT_CENTRAL_SHEAR)) {
+        if (mean_corner_shear || has(EFFECT_PUBLISHED)) {
             Real sum(0);
             for (const std::size_t n : c) sum += sand[n] * sxy[n];
             return sum / Real(4);
@@ -88,7 +88,7 @@ template <class Real> void Solver<Real>::add_gravity(const Axis& ax, int a, int 
 
 template <class Real> void Solver<Real>::integrate_sand_velocity() {
     const Faces<Real> old = sand_velocity;
-    if (!has(EFFECT_SEMI_LAGRANGIAN)) advect(EFFECT_SECOND_ORDER_SAND, sand, sand_flux, old, P.k_sand, sand_velocity);
+    advect(EFFECT_SECOND_ORDER_SAND, sand, sand_flux, old, P.k_sand, sand_velocity);
     for_inner_faces([&](const Axis& ax, int a, int b) {
         if (has(EFFECT_INTERNAL_FRICTION)) {
             slow_from_within(old, ax, a, b);
@@ -132,29 +132,10 @@ template <class Real> void Solver<Real>::compute_momentum_exchange() {
     });
 }
 
-/// 2.14: explicit exchange of momentum on every inner face that holds wet sand.
-template <class Real> void Solver<Real>::apply_drag() {
-    const bool two_layers = has(EFFECT_MIXTURE);
-    Faces<Real>& partner = two_layers ? mixed_velocity : pure_velocity;
-    for_inner_faces([&](const Axis& ax, int a, int b) {
-        const std::size_t L = ax.cell(a - 1, b);
-        const std::size_t R = ax.cell(a, b);
-        const Real hs_bar = mean(sand[L], sand[R]);
-        const Real hm_bar = mean(mixed[L], mixed[R]);
-        if (hm_bar <= P.eps || hs_bar <= P.eps / Real(2)) return;
-        Real& us = sand_velocity.along(ax)[ax.face(a, b)];
-        Real& um = partner.along(ax)[ax.face(a, b)];
-        const Real impulse = P.substep * P.exchange * hm_bar * (us - um);
-        us -= impulse / (P.rho_s * hs_bar);
-        um += impulse / (P.rho_w * (two_layers ? hm_bar : mean(water[L], water[R])));
-    });
-}
-
 /// 2.8: implicit pair of drag and Coulomb friction, on every inner face from the velocities before it.
 template <class Real> void Solver<Real>::apply_friction() {
     const bool two_layers = has(EFFECT_MIXTURE);
-    const bool drag = has(EFFECT_DRAG) && !has(EFFECT_EXPLICIT_DRAG);
-    const bool with_water = has(EFFECT_DRAG); // otherwise it is left alone, clamp and all
+    const bool drag = has(EFFECT_DRAG); // otherwise the water is left alone, clamp and all
     Faces<Real>& partner = two_layers ? mixed_velocity : pure_velocity;
     const Faces<Real> us_old = sand_velocity;
     const Faces<Real> um_old = partner;
@@ -169,7 +150,7 @@ template <class Real> void Solver<Real>::apply_friction() {
         Real& um = partner.along(ax)[f];
         if (hs_bar <= P.eps / Real(2)) {
             us = Real(0);
-            if (with_water) um = two_layers && hm_bar <= Real(0) ? Real(0) : clamped(um, P.clamp);
+            if (drag) um = two_layers && hm_bar <= Real(0) ? Real(0) : clamped(um, P.clamp);
             return;
         }
         // Per bed area: inertia of the partner layer and of the sand, and the drag impulse per velocity difference.
@@ -201,7 +182,7 @@ template <class Real> void Solver<Real>::apply_friction() {
         const Real N = has(EFFECT_SLOPE_NORMAL) ? friction_limit.along(ax)[f] : level_friction(L, R);
         const Real kept = size > Real(0) ? std::max(Real(1) - N / size, Real(0)) / (Real(1) + kappa) : Real(0);
         us = shortened(kept * p, kept * p_cross, P.clamp_sand);
-        if (!with_water) return;
+        if (!drag) return;
         if (two_layers && hm_bar <= Real(0)) // mixed water that is not there stands still
             um = Real(0);
         else if (drag && inertia * free + kd > Real(0))

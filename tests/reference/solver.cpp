@@ -1,9 +1,9 @@
 // Set-up and the order of the stages (section 3).
 #include "tests/reference/solver.hpp"
-#include "tests/reference/algorithm_1.inl"
 #include "tests/reference/backtrace.inl"
 #include "tests/reference/deformation.inl"
 #include "tests/reference/prestress.inl"
+#include "tests/reference/published.inl"
 #include "tests/reference/rim.inl"
 #include "tests/reference/sand.inl"
 #include "tests/reference/slope.inl"
@@ -34,7 +34,7 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
     P.yield_friction = static_cast<Real>(material.yield_friction);
     // 2.7: tan(45 deg + phi/2) of the yield surface's friction angle.
     const double rankine = material.yield_friction + std::sqrt(1 + material.yield_friction * material.yield_friction);
-    const double apex = has(EFFECT_ALGORITHM_1) ? 1 : 4 * material.yield_friction * rankine;
+    const double apex = has(EFFECT_PUBLISHED) ? 1 : 4 * material.yield_friction * rankine;
     P.c0 = static_cast<Real>(apex * material.cohesion_dry);
     P.c1 = static_cast<Real>(apex * material.cohesion_wet);
     P.c2 = static_cast<Real>(apex * material.cohesion_capillary);
@@ -105,7 +105,7 @@ template <class Real> void Solver<Real>::set_time_step(double dt) {
     P.clamp = P.alpha / P.k;
     P.clamp_sand = P.alpha / P.k_sand;
     P.diffusion = static_cast<Real>(settings.material.diffusion_rate);
-    if (!has(EFFECT_DIFFUSION_AHEAD)) P.diffusion = std::min(P.diffusion, Real(0.2) * P.dx * P.dx / P.dt);
+    if (!has(EFFECT_PUBLISHED)) P.diffusion = std::min(P.diffusion, Real(0.2) * P.dx * P.dx / P.dt);
     const Real E = static_cast<Real>(settings.material.young_modulus);
     const Real nu = static_cast<Real>(settings.material.poisson_ratio);
     P.lambda = E * nu / ((Real(1) + nu) * (Real(1) - Real(2) * nu));
@@ -215,70 +215,38 @@ template <class Real> template <class Other> void Solver<Real>::copy_from(const 
 template <class Real> void Solver<Real>::step() {
     apply_sources();
     apply_rain();
-    const bool traced = has(EFFECT_SEMI_LAGRANGIAN);
-    const bool ahead = has(EFFECT_DIFFUSION_AHEAD);
     split_water();
-    if (ahead) {
-        diffuse_mixed_velocity();
-        diffuse_mixed_height();
-        spread_mixed_water();
-    }
-    const Field<Real> spread = mixed;
+    has(EFFECT_PUBLISHED) ? step_published() : step_robust();
+    ++step_index;
+}
+
+template <class Real> void Solver<Real>::step_robust() {
     update_open_sides();
     if (has(EFFECT_WATER)) {
         split_water();
-        for (std::size_t c = 0; ahead && c < cells(); ++c) {
-            mixed[c] = spread[c];
-            pure[c] = water[c] - spread[c];
-        }
-        if (step_index == 0 && has(EFFECT_SECOND_ORDER_WATER) && !traced) start_water_velocity();
-        if (traced) update_water_boundary_types();
-        if (traced && has(EFFECT_LAPLACE_DIFFUSION) && !ahead) diffuse_mixed_velocity();
-        if (!ahead) diffuse_mixed_water();
+        if (step_index == 0 && has(EFFECT_SECOND_ORDER_WATER)) start_water_velocity();
+        diffuse_mixed_water();
         limit_water_outflow();
         compute_water_flux();
         integrate_water_height();
-        if (has(EFFECT_EXPLICIT_EXCHANGE)) measure_layer_exchange();
-        if (traced) {
-            extrapolate_pure_velocity();
-            backtrace_pure_velocity();
-            if (has(EFFECT_MIXTURE)) transport_mixed_velocity();
-        }
-        if (has(EFFECT_EXPLICIT_EXCHANGE)) {
-            give_layer_exchange();
-            renew_split();
-        }
         if (has(EFFECT_SECOND_ORDER_WATER)) center_water_velocity();
         integrate_water_velocity();
-        if (has(EFFECT_WHOLE_PRESSURE)) push_mixed_water();
     }
     if (has(EFFECT_BED_SHEAR)) compute_bed_load();
-    if (has(EFFECT_COHESION) && !has(EFFECT_ALGORITHM_1)) compute_saturation();
+    if (has(EFFECT_COHESION)) compute_saturation();
     for (int substep = 0; has(EFFECT_SAND) && substep < P.substeps; ++substep) {
         update_open_sand_sides();
-        if (traced) update_sand_boundary_types();
-        if (has(EFFECT_ALGORITHM_1)) {
-            step_sand_by_algorithm_1();
-            continue;
-        }
         limit_sand_outflow();
         compute_sand_flux();
         integrate_sand_height();
         if (has(EFFECT_ELASTOPLASTIC)) {
-            has(EFFECT_WHOLE_STRAIN) ? advect_deformation_gradient() : evolve_deformation_gradient();
+            evolve_deformation_gradient();
             project_deformation_gradient();
         }
-        if (traced) {
-            extrapolate_sand_velocity();
-            backtrace_sand_velocity();
-        }
         integrate_sand_velocity();
-        if (has(EFFECT_WHOLE_STRAIN)) stretch_deformation_gradient();
-        exchange_layers();
-        if (has(EFFECT_EXPLICIT_DRAG)) apply_drag();
+        if (has(EFFECT_MIXTURE)) compute_momentum_exchange();
         apply_friction();
     }
-    ++step_index;
 }
 
 template class Solver<float>;

@@ -92,21 +92,21 @@ template <class Real> class Solver {
     void advect_deformation_gradient();          // 2.13 -> Vxx, Vxy, Vyy, rotation
     void stretch_deformation_gradient();         // 2.13, after the velocity -> Vxx, Vxy, Vyy, rotation
     void compute_momentum_exchange();            // 2.4a after the sand height, then mixed_push on mixed_velocity
-    void apply_drag();                           // 2.14 -> sand_velocity, mixed_velocity (pure_velocity in the single-layer mask)
     void apply_friction();                       // 2.8 -> sand_velocity, mixed_velocity (pure_velocity in the single-layer mask)
     // 2.21, water as the paper has it
     void diffuse_mixed_height();   // -> mixed
     void spread_mixed_water();     // -> water
     void measure_layer_exchange(); // from mixed_predicted to mixed -> layer_exchange
     void give_layer_exchange();    // -> pure_velocity, mixed_velocity
-    void renew_split();            // -> mixed_predicted
-    void push_mixed_water();       // -> mixed_velocity, mixed_push
+    void push_water();             // 2.4b to d without guards -> pure_velocity, mixed_velocity
     // 2.22, sand by Algorithm 1
-    void push_sand();           // -> sand_velocity, mixed_velocity (pure_velocity in the single-layer mask)
-    void yield_right_stretch(); // -> Vxx, Vxy, Vyy
-    void compute_sand_stress(); // -> sxx, sxy, syy
-    void apply_sand_stress();   // -> sand_velocity
-    void extrapolate_strain();  // -> Vxx, Vxy, Vyy, rotation
+    void push_sand();                // -> sand_velocity, mixed_velocity (pure_velocity in the single-layer mask)
+    void yield_right_stretch();      // -> Vxx, Vxy, Vyy
+    void compute_sand_stress();      // -> sxx, sxy, syy
+    void apply_sand_stress();        // -> sand_velocity
+    void extrapolate_rim_velocity(); // of the sand behind its stress -> extrapolated
+    void extrapolate_strain();       // -> Vxx, Vxy, Vyy, rotation
+    void apply_frictional_force();   // -> sand_velocity, mixed_velocity (pure_velocity in the single-layer mask)
 
     bool has(std::uint32_t effect) const { return (effects & effect) != 0; }
     Axis axis(bool is_y) const { return {is_y, settings.grid.nx, settings.grid.ny}; }
@@ -202,9 +202,16 @@ template <class Real> class Solver {
     void add_stress(const Axis& axis, int a, int b);
     void add_gravity(const Axis& axis, int a, int b);
     Real sand_load(std::size_t cell) const;
-    bool strain_of(std::size_t cell, Real& tr, Real& dd, Real& dxy) const;
-    void exchange_layers();
-    void step_sand_by_algorithm_1();
+    struct Stretch {
+        Real xx, xy, yy;
+    };
+    static bool strain_of(const Stretch& stretch, Real& tr, Real& dd, Real& dxy);
+    Stretch right_stretch_of(std::size_t cell, Real& cs, Real& sn) const;
+    void set_right_stretch(std::size_t cell, const Stretch& stretch, Real cs, Real sn);
+    void step_robust();
+    void step_published();
+    void step_published_water(const Field<Real>& spread); // the mixed heights that diffusion left
+    void step_published_sand();
 
     double quanta(double& total, double amount) const;
     void add_depth(Field<Real>& field, std::size_t cell, Real amount, double& ledger);

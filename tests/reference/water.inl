@@ -15,7 +15,7 @@ template <class Real> Real Solver<Real>::diffusion(const Axis& ax, int a, int b)
     const std::size_t L = ax.cell(a - 1, b);
     const std::size_t R = ax.cell(a, b);
     Real q(0);
-    if (has(EFFECT_LAPLACE_DIFFUSION))
+    if (has(EFFECT_PUBLISHED))
         q = -P.diffusion * (mixed[R] - mixed[L]) / P.dx;
     else if (sand[L] > P.eps && sand[R] > P.eps)
         q = -P.diffusion * minmod(mixed[R] - mixed[L], (terrain[R] + water[R]) - (terrain[L] + water[L])) / P.dx;
@@ -47,8 +47,7 @@ template <class Real> void Solver<Real>::diffuse_mixed_velocity() {
         const Real spread = (part(a + 1, b) + part(a - 1, b)) + (part(a, b - 1) + part(a, b + 1));
         mixed_velocity.along(ax)[ax.face(a, b)] = clamped(own + number * spread / h, P.clamp);
     });
-    if (!has(EFFECT_DIFFUSION_AHEAD)) return; // 2.21: heights spread by themselves
-    for (Faces<Real>* flux : {&diffusion_flux, &mixed_flux}) {
+    for (Faces<Real>* flux : {&diffusion_flux, &mixed_flux}) { // 2.21: heights spread by themselves
         std::fill(flux->x.begin(), flux->x.end(), Real(0));
         std::fill(flux->y.begin(), flux->y.end(), Real(0));
     }
@@ -131,7 +130,7 @@ void Solver<Real>::water_face(const Faces<Real>& pure_old, const Faces<Real>& mi
 
     if (!has(EFFECT_MIXTURE)) return;
     Real& share = mixed_push.along(ax)[f];
-    share = has(EFFECT_WHOLE_PRESSURE) ? push : push / Real(P.substeps);
+    share = push / Real(P.substeps);
     const bool rests = level && std::abs(um) <= P.rest_velocity;
     if (rests || blocked(mixed[L], mixed[R], eta_L, eta_R, P.eps)) {
         um = Real(0);
@@ -173,13 +172,12 @@ template <class Real> void Solver<Real>::damp_shocks(const Faces<Real>& before) 
 }
 
 template <class Real> void Solver<Real>::integrate_water_velocity() {
-    const bool traced = has(EFFECT_SEMI_LAGRANGIAN);
     const Faces<Real> before = pure_velocity;
     const Faces<Real> mixed_old = mixed_velocity;
-    if (!traced) advect(EFFECT_SECOND_ORDER_WATER, pure_predicted, pure_flux, centered_velocity, P.k, pure_velocity);
+    advect(EFFECT_SECOND_ORDER_WATER, pure_predicted, pure_flux, centered_velocity, P.k, pure_velocity);
     damp_shocks(before);
     if (has(EFFECT_MIXTURE)) {
-        if (!traced) advect(EFFECT_SECOND_ORDER_WATER, mixed_predicted, mixed_flux, mixed_old, P.k, mixed_velocity);
+        advect(EFFECT_SECOND_ORDER_WATER, mixed_predicted, mixed_flux, mixed_old, P.k, mixed_velocity);
         exchange_split(mixed_predicted, pure_predicted, mixed);
     }
     for_inner_faces([&](const Axis& ax, int a, int b) { water_face(before, mixed_old, ax, a, b); });

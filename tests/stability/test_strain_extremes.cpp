@@ -120,26 +120,20 @@ TEST_CASE("gradient clamp below 1/2: no velocities around a cell turn its strain
 }
 
 TEST_CASE("worlds whose steps would turn strain inside out stay finite; what is projected stays within the logarithm's bounds") {
-    for (const auto transport : {StrainTransport::left_stretch, StrainTransport::polar, StrainTransport::direct}) {
-        auto scene = mixed_scene(32, 28);
-        scene.settings.dt = 0.3;
-        scene.settings.material.young_modulus = 1e9;
-        scene.settings.method.gradient_clamp = scene.settings.method.elastic_cap = 0;
-        scene.settings.method.strain_transport = transport;
-        on_every_backend(scene, [&](World& world) {
-            step(world, 40);
-            const auto sand = cells_of(world, "sand_height");
-            double most = 0;
-            for (const char* field : {"stretch_xx", "stretch_yy", "stretch_xy"}) {
-                const auto stretch = cells_of(world, field);
-                for (int j = 0; j < sand.ny; ++j)
-                    for (int i = 0; i < sand.nx; ++i)
-                        if (sand.at(i, j) > 0.01) most = std::max(most, std::fabs(stretch.at(i, j)));
-            }
-            if (transport == StrainTransport::left_stretch) CHECK(most < std::exp(0.5) - 1 + 1e-3);
-            // The others are stretched once more after they were projected, by velocities that no clamp has met yet: 12 to 66 for
-            // bed friction from 0 to 0.02.
-            CHECK(most < 200);
-        });
-    }
+    auto scene = mixed_scene(32, 28);
+    scene.settings.dt = 0.3;
+    scene.settings.material.young_modulus = 1e9;
+    scene.settings.method.gradient_clamp = scene.settings.method.elastic_cap = 0;
+    on_every_backend(scene, [&](World& world) {
+        step(world, 40);
+        const auto sand = cells_of(world, "sand_height");
+        double most = 0;
+        for (const char* field : {"stretch_xx", "stretch_yy", "stretch_xy"}) {
+            const auto stretch = cells_of(world, field);
+            for (int j = 0; j < sand.ny; ++j)
+                for (int i = 0; i < sand.nx; ++i)
+                    if (sand.at(i, j) > 0.01) most = std::max(most, std::fabs(stretch.at(i, j)));
+        }
+        CHECK(most < std::exp(0.5) - 1 + 1e-3);
+    });
 }

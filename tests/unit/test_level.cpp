@@ -248,8 +248,7 @@ TEST_CASE("level: settings by name") {
     const Level level = must(parse(R"("gravity": 1.62, "duration": 3, "description": "d",
         "material": {"friction": 0.7, "saturation": [0.1, 0.2, 0.5], "bed_friction": 0.02},
         "method": {"name": "robust", "substeps": 2, "outflow_limiter": false, "quantum": 0, "saturation_smoothing": 1,
-                   "velocity_transport": "semi_lagrangian", "strain_transport": "polar",
-                   "drag_friction": "sequence", "diffusion": "laplacian", "water_transport_order": 2, "sand_transport_order": 2},
+                   "water_transport_order": 2, "sand_transport_order": 2},
         "sides": {"east": {"kind": "level", "value": 2, "from": 1, "to": 3}, "north": {"kind": "outflow"}},
         "sources": [{"shape": "point", "center": [1, 2], "rate": -0.5, "material": "sand"},
                     {"shape": "box", "from": [1, 2], "to": [3, 4], "rate": [[0, 1], [2, 0]], "velocity": [0, -4]}],
@@ -262,10 +261,6 @@ TEST_CASE("level: settings by name") {
     CHECK(s.method.substeps == 2);
     CHECK(!s.method.outflow_limiter);
     CHECK(s.method.saturation_smoothing == 1);
-    CHECK(s.method.velocity_transport == VelocityTransport::semi_lagrangian);
-    CHECK(s.method.strain_transport == StrainTransport::polar);
-    CHECK(s.method.drag_friction == DragFriction::sequence);
-    CHECK(s.method.diffusion == Diffusion::laplacian);
     CHECK(s.method.water_transport_order == 2);
     CHECK(s.method.sand_transport_order == 2);
     CHECK(s.sides[1].kind == SideKind::level);
@@ -313,34 +308,29 @@ TEST_CASE("level: size override keeps the length in x and stretches y") {
     CHECK(must(parse(rest, "", overrides)).settings.dt == 0.02);
 }
 
-TEST_CASE("level: a method preset is a set of choices; keys beside it and an override change it") {
-    const Method published =
-        must(parse(R"("method": {"name": "published", "velocity_clamp": 0.5, "substeps": 2})")).settings.method;
-    CHECK(published.name == "published");
-    CHECK(published.velocity_transport == VelocityTransport::semi_lagrangian);
-    CHECK(published.strain_transport == StrainTransport::polar);
-    CHECK(published.drag_friction == DragFriction::sequence);
-    CHECK(published.diffusion == Diffusion::laplacian_ahead);
-    CHECK(published.sand_substep == SandSubstep::algorithm_1);
+TEST_CASE("level: a method brings its own settings; keys beside it and an override change them") {
+    const Method published = must(parse(R"("method": {"name": "published", "strain_transport": "direct", "velocity_clamp": 0.5,
+                                                        "substeps": 2})"))
+                                 .settings.method;
+    CHECK(published.published());
+    CHECK(published.strain_transport == StrainTransport::direct);
     CHECK(!published.outflow_limiter);
     CHECK(published.gravity_cap == 0);
     CHECK(published.velocity_clamp == 0.5); // in any order of the keys
     CHECK(published.substeps == 2);
     LevelOverrides overrides;
-    overrides.method = "paper_like";
+    overrides.method = "published";
     const Method other = must(parse(R"("method": {"substeps": 2, "largest_height": 32})", "", overrides)).settings.method;
+    CHECK(other.published());
     CHECK(other.strain_transport == StrainTransport::polar);
-    CHECK(other.velocity_clamp == Method{}.velocity_clamp);
-    CHECK(other.sand_substep == SandSubstep::own);
-    CHECK(other.outflow_limiter);
+    CHECK(other.velocity_clamp == 0.25);
     CHECK(other.substeps == 2);
     CHECK(other.largest_height == 32);
-    overrides.method = "published";
     const std::string tuned = R"("method": {"name": "published", "velocity_clamp": 0.5})";
     CHECK(must(parse(tuned, "", overrides)).settings.method.velocity_clamp == 0.5); // the level's own method stays as it is
     overrides.method = "robust";
     const Method back = must(parse(tuned, "", overrides)).settings.method;
-    CHECK(back.velocity_transport == VelocityTransport::flux_form);
+    CHECK(!back.published());
     CHECK(back.velocity_clamp == Method{}.velocity_clamp);
     CHECK(back.outflow_limiter);
 }

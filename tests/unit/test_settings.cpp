@@ -1,5 +1,6 @@
 // validate() and TimeSeries of engine/settings/settings.hpp.
 #include "engine/settings/messages.hpp"
+#include "engine/settings/method_presets.hpp"
 #include "engine/settings/setting_table.hpp"
 #include "tests/unit/level_text.hpp"
 #include <algorithm>
@@ -98,10 +99,17 @@ TEST_CASE("settings: saturation, quantum, caps, names") {
     CHECK(says(refusal([](Settings& s) { s.method.gravity_cap = 0.1; }), "method.gravity_cap: 0.1 is outside 0.15 ..."));
     CHECK(refusal([](Settings& s) { s.method.gravity_cap = 0; }).empty());
     CHECK(says(refusal([](Settings& s) {
-                   s.method.velocity_transport = VelocityTransport::semi_lagrangian;
+                   choose_method(s, "published");
                    s.method.velocity_clamp = 1.5;
                }),
-               "method.velocity_clamp: 1.5 is outside 0.01 ... 1 (semi_lagrangian"));
+               "method.velocity_clamp: 1.5 is outside 0.01 ... 1 (method published"));
+    CHECK(says(refusal([](Settings& s) { s.method.strain_transport = StrainTransport::direct; }),
+               "method.strain_transport: \"direct\" goes only with method \"published\""));
+    CHECK(says(refusal([](Settings& s) {
+                   choose_method(s, "published");
+                   s.method.shock_viscosity = 0.1;
+               }),
+               "method.name: \"published\" goes only with shock_viscosity 0"));
     CHECK(refusal([](Settings& s) { s.method.velocity_clamp = 1.5; }).empty());
     CHECK(refusal([](Settings& s) { s.method.water_transport_order = 2; }).empty());
     CHECK(says(refusal([](Settings& s) { s.method.water_transport_order = 3; }),

@@ -1,5 +1,6 @@
 // Effects decide which passes and buffers exist: checked for every legal mask.
 #include "engine/settings/effects.hpp"
+#include "engine/settings/method_presets.hpp"
 #include "engine/step/step_plan.hpp"
 #include "tests/support/worlds.hpp"
 #include <algorithm>
@@ -14,16 +15,11 @@ namespace {
 // Laws of sand that are branches of stages that run anyway.
 constexpr std::uint32_t sand_laws = EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION | EFFECT_RETENTION;
 
-// The paper's choices that come last.
-constexpr std::uint32_t printed = EFFECT_WHOLE_PRESSURE | EFFECT_EXPLICIT_EXCHANGE | EFFECT_DIFFUSION_AHEAD | EFFECT_ALGORITHM_1 |
-                                  EFFECT_CENTRAL_SHEAR | EFFECT_STRAIN_BEYOND;
-
-// With none of the sand's laws and with all that are legal, a few with some of them or with the water's viscosity, also a branch;
-// a fifth once more with some of the paper's last choices.
+// With none of the sand's laws and with all that are legal, a few with some of them or with the water's viscosity, also a branch.
 // Under sanitizers a few of all.
 std::vector<std::uint32_t> legal_masks() {
     std::uint32_t all = all_effects;
-    for (const auto& choice : choice_table()) all |= choice.bit & ~(EFFECT_SHOCK_VISCOSITY | printed);
+    for (const auto& choice : choice_table()) all |= choice.bit & ~EFFECT_SHOCK_VISCOSITY;
     std::vector<std::uint32_t> masks;
     int between = 0;
     for (std::uint32_t mask = 1; mask <= all; ++mask) {
@@ -33,11 +29,6 @@ std::vector<std::uint32_t> legal_masks() {
             most = most && ((mask & law) != 0 || !is_legal(mask | law));
         if (most || (mask & sand_laws) == 0 || ++between % 17 == 0) masks.push_back(mask);
         if (is_legal(mask | EFFECT_SHOCK_VISCOSITY) && ++between % 17 == 0) masks.push_back(mask | EFFECT_SHOCK_VISCOSITY);
-    }
-    const std::size_t without = masks.size();
-    for (std::size_t n = 0; n < without; n += 5) {
-        const std::uint32_t mask = with_needs(masks[n] | (static_cast<std::uint32_t>(n) * EFFECT_WHOLE_PRESSURE & printed));
-        if (is_legal(mask) && (mask & printed) != 0) masks.push_back(mask);
     }
     if (!test::few_steps) return masks;
     std::vector<std::uint32_t> few = {masks.back()};
@@ -194,29 +185,25 @@ TEST_CASE("choices of method are passes of their own at their place in the order
             names += std::string(compute::stage_table()[static_cast<std::size_t>(pass.stage)].name) + " ";
         return names;
     };
-    const auto plan = make_step_plan(EFFECT_WATER | EFFECT_SAND | EFFECT_MIXTURE | EFFECT_SEMI_LAGRANGIAN, 3);
-    CHECK(order(plan.water_passes) == "update_water_boundary_types limit_water_outflow compute_water_flux integrate_water_height "
-                                      "extrapolate_velocity backtrace_water_velocity extrapolate_velocity "
-                                      "backtrace_water_velocity integrate_water_velocity ");
-    CHECK(order(plan.substep_passes) == "update_sand_boundary_types limit_sand_outflow compute_sand_flux integrate_sand_height "
-                                        "compute_momentum_exchange extrapolate_velocity backtrace_sand_velocity "
-                                        "integrate_sand_velocity apply_friction ");
-    const auto strain = make_step_plan(EFFECT_SAND | EFFECT_ELASTOPLASTIC | EFFECT_WHOLE_STRAIN, 3);
-    CHECK(order(strain.substep_passes) ==
-          "limit_sand_outflow compute_sand_flux integrate_sand_height advect_deformation_gradient "
-          "project_deformation_gradient integrate_sand_velocity stretch_deformation_gradient "
-          "apply_friction ");
-    CHECK(strain.find("rotation") != nullptr);
-    const auto left_stretch = make_step_plan(EFFECT_SAND | EFFECT_ELASTOPLASTIC, 3);
-    CHECK(left_stretch.find("rotation") == nullptr);
-    const auto drag = make_step_plan(EFFECT_WATER | EFFECT_SAND | EFFECT_DRAG | EFFECT_EXPLICIT_DRAG, 3);
-    CHECK(order(drag.substep_passes) == "limit_sand_outflow compute_sand_flux integrate_sand_height integrate_sand_velocity "
-                                        "apply_drag apply_friction ");
+    // The paper's Algorithm 1.
+    constexpr std::uint32_t mixed = EFFECT_WATER | EFFECT_SAND | EFFECT_MIXTURE | EFFECT_DIFFUSION | EFFECT_ELASTOPLASTIC;
+    const auto plan = make_step_plan(mixed | EFFECT_PUBLISHED, 3);
+    CHECK(order(plan.water_passes) == "diffuse_mixed_velocity diffuse_mixed_height spread_mixed_water "
+                                      "update_water_boundary_types limit_water_outflow compute_water_flux integrate_water_height "
+                                      "measure_layer_exchange extrapolate_velocity backtrace_water_velocity "
+                                      "extrapolate_velocity backtrace_water_velocity give_layer_exchange push_water ");
+    CHECK(order(plan.substep_passes) ==
+          "update_sand_boundary_types limit_sand_outflow compute_sand_flux integrate_sand_height "
+          "extrapolate_velocity backtrace_sand_velocity push_sand yield_right_stretch advect_deformation_gradient "
+          "compute_sand_stress apply_sand_stress update_sand_boundary_types extrapolate_velocity stretch_deformation_gradient "
+          "extrapolate_strain measure_layer_exchange give_layer_exchange apply_frictional_force ");
+    CHECK(plan.find("rotation") != nullptr);
+    CHECK(make_step_plan(mixed, 3).find("rotation") == nullptr);
     auto scene = test::flat_scene(8, 8, 1, 0.01);
     scene.fill(scene.fields.water, [](double, double) { return 1; });
+    choose_method(scene.settings, "published");
     scene.settings.method.strain_transport = StrainTransport::direct; // no sand: nothing to act on
-    scene.settings.method.velocity_transport = VelocityTransport::semi_lagrangian;
-    CHECK(effects_required(scene.settings, content_of(scene.fields))->mask == (default_water | EFFECT_SEMI_LAGRANGIAN));
+    CHECK(effects_required(scene.settings, content_of(scene.fields))->mask == (EFFECT_WATER | EFFECT_PUBLISHED));
     scene.settings.method = {};
     scene.settings.method.water_transport_order = 2;
     CHECK(effects_required(scene.settings, content_of(scene.fields))->mask == (default_water | EFFECT_SECOND_ORDER_WATER));
@@ -230,7 +217,7 @@ TEST_CASE("choices of method are passes of their own at their place in the order
     CHECK(second.start_at == 0);
     for (const auto& pass : second.start_passes) CHECK(pass.flips.empty());
     CHECK(first.start_passes.empty());
-    CHECK(make_step_plan(EFFECT_WATER | EFFECT_SECOND_ORDER_WATER | EFFECT_SEMI_LAGRANGIAN, 3).start_passes.empty());
+    CHECK(make_step_plan(EFFECT_WATER | EFFECT_SECOND_ORDER_WATER | EFFECT_PUBLISHED, 3).start_passes.empty());
     CHECK(make_step_plan(EFFECT_WATER | EFFECT_SECOND_ORDER_WATER | EFFECT_OPEN_SIDES | EFFECT_RAIN, 3).start_at == 2);
     const auto reads_terrain = [](const StepPlan& p) {
         return std::count_if(p.water_passes.begin(), p.water_passes.end(), [](const PlanPass& pass) {
@@ -251,6 +238,8 @@ TEST_CASE("choices of method are passes of their own at their place in the order
     CHECK(second_sand.reach > first_sand.reach);
     constexpr std::uint32_t all = all_effects & ~(EFFECT_BED_SHEAR | EFFECT_ROUGHNESS | sand_laws);
     CHECK(make_step_plan(all, 3).bytes_per_cell() == 124);
+    CHECK(!is_legal(EFFECT_SAND | EFFECT_SLOPE_NORMAL | EFFECT_PUBLISHED));
+    CHECK(!is_legal(EFFECT_SAND | EFFECT_ELASTOPLASTIC | EFFECT_DIRECT_STRAIN));
     auto dry = test::flat_scene(8, 8, 1, 0.01);
     dry.fill(dry.fields.sand, [](double, double) { return 1; });
     dry.settings.method.water_transport_order = 2; // no water: nothing to act on

@@ -49,7 +49,7 @@ namespace Wadi
         public int Nx, Ny;
         /// <summary>[s]</summary>
         public double Dt;
-        /// <summary>"robust", "paper_like" or "published".</summary>
+        /// <summary>"robust" or "published".</summary>
         public string Method;
         /// <summary>One of the level's variants. Not for terrain maps.</summary>
         public string Variant;

@@ -103,7 +103,7 @@ namespace Wadi
         public int Ny;
         /// <summary>[s]</summary>
         public double Dt;
-        /// <summary>"robust", "paper_like" or "published"</summary>
+        /// <summary>"robust" or "published"</summary>
         public IntPtr Method;
         /// <summary>one of the level's variants; NULL = the level as it is. Not for terrain maps</summary>
         public IntPtr Variant;

@@ -197,7 +197,7 @@ typedef struct wadi_level_overrides {
     uint32_t struct_size;
     int32_t nx, ny;            /* keeps the x extent and square cells, stretches maps in y, scales dt with dx */
     double dt;                 /* [s] */
-    const char* method;        /* "robust", "paper_like" or "published" */
+    const char* method;        /* "robust" or "published" */
     const char* variant;       /* one of the level's variants; NULL = the level as it is. Not for terrain maps */
     const char* accuracy;      /* "draft", "balanced" or "accurate": half, all or twice the level's cells along x and y (nx, ny win) and
                                   two sand steps per water step, "accurate" also second order for water; NULL = what the level says.

