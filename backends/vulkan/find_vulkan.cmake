@@ -1,4 +1,5 @@
-# Looks for headers, volk and the tools that compile stages to SPIR-V, and sets WADI_HAS_VULKAN. Nothing links the loader.
+# Looks for headers, volk and the tools that compile stages to SPIR-V, and sets WADI_HAS_VULKAN. The library does not link the loader;
+# hosts in samples and tests do, where WADI_HAS_VULKAN_HOST says that it is there.
 find_package(Vulkan QUIET)
 find_program(WADI_GLSLANG glslangValidator)
 find_program(WADI_SPIRV_VAL spirv-val)
@@ -16,5 +17,6 @@ if(missing)
   wadi_report("Vulkan backend" "off, packages missing:${missing}")
 else()
   set(WADI_HAS_VULKAN ON)
+  set(WADI_HAS_VULKAN_HOST ${Vulkan_FOUND})
   wadi_report("Vulkan backend" "on (headers ${Vulkan_VERSION}, ${WADI_GLSLANG})")
 endif()

@@ -13,7 +13,7 @@ namespace wadi {
 namespace {
 
 constexpr double WAVE_CFL = 0.45;     // above it the gravity cap slows waves on still water (2.4b)
-constexpr double UNCAPPED_CFL = 0.70; // above it waves without a gravity cap grow (section 5, row 7)
+constexpr double UNCAPPED_CFL = 0.70; // above it waves without a gravity cap grow (NUMERICS 5)
 constexpr double STIFFNESS_LEAST = 5; // E in units of rho_s g h0 (section 4)
 constexpr double STIFFNESS_MOST = 15;
 constexpr double WALL_SLOPE = 1.5;  // a step steeper than this is a wall that only cohesion holds

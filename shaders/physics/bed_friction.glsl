@@ -13,6 +13,13 @@ FN float inverse_cube_root(float h) {
     return y + y * (miss * (0.333333343f + 0.222222224f * miss));
 }
 
+// dt c of the stress on the bed, c = c_f + g n^2 h^(-1/3): friction_dt = dt c_f, gravity_dt = dt g, rough: n^2 where the bed has any.
+FN float bed_grip(float friction_dt, float gravity_dt, float rough, bool any_roughness, float height) {
+    float grip = friction_dt;
+    if (any_roughness) grip = grip + gravity_dt * rough * inverse_cube_root(height);
+    return grip;
+}
+
 // A component of the velocity behind friction V' = V* - rate |V'| V': `pushed` is its component of V*, `own` and `across` are the
 // face's and the cross velocity from before the step, rate = dt c/h [s/m]. V* across is taken as what friction would hold at `across`,
 // so that a steady flow is the same for any time step.

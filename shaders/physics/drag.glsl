@@ -1,5 +1,5 @@
-// Joint implicit momentum exchange (drag) between water and sand and Coulomb friction of sand on the ground: one closed
-// form, so that sand at rest does not drag the water of a lake at rest (NUMERICS 2.8; paper 3.3.1, 3.4.2, 4.2.3, 4.2.4).
+// Momentum exchange (drag) between water and sand (paper 3.4.2, 4.2.3). It is solved in one closed form with Coulomb friction
+// (coulomb_friction.glsl), so that sand at rest does not drag the water of a lake at rest (NUMERICS 2.8).
 #ifndef PHYSICS_DRAG
 #define PHYSICS_DRAG
 #include "../physics/scalar.glsl"
@@ -13,6 +13,12 @@ FN float drag_coupling_single(float water_height, float mixed_height, float sand
     return mixed_height > dry ? kappa : 0.0f;
 }
 
+// The water's share of it, by its own implicit equation: what the difference of both velocities loses to it.
+FN float drag_share_single(float water_height, float mixed_height, float water_density, float kd) {
+    float exchange = kd * mixed_height;
+    return divide_or_zero(exchange, water_density * water_height + exchange);
+}
+
 // Explicit drag (paper 4.2.3, NUMERICS 2.14): impulse = dts c_e h_m, inertia = momentum per velocity of a layer [kg/m2].
 FN void explicit_drag(REF(float) sand, REF(float) water, float impulse, float sand_inertia, float water_inertia) {
     float difference = sand - water;
@@ -20,15 +26,6 @@ FN void explicit_drag(REF(float) sand, REF(float) water, float impulse, float sa
     float gained = divide_or_zero(impulse * difference, water_inertia);
     sand = wclamp(sand - lost, -1.0e15f, 1.0e15f); // whose square is finite
     water = wclamp(water + gained, -1.0e15f, 1.0e15f);
-}
-
-// Sand's velocity after drag and stick or slip. along, across: sand momentum per mass with the water's share, us + kappa um;
-// slip: mu g dts max(0, 1 - rho_w h_m/(rho_s h_s)); limit: clamp of the speed that is left.
-FN float stick_or_slip(float along, float across, float slip, float kappa, float limit) {
-    float size = lean_root(wmax(along * along + across * across, 1.0e-28f));
-    float heavier = 1.0f + kappa;
-    float left = wmin(wmax(size - slip, 0.0f), limit * heavier);
-    return wclamp(along * lean_quotient(left, size * heavier), -limit, limit);
 }
 
 // How freely water moves through sand, 0 up to the share W/hs that pores hold back and 1 where they are full or there is no sand
@@ -42,10 +39,5 @@ FN float relative_permeability(float water, float sand, float retained, float in
 
 // At a face: of the cell that the water leaves relative to the sand, of the freer one where it does not move against it.
 FN float upstream_permeability(float relative, float low, float high) { return wmax(relative < 0.0f ? 0.0f : low, relative > 0.0f ? 0.0f : high); }
-
-// wet: h_m/h_s.
-FN float friction_slip(float mu, float gravity, float dts, float wet, float density_ratio) {
-    return mu * gravity * dts * wmax(0.0f, 1.0f - density_ratio * wet);
-}
 
 #endif

@@ -2,8 +2,9 @@
 #ifndef PHYSICS_PRESTRESS
 #define PHYSICS_PRESTRESS
 #include "../physics/drag.glsl"
-#include "../physics/slope.glsl"
+#include "../physics/slope_push.glsl"
 #include "../physics/strain.glsl"
+#include "../physics/velocity.glsl"
 
 // Least share of its whole push that slope and wedge leave to a cliff of this cohesive share; level_least: C behind the steepest face.
 FN float least_cliff_push(float held, float level_least) { return held * (level_least + held * (1.0f - level_least)); }

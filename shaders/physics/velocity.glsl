@@ -74,62 +74,6 @@ FN float advect_velocity_second_order(float u, float u_low, float u_high, float 
     return height > dry ? moved : u;
 }
 
-// How fast a cell and the two beside it are compressed along one axis [m/s]: velocity at the low face less that at the high one.
-struct Compression {
-    float low, own, high;
-};
-
-// The flux of the faster of a cell's two faces, without its sign; where the other is nearly as fast that one's comes in, so that no
-// rounding says which of two equally fast ones (both at the velocity clamp, say) counts: of their fluxes the larger one does then.
-FN float faster_flux(float u_low, float u_high, float flux_low, float flux_high) {
-    float speed_low = wabs(u_low);
-    float speed_high = wabs(u_high);
-    float fast = wmax(speed_low, speed_high);
-    float low = speed_low >= speed_high ? wabs(flux_low) : 0.0f;
-    float high = speed_high >= speed_low ? wabs(flux_high) : 0.0f;
-    float faster = wmax(low, high); // of both for equal speeds: the same for a scene and for its image
-    float larger = wmax(wabs(flux_low), wabs(flux_high));
-    float nearly = lean_divide_or_zero(wmax(4.0f * wmin(speed_low, speed_high) - 3.0f * fast, 0.0f), fast);
-    return faster + nearly * (larger - faster);
-}
-
-// Viscous flux of a cell (NUMERICS 2.3, after von Neumann and Richtmyer 1950, limited after Christensen 1990): of what the neighbours'
-// compression does not explain. Three times it does, so that no smooth wave is damped but at its crest, where 12 k times the rest is
-// next to nothing. 0.12 keeps the explicit step stable at a step of the depth. carried: what the faster of its faces moves; a film
-// that runs into a lake at speed brings it next to nothing.
-FN float shock_flux(Compression at, float height, float carried, float viscosity, float k) {
-    float rest = wmax(at.own - wmax(3.0f * wmin(at.low, at.high), 0.0f), 0.0f);
-    float flux = 0.0f;
-    if (UNIFORM(rest > 0.0f)) {
-        float number = wmin(wmin(viscosity * wsqrt(wmax(height, 0.0f)), 12.0f * k * rest), 0.12f);
-        flux = -wmin(number * height, 4.0f * carried) * rest;
-    }
-    return flux;
-}
-
-// Momentum exchange between pure and mixed water when the boundary between them moves (paper 3.4.2; convex form,
-// NUMERICS 2.4a): gained_* = mixed height after the split less before, of the two cells of the face.
-FN void exchange_split(REF(float) pure, REF(float) mixed, float gained_low, float gained_high, float pure_height, float mixed_height, float dry) {
-    float to_mixed = 0.5f * (wmax(gained_low, 0.0f) + wmax(gained_high, 0.0f));
-    float to_pure = 0.5f * (wmax(-gained_low, 0.0f) + wmax(-gained_high, 0.0f));
-    float keep_mixed = wmax(mixed_height - to_pure, 0.0f);
-    float keep_pure = wmax(pure_height - to_mixed, 0.0f);
-    float mixed_total = keep_mixed + to_mixed;
-    float pure_total = keep_pure + to_pure;
-    // As increments: where nothing is exchanged both keep every bit, so a scene without sand has the same bits whether the
-    // mixture is compiled in or not.
-    float difference = pure - mixed;
-    float to_mixed_share = lean_divide_or_zero(to_mixed, mixed_total) * difference;
-    float to_pure_share = lean_divide_or_zero(to_pure, pure_total) * difference;
-    mixed = mixed_total > dry ? mixed + to_mixed_share : mixed;
-    pure = pure_total > dry ? pure - to_pure_share : pure;
-}
-
-// The same, passed over where nothing is exchanged.
-FN void exchange_gained(REF(float) pure, REF(float) mixed, float gained_low, float gained_high, float pure_height, float mixed_height, float dry) {
-    if (UNIFORM(wabs(gained_low) + wabs(gained_high) > 0.0f)) exchange_split(pure, mixed, gained_low, gained_high, pure_height, mixed_height, dry);
-}
-
 // Gravity as a face may use it at this time step (NUMERICS 2.4b): the cap keeps the wave CFL number where the scheme
 // damps instead of ringing, and gets tighter the faster the water moves.
 FN float water_gravity(float gravity, float speed, float deepest, float k, float base, float inv_k2) {

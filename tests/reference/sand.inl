@@ -69,17 +69,17 @@ template <class Real> void Solver<Real>::add_gravity(const Axis& ax, int a, int 
     const Real S_R = surface(R);
     const Real g_f = sand_gravity(std::max(sand[L], sand[R]));
     Real& u = sand_velocity.along(ax)[f];
+    const bool pushed = sand[L] + sand[R] > Real(0);
+    const Slope slope = has(EFFECT_SLOPE_NORMAL) ? slope_at(ax, a, b) : Slope{Real(0), Real(1), Real(1)};
+    friction_limit.along(ax)[f] = pushed ? slope.C * level_friction(L, R) : Real(0);
     if (has(EFFECT_SLOPE_NORMAL)) {
-        const Slope slope = slope_at(ax, a, b);
         const Real D = open_water(R) - open_water(L);
         const Real m = minmod(-D, slope.d); // where the water's surface is level the sand feels its buoyant weight
         u -= P.k_sand * g_f * slope.C * (slope.r * (slope.d - buoyancy * m) + buoyancy * (D + m));
-        const bool pushed = sand[L] + sand[R] > Real(0);
         // Rankine's passive pressure, (1 + sin phi)/(1 - sin phi) times the sand's own, where no stress bears it.
         const Real sine = P.friction / std::sqrt(Real(1) + P.friction * P.friction);
         const Real borne = has(EFFECT_ELASTOPLASTIC) ? Real(1) : (Real(1) + sine) / (Real(1) - sine);
         withheld_push.along(ax)[f] = pushed ? P.k_sand * g_f * (borne - slope.C * slope.r) * slope.d : Real(0);
-        friction_limit.along(ax)[f] = pushed ? slope.C * level_friction(L, R) : Real(0);
     } else {
         u -= P.k_sand * g_f * (S_R - S_L);
     }
@@ -179,7 +179,7 @@ template <class Real> void Solver<Real>::apply_friction() {
         }
         const Real p_cross = across_face(us_old, ax, a, b) + kappa * um_cross;
         const Real size = std::sqrt(p * p + p_cross * p_cross);
-        const Real N = has(EFFECT_SLOPE_NORMAL) ? friction_limit.along(ax)[f] : level_friction(L, R);
+        const Real N = friction_limit.along(ax)[f];
         const Real kept = size > Real(0) ? std::max(Real(1) - N / size, Real(0)) / (Real(1) + kappa) : Real(0);
         us = shortened(kept * p, kept * p_cross, P.clamp_sand);
         if (!drag) return;

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Pages (*.md): no line over 140 columns, no link to a file or heading that is not there, no file named in backquotes that is not there.
+"""Pages (*.md): no line over 140 columns, no link to a file or heading that is not there, no file and no identifier named in backquotes that is
+not there.
 Usage: page_rules.py SOURCE_DIR. Exit status 1 names every breach."""
 import fnmatch
 import pathlib
@@ -17,6 +18,10 @@ CODE = re.compile(r"`([^`]+)`")
 PATH = re.compile(r"[\w.*-]+(/[\w.*-]+)*/?$")
 MADE = ("build/", "generated/", "out/")  # by builds and by programs
 SOURCE = re.compile(r"\.(hpp|cpp|h|c|cu|py|sh|stage|fused|glsl|inl|comp|cmake|md|in|\*)$")
+# Identifiers are asked for that have an underscore inside; pages may shorten them to how they end (`_get_hash`) or begin (`evolve_`).
+IDENTIFIER = re.compile(r"(?:[A-Za-z]\w*(?:::|\.|->))*(_?[A-Za-z][A-Za-z0-9]*_\w*)(?:\(.*\))?")
+OF_OTHERS = ("PF_", "FORMAT_")  # texture formats of engines
+HISTORY = "CHANGELOG.md"  # names what has gone
 
 
 def pages(root):
@@ -69,8 +74,33 @@ def path_breach(names, page_folder, quoted):
     return f"names {quoted}, which is not there"
 
 
+def identifiers(root):
+    """Every word of the files that are no pages, and how those with underscores begin and end."""
+    words = set()
+    for path in (p for top in FOLDERS for p in (root / top).rglob("*") if p.is_file()):
+        words.add(path.stem)
+        if path.suffix not in {".md", ".png", ".jpg", ".csv", ".svg", ".npy", ".mp4"}:
+            words.update(re.findall(r"[A-Za-z_]\w*", path.read_text(encoding="utf-8", errors="ignore")))
+    for path in root.iterdir():
+        if path.is_file() and path.suffix in {".txt", ".json"}:
+            words.update(re.findall(r"[A-Za-z_]\w*", path.read_text(encoding="utf-8", errors="ignore")))
+    parts = set()
+    for word in words:
+        for at in (n for n, c in enumerate(word) if c == "_"):
+            parts.update((word[at:], word[at + 1:], word[:at + 1]))
+    return words | parts
+
+
+def identifier_breach(known, quoted):
+    named = IDENTIFIER.fullmatch(quoted)
+    if not named or "NAME" in quoted or named[1].startswith(OF_OTHERS) or named[1] in known:
+        return None
+    return f"names {named[1]}, which no source has"
+
+
 def check(root):
     found = []
+    known = identifiers(root)
     names = {p.relative_to(root).as_posix() for top in FOLDERS for p in (root / top).rglob("*")}
     names |= {p.name for p in root.iterdir()}
     for page in pages(root):
@@ -83,6 +113,8 @@ def check(root):
                 words = [word for quoted in CODE.findall(line) for word in quoted.split()]
                 breaches += [link_breach(root, page, target) for target in LINK.findall(line)]
                 breaches += [path_breach(names, page.parent.relative_to(root).as_posix(), word) for word in words]
+                if relative != HISTORY:
+                    breaches += [identifier_breach(known, quoted) for quoted in CODE.findall(line) if " " not in quoted]
             found += [f"{relative}:{number}: {breach}" for breach in dict.fromkeys(breaches) if breach]
     return found
 
@@ -93,17 +125,18 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         planted = pathlib.Path(folder).resolve()
         (planted / "engine").mkdir()
-        (planted / "engine/there.cpp").write_text("")
+        (planted / "engine/there.cpp").write_text("int whole_name(int right_one);")
         (planted / "engine/README.md").write_text(
             "# A heading\n" + "x" * WIDTH + "\n" + "y" * (WIDTH + 1) + "\n[no file](gone.md) [no heading](#gone) [right](#a-heading)\n"
             "`engine/there.cpp`, `there.*`, `engine/gone.cpp` and `gone.hpp`\n"
+            "`whole_name(1)`, `_name`, `whole_`, `a.right_one` and `no_such_name`\n"
             "<!-- table: wide -->\n" + "z" * (WIDTH + 1) + "\n<!-- end -->\n")
         seen = check(planted)
-        for sign in ("141 columns", "gone.md, which", "#gone, but", "engine/gone.cpp", "gone.hpp"):
+        for sign in ("141 columns", "gone.md, which", "#gone, but", "engine/gone.cpp", "gone.hpp", "no_such_name"):
             if sum(sign in breach for breach in seen) != 1:
                 print(f"the checker does not see a planted breach: {sign}")
                 return 1
-        if len(seen) != 5:
+        if len(seen) != 6:
             print("the checker sees what is none:", *seen, sep="\n")
             return 1
     found = check(root)

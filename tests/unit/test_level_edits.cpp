@@ -1,4 +1,4 @@
-// engine/level and engine/scripted_edits: edits in a level, their times, ranges and stretching.
+// engine/level/read_edits.cpp and engine/settings/scripted_edits.cpp: edits in a level, their times, ranges and stretching.
 #include "engine/saves/snapshot_format.hpp"
 #include "engine/settings/level_digest.hpp"
 #include "engine/settings/scripted_edits.hpp"

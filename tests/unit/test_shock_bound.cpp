@@ -7,7 +7,7 @@ namespace stage {
 // The prelude first.
 #include "shaders/language/stage_cpp.h"
 
-#include "shaders/physics/velocity.glsl"
+#include "shaders/physics/shock_viscosity.glsl"
 } // namespace stage
 
 double wide(float x) { return static_cast<double>(x); }

@@ -1,14 +1,30 @@
-// Slope-normal gravity of sand, with Coulomb's wedge as the limit of its push, and friction within sand that spreads (NUMERICS 2.18).
-#ifndef PHYSICS_SLOPE
-#define PHYSICS_SLOPE
-#include "../physics/velocity.glsl"
+// The push of a slope of sand: gravity normal to it, with Coulomb's wedge as the limit (NUMERICS 2.18).
+#ifndef PHYSICS_SLOPE_PUSH
+#define PHYSICS_SLOPE_PUSH
+#include "../physics/scalar.glsl"
 
-// How far a cell lets the sand's surface rise from it or to it: a dry one not at all.
-FN float rise_room(float sand, float dry) { return sand > dry ? 1.0e15f : 0.0f; }
+// The sand's surface in a cell, and how far it may rise from there or to there: a dry cell lets it rise not at all.
+struct SandTop {
+    float height, room;
+};
+
+FN SandTop sand_top(float ground, float sand, float dry) {
+    SandTop top;
+    top.height = ground + sand;
+    top.room = sand > dry ? 1.0e15f : 0.0f;
+    return top;
+}
 
 // Rise of the sand's surface between two cells; 0 where the wet/dry rule blocks the face between them, so that sand along a steep
-// dry wall is not lightened by the wall's slope. room_*: rise_room of both.
-FN float free_rise(float top_low, float top_high, float room_low, float room_high) { return wmax(wmin(top_high - top_low, room_high), -room_low); }
+// dry wall is not lightened by the wall's slope.
+FN float free_rise(SandTop low, SandTop high) { return wmax(wmin(high.height - low.height, high.room), -low.room); }
+
+// Rise across a face: the mean of the four beside it, those beyond the grid being 0. low, high: the face's own cells.
+FN float cross_rise(SandTop low_left, SandTop left, SandTop low, SandTop high, SandTop low_right, SandTop right, bool inside_left, bool inside_right) {
+    float left_rises = free_rise(low_left, low) + free_rise(left, high);
+    float right_rises = free_rise(low, low_right) + free_rise(high, right);
+    return 0.25f * ((inside_left ? left_rises : 0.0f) + (inside_right ? right_rises : 0.0f));
+}
 
 // Share of the cohesion that a cliff of this height needs to push as hydrostatic sand does against its own tension.
 FN float cohesive_share_of(float cohesion, float inv_height, float per_cohesion) { return wmin(1.0f, per_cohesion * cohesion * inv_height); }
@@ -26,11 +42,18 @@ struct SlopeShares {
     float push;   // r: less than 1 where it is steeper
 };
 
-// rise along the face's axis, cross_rise across it, sand's depth on the higher side [m]; held: cohesive share.
-FN SlopeShares slope_shares(float rise, float cross_rise, float depth, float inv_dx, float chi, float wedge_slope, float wedge_slope2,
+FN SlopeShares level_shares() {
+    SlopeShares s;
+    s.weight = 1.0f;
+    s.push = 1.0f;
+    return s;
+}
+
+// rise: along the face's axis; rise_across: cross_rise; depth: the sand's on the higher side [m]; held: cohesive share.
+FN SlopeShares slope_shares(float rise, float rise_across, float depth, float inv_dx, float chi, float wedge_slope, float wedge_slope2,
                             float wedge_weight, float held) {
     float along = rise * inv_dx;
-    float across = cross_rise * inv_dx;
+    float across = rise_across * inv_dx;
     float slope2 = along * along + across * across; // counts beside 1 alone
     bool steep = slope2 > wedge_slope2;
     // One quotient for both: C where the wedge does not count, r where it does.
@@ -48,9 +71,9 @@ FN SlopeShares slope_shares(float rise, float cross_rise, float depth, float inv
     return s;
 }
 
-// The push's fall along the face's axis [m]: the sand's own buoyant weight is limited by the wedge, the push of a sloping water surface
+// The push as a fall along the face's axis [m]: the sand's own buoyant weight is limited by the wedge, the push of a sloping water surface
 // is not. pure_rise: rise of the depth of pure water.
-FN float limited_fall(SlopeShares s, float rise, float pure_rise, float density_ratio) {
+FN float slope_push(SlopeShares s, float rise, float pure_rise, float density_ratio) {
     float borne = minmod(-pure_rise, rise);
     return s.weight * (s.push * (rise - density_ratio * borne) + density_ratio * (pure_rise + borne));
 }
@@ -58,18 +81,5 @@ FN float limited_fall(SlopeShares s, float rise, float pure_rise, float density_
 // Rankine's coefficient of passive earth pressure, tan^2(45 deg + phi/2): how many times its own push sand can bear before it is
 // pushed together.
 FN float passive_coefficient(float friction) { return square(friction + lean_root(1.0f + square(friction))); }
-
-// What is left of a velocity after the friction within a layer that thins while it slides: all for a block, at rest and where sand
-// piles up. speed2: square of the old velocity; friction: b times what friction takes from a velocity in the substep.
-FN float left_within(float growth, float least_height, float speed2, float wave_speed2, float friction) {
-    float thinning = least_height * wmax(growth, 0.0f);
-    float left = 1.0f;
-    if (UNIFORM(thinning > 0.0f)) {
-        float speed = lean_root(wmax(speed2 + 0.0025f * wave_speed2, 1.0e-20f)); // no less than a twentieth of that of waves
-        float kept = wmax(0.0f, 1.0f - lean_divide_or_zero(friction * thinning, (speed + thinning) * speed));
-        left = thinning > 0.0f ? kept : 1.0f;
-    }
-    return left;
-}
 
 #endif

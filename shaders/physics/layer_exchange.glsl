@@ -1,0 +1,29 @@
+// Momentum that goes with water from one layer to the other (paper 3.4.2; NUMERICS 2.4a).
+#ifndef PHYSICS_LAYER_EXCHANGE
+#define PHYSICS_LAYER_EXCHANGE
+#include "../physics/scalar.glsl"
+
+// Momentum exchange between pure and mixed water when the boundary between them moves (paper 3.4.2; convex form,
+// NUMERICS 2.4a): gained_* = mixed height after the split less before, of the two cells of the face.
+FN void layer_exchange(REF(float) pure, REF(float) mixed, float gained_low, float gained_high, float pure_height, float mixed_height, float dry) {
+    float to_mixed = 0.5f * (wmax(gained_low, 0.0f) + wmax(gained_high, 0.0f));
+    float to_pure = 0.5f * (wmax(-gained_low, 0.0f) + wmax(-gained_high, 0.0f));
+    float keep_mixed = wmax(mixed_height - to_pure, 0.0f);
+    float keep_pure = wmax(pure_height - to_mixed, 0.0f);
+    float mixed_total = keep_mixed + to_mixed;
+    float pure_total = keep_pure + to_pure;
+    // As increments: where nothing is exchanged both keep every bit, so a scene without sand has the same bits whether the
+    // mixture is compiled in or not.
+    float difference = pure - mixed;
+    float to_mixed_share = lean_divide_or_zero(to_mixed, mixed_total) * difference;
+    float to_pure_share = lean_divide_or_zero(to_pure, pure_total) * difference;
+    mixed = mixed_total > dry ? mixed + to_mixed_share : mixed;
+    pure = pure_total > dry ? pure - to_pure_share : pure;
+}
+
+// The same, passed over where nothing is exchanged.
+FN void layer_exchange_if_any(REF(float) pure, REF(float) mixed, float gained_low, float gained_high, float pure_height, float mixed_height, float dry) {
+    if (UNIFORM(wabs(gained_low) + wabs(gained_high) > 0.0f)) layer_exchange(pure, mixed, gained_low, gained_high, pure_height, mixed_height, dry);
+}
+
+#endif
