@@ -41,12 +41,10 @@ void ActiveTiles::wake_around(double x0, double y0, double x1, double y1) {
 
 void ActiveTiles::wake_edits(const StepInput& input) {
     for (int n = 0; n < input.edit_count; ++n) {
-        const vec4& line = input.edit[EDIT_VECTORS * n];
-        const vec4& shape = input.edit[EDIT_VECTORS * n + 1];
-        const bool stamp = static_cast<int>(shape.w) == EDIT_STAMP;
+        const EditInput& edit = input.edit[n];
         const auto wide = [](float value) { return static_cast<double>(value); };
-        const double x = wide(line.x), y = wide(line.y), r = stamp ? 0.0 : wide(shape.x);
-        const double dx = wide(line.z), dy = wide(line.w);
+        const double x = wide(edit.from_x), y = wide(edit.from_y), r = wide(edit.radius);
+        const double dx = wide(edit.along_x), dy = wide(edit.along_y);
         wake_around(std::min(x, x + dx) - r, std::min(y, y + dy) - r, std::max(x, x + dx) + r, std::max(y, y + dy) + r);
     }
 }

@@ -6,10 +6,9 @@ Status change_balance(WorldState& state, const Region& region, Balance change) {
     if (!state.settings().method.prestress || (state.plan().effects & EFFECT_ELASTOPLASTIC) == 0) return ok_status();
     StepInput input{};
     input.edit_count = 1;
-    const auto f = [](int cells) { return static_cast<float>(cells); };
-    input.edit[0] = {f(region.i0), f(region.j0), f(region.nx), f(region.ny)};
-    input.edit[1] = {0, 0, 0, float{EDIT_BALANCE}};
-    input.edit[2] = {static_cast<float>(change), 0, 0, 0};
+    cover(region, input.edit[0]);
+    input.edit[0].kind = EDIT_BALANCE;
+    input.edit[0].amount = static_cast<float>(change);
     auto& device = state.device();
     auto no_stamps = device.create_buffer({STAMP_PAGE * 4, "no stamps"});
     if (!no_stamps) return no_stamps.status();

@@ -17,4 +17,11 @@ Status check_region(const char* function, const Region& region, const Grid& grid
                                          std::to_string(region.cells()) + " cells");
 }
 
+void cover(const Region& region, EditInput& edit) {
+    edit.from_x = static_cast<float>(region.i0);
+    edit.from_y = static_cast<float>(region.j0);
+    edit.along_x = static_cast<float>(region.nx);
+    edit.along_y = static_cast<float>(region.ny);
+}
+
 } // namespace wadi

@@ -1,5 +1,6 @@
 // A rectangle of cells.
 #pragma once
+#include "engine/compute/params.hpp"
 #include "engine/settings/settings.hpp"
 #include <cstddef>
 
@@ -13,5 +14,8 @@ struct Region {
 
 /// ok, or bad_argument that names `function`: a region outside the grid, empty, or with another number of values.
 Status check_region(const char* function, const Region& region, const Grid& grid, std::size_t values);
+
+/// Makes it the rectangle of an edit.
+void cover(const Region& region, EditInput& edit);
 
 } // namespace wadi

@@ -298,7 +298,7 @@ Status measure_host_work(Device& device, int size, const PerfOptions& options, s
     edit.radius = 32 * dx;
     edit.softness = 0.5;
     edit.amount = 0; // the same work, and the state stays what it is
-    brush.edit_count = pack_edit(edit, {}, scene->settings.grid, brush.edit) ? 1 : 0;
+    brush.edit_count = pack_edit(edit, {}, scene->settings.grid, brush.edit[0]) ? 1 : 0;
     query.point_count = points;
     if (status)
         status = measure_beside_step(device, runner, "apply_edits", brush, extra, {.name = "one brush of 64 cells", .size = size},
