@@ -1,6 +1,6 @@
 // The two parameter blocks of every stage, shared by the host and by all three stage compilers.
 // Only 4-byte scalars, and arrays of whole vec4 at 16-byte offsets, so that the C++ struct and the std140 block
-// have the same layout (checked by static_assert in engine/compute/params.hpp).
+// have the same layout (checked by static_assert in shaders/params.hpp).
 #ifndef WADI_STEP_PARAMS_H
 #define WADI_STEP_PARAMS_H
 

@@ -1,5 +1,5 @@
 #include "backends/vulkan/context.hpp"
-#include "engine/compute/stage_table.hpp"
+#include "shaders/stage_table.hpp"
 #include <algorithm>
 #include <cstring>
 

@@ -3,9 +3,9 @@
 #pragma once
 #include "engine/compute/host_sync.hpp"
 #include "engine/compute/lender.hpp"
-#include "engine/compute/params.hpp"
 #include "engine/compute/program.hpp"
 #include "engine/compute/status.hpp"
+#include "shaders/params.hpp"
 #include <cstddef>
 #include <cstdint>
 #include <functional>

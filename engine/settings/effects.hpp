@@ -1,9 +1,9 @@
 // Effects: what a scene calls for, and nothing else. shaders/effect_rows.hpp says what each bit is and what it needs,
 // effect_table.cpp beside it when it is on.
 #pragma once
-#include "engine/compute/params.hpp"
 #include "engine/settings/settings.hpp"
 #include "shaders/effect_rows.hpp"
+#include "shaders/params.hpp"
 #include <cstdint>
 #include <span>
 #include <string>

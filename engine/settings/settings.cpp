@@ -1,10 +1,10 @@
-#include "engine/compute/params.hpp"
 #include "engine/settings/effects.hpp"
 #include "engine/settings/messages.hpp"
 #include "engine/settings/method_presets.hpp"
 #include "engine/settings/scripted_edits.hpp"
 #include "engine/settings/setting_table.hpp"
 #include "engine/threads/bands.hpp"
+#include "shaders/params.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

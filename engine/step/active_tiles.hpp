@@ -1,8 +1,8 @@
 // Active tiles: which of them the next step must run over because something from outside may have changed them. What changed by
 // itself the device finds (mark_active_tiles).
 #pragma once
-#include "engine/compute/params.hpp"
 #include "engine/settings/settings.hpp"
+#include "shaders/params.hpp"
 #include <array>
 #include <optional>
 #include <vector>

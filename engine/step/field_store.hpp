@@ -1,9 +1,9 @@
 // The fields of a world on its device, by name, and which buffer of each pair is the current one.
 #pragma once
-#include "engine/compute/params.hpp"
 #include "engine/settings/settings.hpp"
 #include "engine/step/named_buffers.hpp"
 #include "engine/step/step_plan.hpp"
+#include "shaders/params.hpp"
 #include <algorithm>
 #include <array>
 #include <functional>

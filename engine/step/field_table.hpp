@@ -1,7 +1,7 @@
 // The fields of a step plan by name: a row says what a field is for, where it lies, its unit and who else knows it. The plan, the
 // hash, reading on the host and the tables of pages walk these rows.
 #pragma once
-#include "engine/compute/params.hpp"
+#include "shaders/params.hpp"
 #include <cstdint>
 #include <span>
 #include <string_view>

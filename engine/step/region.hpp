@@ -1,7 +1,7 @@
 // A rectangle of cells.
 #pragma once
-#include "engine/compute/params.hpp"
 #include "engine/settings/settings.hpp"
+#include "shaders/params.hpp"
 #include <cstddef>
 
 namespace wadi {

@@ -1,7 +1,7 @@
 // Where sources and sinks act, as apply_sources reads it.
 #pragma once
-#include "engine/compute/params.hpp"
 #include "engine/settings/settings.hpp"
+#include "shaders/params.hpp"
 #include <vector>
 
 namespace wadi {

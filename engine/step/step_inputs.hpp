@@ -1,7 +1,7 @@
 // What changes with every water step: sources, rain and sides over time, in whole quanta.
 #pragma once
-#include "engine/compute/params.hpp"
 #include "engine/settings/settings.hpp"
+#include "shaders/params.hpp"
 #include <vector>
 
 namespace wadi {

@@ -1,8 +1,8 @@
 // The step plan: effects -> the ordered passes of one water step with its T sand substeps, and the buffers they need.
 // The only place that knows the order (NUMERICS 3, paper Algorithm 1).
 #pragma once
-#include "engine/compute/stage_table.hpp"
 #include "engine/step/field_table.hpp"
+#include "shaders/stage_table.hpp"
 #include <cstdint>
 #include <map>
 #include <string>

@@ -1,7 +1,7 @@
 // From settings in SI units to the scalars that stages read: every derived constant is computed once, here, in double.
 #pragma once
-#include "engine/compute/params.hpp"
 #include "engine/settings/settings.hpp"
+#include "shaders/params.hpp"
 
 namespace wadi {
 

@@ -1,4 +1,4 @@
-#include "engine/compute/stage_table.hpp"
+#include "shaders/stage_table.hpp"
 
 namespace wadi::compute {
 
