@@ -1,6 +1,6 @@
 #include "engine/edits/edits.hpp"
 #include "engine/settings/scripted_edits.hpp"
-#include "engine/step/step_number.hpp"
+#include "engine/step/run/step_number.hpp"
 #include <algorithm>
 
 namespace wadi {

@@ -1,8 +1,8 @@
 // Edits of a running world: brushes, stamps and bodies that push. They wait for their step and run on the device ahead of it.
 #pragma once
 #include "engine/settings/edit_checks.hpp"
-#include "engine/step/state_program.hpp"
-#include "engine/step/stepper.hpp"
+#include "engine/step/run/state_program.hpp"
+#include "engine/step/run/stepper.hpp"
 #include <map>
 #include <span>
 

@@ -1,6 +1,6 @@
 #include "engine/edits/value_writes.hpp"
 #include "engine/settings/effects.hpp"
-#include "engine/step/step_number.hpp"
+#include "engine/step/run/step_number.hpp"
 #include <cstring>
 
 namespace wadi {

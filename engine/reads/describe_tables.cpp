@@ -2,7 +2,7 @@
 #include "engine/settings/effects.hpp"
 #include "engine/settings/messages.hpp"
 #include "engine/settings/setting_table.hpp"
-#include "engine/step/step_plan.hpp"
+#include "engine/step/plan/step_plan.hpp"
 #include "shaders/stage_table.hpp"
 #include <algorithm>
 #include <vector>

@@ -1,5 +1,5 @@
 #include "tests/conformance/bench.hpp"
-#include "engine/step/half.hpp"
+#include "engine/step/plan/half.hpp"
 #include "tests/conformance/compare.hpp"
 #include <bit>
 #include <cmath>

@@ -1,6 +1,6 @@
 #include "tests/conformance/perf.hpp"
 #include "engine/edits/edits.hpp"
-#include "engine/step/step_inputs.hpp"
+#include "engine/step/run/step_inputs.hpp"
 #include "tests/conformance/masks.hpp"
 #include "tests/conformance/pass_runner.hpp"
 #include "tests/conformance/report.hpp"

@@ -1,6 +1,6 @@
 // Published fields by their definitions, in both precisions: single cells, the flow map, foam, normals, the smoothed surface and
 // the interpolation between two publishes.
-#include "engine/step/half.hpp"
+#include "engine/step/plan/half.hpp"
 #include "tests/conformance/stage_checks.hpp"
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 #include "tests/conformance/values_check.hpp"
-#include "engine/step/region.hpp"
+#include "engine/step/run/region.hpp"
 #include "tests/conformance/stage_inputs.hpp"
 #include "tests/reference/solver.hpp"
 #include <algorithm>

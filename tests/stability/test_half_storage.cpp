@@ -1,6 +1,6 @@
 // Half storage (NUMERICS 2.17): rounding to nearest, the same bits however a step is run, exact mass, rest, and what it costs in
 // accuracy and saves in memory.
-#include "engine/step/half.hpp"
+#include "engine/step/plan/half.hpp"
 #include "tests/support/worlds.hpp"
 #include <cmath>
 #include <doctest/doctest.h>

@@ -1,4 +1,4 @@
-#include "engine/step/active_count.hpp"
+#include "engine/step/run/active_count.hpp"
 #include <algorithm>
 #include <array>
 #include <cstring>

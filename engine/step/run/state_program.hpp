@@ -1,6 +1,6 @@
 // A program outside the step plan (publishing, edits, copies ...) that reads or writes the state between two steps.
 #pragma once
-#include "engine/step/world_state.hpp"
+#include "engine/step/run/world_state.hpp"
 #include <functional>
 
 namespace wadi {

@@ -1,9 +1,9 @@
-#include "engine/step/step_inputs.hpp"
+#include "engine/step/run/step_inputs.hpp"
 #include "engine/settings/setting_table.hpp"
-#include "engine/step/half.hpp"
-#include "engine/step/source_shapes.hpp"
-#include "engine/step/step_number.hpp"
-#include "engine/step/world_params.hpp"
+#include "engine/step/plan/half.hpp"
+#include "engine/step/plan/source_shapes.hpp"
+#include "engine/step/plan/world_params.hpp"
+#include "engine/step/run/step_number.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

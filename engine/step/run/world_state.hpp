@@ -2,8 +2,8 @@
 // The components (stepper, outputs, edits, queries, ...) record their programs against it and know nothing of each other.
 #pragma once
 #include "engine/settings/effects.hpp"
-#include "engine/step/active_tiles.hpp"
-#include "engine/step/field_store.hpp"
+#include "engine/step/run/active_tiles.hpp"
+#include "engine/step/run/field_store.hpp"
 #include <optional>
 
 namespace wadi {

@@ -1,6 +1,6 @@
-#include "engine/step/world_state.hpp"
+#include "engine/step/run/world_state.hpp"
 #include "engine/settings/level_digest.hpp"
-#include "engine/step/world_params.hpp"
+#include "engine/step/plan/world_params.hpp"
 #include <new>
 #include <utility>
 

@@ -1,4 +1,4 @@
-#include "engine/step/step_plan.hpp"
+#include "engine/step/plan/step_plan.hpp"
 #include <algorithm>
 #include <array>
 

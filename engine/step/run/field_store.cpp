@@ -1,5 +1,5 @@
-#include "engine/step/field_store.hpp"
-#include "engine/step/half.hpp"
+#include "engine/step/run/field_store.hpp"
+#include "engine/step/plan/half.hpp"
 #include "engine/threads/bands.hpp"
 #include <algorithm>
 

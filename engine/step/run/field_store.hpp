@@ -1,8 +1,8 @@
 // The fields of a world on its device, by name, and which buffer of each pair is the current one.
 #pragma once
 #include "engine/settings/settings.hpp"
-#include "engine/step/named_buffers.hpp"
-#include "engine/step/step_plan.hpp"
+#include "engine/step/plan/step_plan.hpp"
+#include "engine/step/run/named_buffers.hpp"
 #include "shaders/params.hpp"
 #include <algorithm>
 #include <array>

@@ -1,10 +1,10 @@
 // Runs the step plan: a water step is one program for each of the two buffer parities, or one water part and T sand parts. Many
 // steps with nothing between them go to the device in runs of run_steps.
 #pragma once
-#include "engine/step/active_count.hpp"
-#include "engine/step/step_inputs.hpp"
-#include "engine/step/tile_choice.hpp"
-#include "engine/step/world_state.hpp"
+#include "engine/step/run/active_count.hpp"
+#include "engine/step/run/step_inputs.hpp"
+#include "engine/step/run/tile_choice.hpp"
+#include "engine/step/run/world_state.hpp"
 #include <functional>
 
 namespace wadi {

@@ -1,6 +1,6 @@
-#include "engine/step/world_params.hpp"
-#include "engine/step/half.hpp"
-#include "engine/step/source_shapes.hpp"
+#include "engine/step/plan/world_params.hpp"
+#include "engine/step/plan/half.hpp"
+#include "engine/step/plan/source_shapes.hpp"
 #include <algorithm>
 #include <cmath>
 

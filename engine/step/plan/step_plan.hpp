@@ -1,7 +1,7 @@
 // The step plan: effects -> the ordered passes of one water step with its T sand substeps, and the buffers they need.
 // The only place that knows the order (NUMERICS 3, paper Algorithm 1).
 #pragma once
-#include "engine/step/field_table.hpp"
+#include "engine/step/plan/field_table.hpp"
 #include "shaders/stage_table.hpp"
 #include <cstdint>
 #include <map>

@@ -1,4 +1,4 @@
-#include "engine/step/half.hpp"
+#include "engine/step/plan/half.hpp"
 #include <algorithm>
 #include <cmath>
 

@@ -1,4 +1,4 @@
-#include "engine/step/active_tiles.hpp"
+#include "engine/step/run/active_tiles.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstring>

@@ -1,4 +1,4 @@
-#include "engine/step/region.hpp"
+#include "engine/step/run/region.hpp"
 
 namespace wadi {
 

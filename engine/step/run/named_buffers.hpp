@@ -1,6 +1,6 @@
 // The buffers of a component of a world, by label: those wanted are made, those no longer wanted are freed.
 #pragma once
-#include "engine/step/world_device.hpp"
+#include "engine/step/run/world_device.hpp"
 #include <map>
 
 namespace wadi {

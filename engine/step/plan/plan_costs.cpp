@@ -1,5 +1,5 @@
 // What a plan costs per cell: memory, and bytes that its passes move.
-#include "engine/step/step_plan.hpp"
+#include "engine/step/plan/step_plan.hpp"
 #include <algorithm>
 
 namespace wadi {

@@ -1,7 +1,7 @@
-#include "engine/step/initial_fields.hpp"
+#include "engine/step/run/initial_fields.hpp"
 #include "engine/settings/quanta.hpp"
-#include "engine/step/source_shapes.hpp"
-#include "engine/step/world_params.hpp"
+#include "engine/step/plan/source_shapes.hpp"
+#include "engine/step/plan/world_params.hpp"
 #include "engine/threads/bands.hpp"
 #include <numeric>
 #include <span>

@@ -1,4 +1,4 @@
-#include "engine/step/tile_choice.hpp"
+#include "engine/step/run/tile_choice.hpp"
 #include <algorithm>
 
 namespace wadi {

@@ -1,6 +1,6 @@
 // The ledger: what was really added and taken, in quanta, as stages count it on the device. Every call waits for the device.
 #pragma once
-#include "engine/step/world_state.hpp"
+#include "engine/step/run/world_state.hpp"
 
 namespace wadi {
 

@@ -1,4 +1,4 @@
-#include "engine/step/field_table.hpp"
+#include "engine/step/plan/field_table.hpp"
 #include <algorithm>
 #include <iterator>
 #include <stdexcept>
@@ -123,7 +123,7 @@ const FieldRow* find_field(std::string_view name) {
 
 const FieldRow& field_row(std::string_view name) {
     if (const FieldRow* row = find_field(name)) return *row;
-    throw std::logic_error("the field '" + std::string(name) + "' has no row in engine/step/field_table.cpp");
+    throw std::logic_error("the field '" + std::string(name) + "' has no row in engine/step/plan/field_table.cpp");
 }
 
 const FieldRow* find_host_field(int host) {

@@ -1,7 +1,7 @@
 // How many active tiles a step ran over, as the host learns it: a step or more late, and without waiting. A world in which none
 // is active any more is asleep: its steps submit nothing.
 #pragma once
-#include "engine/step/world_state.hpp"
+#include "engine/step/run/world_state.hpp"
 
 namespace wadi {
 

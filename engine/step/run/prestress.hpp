@@ -1,7 +1,7 @@
 // The strain that sand at rest begins with.
 #pragma once
-#include "engine/step/region.hpp"
-#include "engine/step/world_state.hpp"
+#include "engine/step/run/region.hpp"
+#include "engine/step/run/world_state.hpp"
 
 namespace wadi {
 

@@ -1,4 +1,4 @@
-#include "engine/step/state_program.hpp"
+#include "engine/step/run/state_program.hpp"
 
 namespace wadi {
 

@@ -1,5 +1,5 @@
-#include "engine/step/stepper.hpp"
-#include "engine/step/step_number.hpp"
+#include "engine/step/run/stepper.hpp"
+#include "engine/step/run/step_number.hpp"
 #include <algorithm>
 #include <utility>
 

@@ -1,4 +1,4 @@
-#include "engine/step/named_buffers.hpp"
+#include "engine/step/run/named_buffers.hpp"
 #include <algorithm>
 
 namespace wadi {

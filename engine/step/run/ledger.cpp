@@ -1,4 +1,4 @@
-#include "engine/step/ledger.hpp"
+#include "engine/step/run/ledger.hpp"
 
 namespace wadi {
 

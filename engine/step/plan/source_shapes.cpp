@@ -1,4 +1,4 @@
-#include "engine/step/source_shapes.hpp"
+#include "engine/step/plan/source_shapes.hpp"
 #include <algorithm>
 #include <cmath>
 

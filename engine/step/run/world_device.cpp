@@ -1,4 +1,4 @@
-#include "engine/step/world_device.hpp"
+#include "engine/step/run/world_device.hpp"
 #include <algorithm>
 #include <numeric>
 

@@ -1,4 +1,4 @@
-#include "engine/step/prestress.hpp"
+#include "engine/step/run/prestress.hpp"
 
 namespace wadi {
 

@@ -1,6 +1,6 @@
 // The fields that a world begins with: whole quanta, ghosts around, velocities on faces.
 #pragma once
-#include "engine/step/world_state.hpp"
+#include "engine/step/run/world_state.hpp"
 
 namespace wadi {
 
