@@ -1,20 +1,13 @@
 // Runs the step plan: a water step is one program for each of the two buffer parities, or one water part and T sand parts. Many
 // steps with nothing between them go to the device in runs of run_steps.
 #pragma once
-#include "engine/step/run/active_count.hpp"
 #include "engine/step/run/step_inputs.hpp"
-#include "engine/step/run/tile_choice.hpp"
-#include "engine/step/run/world_state.hpp"
+#include "engine/step/run/step_programs.hpp"
+#include "engine/step/run/step_timings.hpp"
+#include "engine/step/run/tile_use.hpp"
 #include <functional>
 
 namespace wadi {
-
-/// Mean time of a stage per water step.
-struct StageTime {
-    std::string stage;
-    double milliseconds = 0;
-    int passes = 0;
-};
 
 /// What a step boundary is besides the fields on the device.
 struct HostTotals {
@@ -36,12 +29,12 @@ class Stepper {
     Status step();
     /// Submits `count` whole water steps, in runs where the hooks allow it: the same bits as so many calls of step().
     Status steps(std::uint64_t count);
-    /// Steps of one submission: even, so that one program does for a turn.
-    static constexpr int run_steps = compute::most_inputs;
+    /// Steps of one submission.
+    static constexpr int run_steps = StepPrograms::run_steps;
     /// Submits the next of a water step's parts: the water passes, then each sand substep. The same bits as step().
     Status step_part();
     /// Parts of a water step: 1 + T, or 1 without sand.
-    int parts() const;
+    int parts() const { return programs_.parts(); }
     /// Parts of the present step already submitted; 0 between two steps.
     int parts_done() const { return parts_done_; }
     /// Of the newest submission; null before the first.
@@ -86,26 +79,10 @@ class Stepper {
 
     Status set_profiling(bool on);
     /// Mean over the steps since profiling was switched on; steps in parts are not timed. Passes are those of the plan in force.
-    Result<std::vector<StageTime>> stage_times();
+    Result<std::vector<StageTime>> stage_times() { return timings_.stage_times(); }
 
   private:
-    /// By turn.
-    struct Programs {
-        std::array<compute::Program, 2> steps{}, timed{}, runs{};
-        std::array<std::vector<compute::Program>, 2> parts;
-        std::array<compute::Program, 2> starts{}; // the water part of step 0
-    };
-
-    class Change;
-
-    Status append_step(compute::ProgramBuilder& builder, int turn, Parity& parity, bool timestamps);
-    Result<compute::Program> record_step(int turn, Parity& parity, bool timestamps);
-    Result<compute::Program> record_run(int turn);
-    /// The timed programs of the plan in force.
-    Status record_timed();
-    Result<compute::Program> record_part(int part, bool start, int turn, Parity& parity);
-    Status record_parts(std::size_t turn);
-    Status record_start(std::size_t turn);
+    Status record_programs(bool with_parts);
     /// Makes the step that comes the present one.
     Status begin();
     /// Whether the present step has the plan's start passes.
@@ -117,34 +94,20 @@ class Stepper {
     Status submit_parts(int parts);
     Status finish(int parts);
     Status complete_step();
-    Status collect_timings(bool all);
-    void drop_programs() noexcept;
-    /// Of the plan in force.
-    Programs& programs() { return programs_[state_.plan().active_tiles ? 1 : 0]; }
-    Status record_way(bool with_parts);
-    Status record_ways(bool with_parts);
-    /// In a world that chooses whether steps run over active tiles: goes to the better way where that is possible.
-    void choose_tiles();
     /// The input of the step that comes, with the tiles that it wakes.
     StepInput next_input();
-    bool may_sleep(const StepInput& input);
-    void note_submitted(bool woken, int steps);
 
     WorldState& state_;
     StepInputs inputs_;
-    ActiveCount active_{state_};
-    bool asleep_ = false;              // the present step submits nothing
-    std::array<Programs, 2> programs_; // of the plan without active tiles and of the one with them
+    TileUse tile_use_{state_};
+    StepPrograms programs_{state_, tile_use_.count()};
+    StepTimings timings_{state_};
+    bool asleep_ = false; // the present step submits nothing
     std::array<StepInput, run_steps> run_inputs_{};
-    TileChoice choice_;
     int parts_done_ = 0;
     compute::Ticket ticket_;
     StepInput input_{}; // of the present step
     Hooks hooks_;
-    bool profiling_ = false;
-    std::vector<compute::Ticket> pending_timings_;
-    std::map<std::string, double> stage_milliseconds_;
-    std::uint64_t timed_steps_ = 0;
 };
 
 } // namespace wadi
