@@ -1,4 +1,5 @@
 #include "engine/world.hpp"
+#include "engine/settings/rules/checks.hpp"
 #include "engine/step/run/initial_fields.hpp"
 #include "engine/step/run/prestress.hpp"
 

@@ -1,5 +1,5 @@
 #include "engine/edits/command_log.hpp"
-#include "engine/settings/material_keys.hpp"
+#include "engine/settings/rules/material_keys.hpp"
 #include "engine/step/run/prestress.hpp"
 #include <algorithm>
 

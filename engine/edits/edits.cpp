@@ -1,5 +1,5 @@
 #include "engine/edits/edits.hpp"
-#include "engine/settings/scripted_edits.hpp"
+#include "engine/settings/rules/scripted_edits.hpp"
 #include "engine/step/run/step_number.hpp"
 #include <algorithm>
 

@@ -1,6 +1,6 @@
 // Edits of a running world: brushes, stamps and bodies that push. They wait for their step and run on the device ahead of it.
 #pragma once
-#include "engine/settings/edit_checks.hpp"
+#include "engine/settings/rules/edit_checks.hpp"
 #include "engine/step/run/state_program.hpp"
 #include "engine/step/run/stepper.hpp"
 #include <map>

@@ -1,6 +1,6 @@
 #include "engine/edits/regions.hpp"
-#include "engine/settings/messages.hpp"
-#include "engine/settings/quanta.hpp"
+#include "engine/settings/data/quanta.hpp"
+#include "engine/settings/rules/messages.hpp"
 #include "engine/step/plan/world_params.hpp"
 #include "engine/step/run/ledger.hpp"
 #include "engine/step/run/prestress.hpp"

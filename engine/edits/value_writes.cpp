@@ -1,5 +1,5 @@
 #include "engine/edits/value_writes.hpp"
-#include "engine/settings/effects.hpp"
+#include "engine/settings/rules/effects.hpp"
 #include "engine/step/run/step_number.hpp"
 #include <cstring>
 

@@ -1,5 +1,5 @@
 #include "engine/reads/state_reader.hpp"
-#include "engine/settings/quanta.hpp"
+#include "engine/settings/data/quanta.hpp"
 #include "engine/step/plan/world_params.hpp"
 #include "engine/step/run/active_count.hpp"
 #include "engine/threads/bands.hpp"

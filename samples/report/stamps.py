@@ -22,7 +22,7 @@ PARTS = {  # what decides the state after a step, whatever runs it
     "stages": tuple(f"shaders/stages/{room}/*.stage" for room in ("boundary", "layer", "sand", "water")) + ("shaders/step_params.h",),
     "step": ("engine/step/plan/step_plan.cpp", "engine/step/plan/world_params.cpp", "engine/step/run/step_inputs.cpp", "engine/step/run/initial_fields.cpp",
              "engine/step/run/prestress.cpp", "engine/step/plan/source_shapes.cpp"),
-    "defaults": ("engine/settings/settings.hpp", "engine/settings/method_presets.cpp"),
+    "defaults": ("engine/settings/data/settings.hpp", "engine/settings/data/method_presets.cpp"),
     "levels": ("samples/levels/*/level.json",),
 }
 SAND_LAB = tuple(f"tests/sand/{name}.py" for name in ("columns", "cuts", "scene", "shapes"))

@@ -1,5 +1,5 @@
 #include "tests/conformance/masks.hpp"
-#include "engine/settings/effects.hpp"
+#include "engine/settings/rules/effects.hpp"
 #include "engine/step/plan/step_plan.hpp"
 #include <algorithm>
 #include <bit>

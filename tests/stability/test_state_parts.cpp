@@ -1,5 +1,5 @@
 // Fields too large to pass between host and device at once: written, read, counted and hashed in parts, on several threads.
-#include "engine/settings/quanta.hpp"
+#include "engine/settings/data/quanta.hpp"
 #include "engine/step/run/field_store.hpp"
 #include "engine/threads/bands.hpp"
 #include "tests/support/worlds.hpp"

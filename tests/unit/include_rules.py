@@ -15,7 +15,8 @@ RULES = {
     "engine": ["engine/"],
     "engine/compute": ["engine/compute/"],
     "engine/threads": ["engine/threads/", "engine/compute/"],
-    "engine/settings": ["engine/settings/", "engine/threads/", "engine/compute/", "shaders/effect_rows.hpp"],
+    "engine/settings/data": ["engine/settings/data/", "engine/compute/"],
+    "engine/settings/rules": ["engine/settings/", "engine/threads/", "engine/compute/", "shaders/effect_rows.hpp"],
     "engine/image": ["engine/image/", "engine/threads/", "engine/compute/"],
     "engine/level": ["engine/level/", "engine/image/", "engine/settings/", "engine/threads/", "engine/compute/"],
     "engine/step/plan": ["engine/step/plan/", "engine/settings/", "engine/threads/", "engine/compute/"],
@@ -152,14 +153,15 @@ def main():
         for name, text in {
             "engine/bad.cpp": '#include "backends/cpu/device.hpp"\n#include <vulkan/vulkan.h>\n',
             "backends/one/bad.cpp": '#include "backends/other/device.hpp"\n',
-            "engine/settings/upward.hpp": '#include "engine/step/below.hpp"\n',
-            "engine/step/below.hpp": '#include "engine/settings/upward.hpp"\n',
+            "engine/settings/rules/upward.hpp": '#include "engine/step/below.hpp"\n',
+            "engine/step/below.hpp": '#include "engine/settings/rules/upward.hpp"\n',
+            "engine/settings/data/upward.hpp": '#include "engine/settings/rules/effects.hpp"\n',
             "engine/step/plan/upward.hpp": '#include "engine/step/run/stepper.hpp"\n',
         }.items():
             (planted / name).parent.mkdir(parents=True, exist_ok=True)
             (planted / name).write_text(text)
         seen = "\n".join(check(planted)[1])
-        for sign in ("only backends may name a backend", "only backends/vulkan", "engine/settings may include only", "engine/step/plan may include only", "backends/one may include only", "circle of files", "circle of rooms"):
+        for sign in ("only backends may name a backend", "only backends/vulkan", "engine/settings/rules may include only", "engine/settings/data may include only", "engine/step/plan may include only", "backends/one may include only", "circle of files", "circle of rooms"):
             if sign not in seen:
                 print(f"the checker does not see a planted breach: {sign}")
                 return 1

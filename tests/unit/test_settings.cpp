@@ -1,6 +1,7 @@
-// validate() and TimeSeries of engine/settings/settings.hpp.
-#include "engine/settings/messages.hpp"
-#include "engine/settings/setting_table.hpp"
+// validate() and TimeSeries of engine/settings/data/settings.hpp.
+#include "engine/settings/data/setting_table.hpp"
+#include "engine/settings/rules/checks.hpp"
+#include "engine/settings/rules/messages.hpp"
 #include "tests/unit/level_text.hpp"
 #include <algorithm>
 #include <cmath>

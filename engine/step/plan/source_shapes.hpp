@@ -1,6 +1,6 @@
 // Where sources and sinks act, as apply_sources reads it.
 #pragma once
-#include "engine/settings/settings.hpp"
+#include "engine/settings/data/settings.hpp"
 #include "shaders/params.hpp"
 #include <vector>
 

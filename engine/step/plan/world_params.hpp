@@ -1,6 +1,6 @@
 // From settings in SI units to the scalars that stages read: every derived constant is computed once, here, in double.
 #pragma once
-#include "engine/settings/settings.hpp"
+#include "engine/settings/data/settings.hpp"
 #include "shaders/params.hpp"
 
 namespace wadi {

@@ -1,7 +1,7 @@
 // Active tiles: which of them the next step must run over because something from outside may have changed them. What changed by
 // itself the device finds (mark_active_tiles).
 #pragma once
-#include "engine/settings/settings.hpp"
+#include "engine/settings/data/settings.hpp"
 #include "shaders/params.hpp"
 #include <array>
 #include <optional>

@@ -1,6 +1,6 @@
 // The fields of a world on its device, by name, and which buffer of each pair is the current one.
 #pragma once
-#include "engine/settings/settings.hpp"
+#include "engine/settings/data/settings.hpp"
 #include "engine/step/plan/step_plan.hpp"
 #include "engine/step/run/named_buffers.hpp"
 #include "shaders/params.hpp"

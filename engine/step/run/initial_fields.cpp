@@ -1,5 +1,5 @@
 #include "engine/step/run/initial_fields.hpp"
-#include "engine/settings/quanta.hpp"
+#include "engine/settings/data/quanta.hpp"
 #include "engine/step/plan/source_shapes.hpp"
 #include "engine/step/plan/world_params.hpp"
 #include "engine/threads/bands.hpp"

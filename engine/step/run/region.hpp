@@ -1,6 +1,6 @@
 // A rectangle of cells.
 #pragma once
-#include "engine/settings/settings.hpp"
+#include "engine/settings/data/settings.hpp"
 #include "shaders/params.hpp"
 #include <cstddef>
 

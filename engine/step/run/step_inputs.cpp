@@ -1,5 +1,5 @@
 #include "engine/step/run/step_inputs.hpp"
-#include "engine/settings/setting_table.hpp"
+#include "engine/settings/data/setting_table.hpp"
 #include "engine/step/plan/half.hpp"
 #include "engine/step/plan/source_shapes.hpp"
 #include "engine/step/plan/world_params.hpp"

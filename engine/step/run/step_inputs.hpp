@@ -1,6 +1,6 @@
 // What changes with every water step: sources, rain and sides over time, in whole quanta.
 #pragma once
-#include "engine/settings/settings.hpp"
+#include "engine/settings/data/settings.hpp"
 #include "shaders/params.hpp"
 #include <vector>
 

@@ -1,5 +1,5 @@
 #include "engine/step/run/world_state.hpp"
-#include "engine/settings/level_digest.hpp"
+#include "engine/settings/rules/level_digest.hpp"
 #include "engine/step/plan/world_params.hpp"
 #include <new>
 #include <utility>

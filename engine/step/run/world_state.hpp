@@ -1,7 +1,7 @@
 // What every component of a world shares: settings, plan, device, fields and active tiles, and how passes are recorded on them.
 // The components (stepper, outputs, edits, queries, ...) record their programs against it and know nothing of each other.
 #pragma once
-#include "engine/settings/effects.hpp"
+#include "engine/settings/rules/effects.hpp"
 #include "engine/step/run/active_tiles.hpp"
 #include "engine/step/run/field_store.hpp"
 #include <optional>

@@ -1,4 +1,4 @@
-#include "engine/settings/messages.hpp"
+#include "engine/settings/rules/messages.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -1,6 +1,6 @@
 // What a world accepts as an edit or a stamp's image, and what an edit brings along.
 #pragma once
-#include "engine/settings/effects.hpp"
+#include "engine/settings/rules/effects.hpp"
 #include <span>
 
 namespace wadi {

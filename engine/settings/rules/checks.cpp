@@ -1,8 +1,9 @@
-#include "engine/settings/effects.hpp"
-#include "engine/settings/messages.hpp"
-#include "engine/settings/method_presets.hpp"
-#include "engine/settings/scripted_edits.hpp"
-#include "engine/settings/setting_table.hpp"
+#include "engine/settings/rules/checks.hpp"
+#include "engine/settings/data/method_presets.hpp"
+#include "engine/settings/data/setting_table.hpp"
+#include "engine/settings/rules/effects.hpp"
+#include "engine/settings/rules/messages.hpp"
+#include "engine/settings/rules/scripted_edits.hpp"
 #include "engine/threads/bands.hpp"
 #include "shaders/params.hpp"
 #include <algorithm>
@@ -196,36 +197,6 @@ Status check_field(const char* name, const std::vector<float>& field, const Grid
 }
 
 } // namespace
-
-const std::vector<std::string>& effect_names() {
-    static const std::vector<std::string> names = [] {
-        std::vector<std::string> found;
-        for (const Effect& effect : effect_table()) found.emplace_back(effect.name);
-        return found;
-    }();
-    return names;
-}
-
-const std::vector<std::string>& side_names() {
-    static const std::vector<std::string> names = {"west", "east", "south", "north"};
-    return names;
-}
-
-double height_quantum(const Method& method) {
-    if (method.quantum >= 0) return method.quantum;
-    return std::exp2(std::ceil(std::log2(method.largest_height)) - 24);
-}
-
-double TimeSeries::at(double time) const {
-    if (samples.empty()) return 0;
-    const auto next = std::upper_bound(samples.begin(), samples.end(), time,
-                                       [](double t, const std::pair<double, double>& sample) { return t < sample.first; });
-    if (next == samples.begin()) return samples.front().second;
-    if (next == samples.end()) return samples.back().second;
-    const auto [t0, v0] = *(next - 1);
-    const auto [t1, v1] = *next;
-    return v0 + (v1 - v0) * ((time - t0) / (t1 - t0));
-}
 
 Status validate(const Material& material) {
     Settings settings;

@@ -1,7 +1,7 @@
-#include "engine/settings/scripted_edits.hpp"
-#include "engine/settings/edit_checks.hpp"
-#include "engine/settings/messages.hpp"
-#include "engine/settings/setting_table.hpp"
+#include "engine/settings/rules/scripted_edits.hpp"
+#include "engine/settings/data/setting_table.hpp"
+#include "engine/settings/rules/edit_checks.hpp"
+#include "engine/settings/rules/messages.hpp"
 #include <algorithm>
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // Method presets: names for sets of choices in settings.method.
 #pragma once
-#include "engine/settings/settings.hpp"
+#include "engine/settings/data/settings.hpp"
 #include <string>
 #include <vector>
 

@@ -1,6 +1,6 @@
-#include "engine/settings/level_digest.hpp"
-#include "engine/settings/checksum.hpp"
-#include "engine/settings/setting_table.hpp"
+#include "engine/settings/rules/level_digest.hpp"
+#include "engine/settings/data/setting_table.hpp"
+#include "engine/settings/rules/checksum.hpp"
 #include <span>
 #include <string_view>
 

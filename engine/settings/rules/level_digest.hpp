@@ -1,6 +1,6 @@
 // Which level a snapshot or a command log belongs to.
 #pragma once
-#include "engine/settings/settings.hpp"
+#include "engine/settings/data/settings.hpp"
 
 namespace wadi {
 

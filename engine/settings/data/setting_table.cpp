@@ -1,5 +1,5 @@
-#include "engine/settings/setting_table.hpp"
-#include "engine/settings/effects.hpp"
+#include "engine/settings/data/setting_table.hpp"
+#include "shaders/params.hpp"
 #include <algorithm>
 #include <iterator>
 #include <type_traits>
@@ -192,6 +192,11 @@ std::span<const Setting> setting_table() { return rows; }
 const Setting* find_setting(std::string_view path) {
     const auto found = std::find_if(std::begin(rows), std::end(rows), [&](const Setting& s) { return path == s.path; });
     return found == std::end(rows) ? nullptr : found;
+}
+
+const std::vector<std::string>& side_names() {
+    static const std::vector<std::string> names = {"west", "east", "south", "north"};
+    return names;
 }
 
 } // namespace wadi

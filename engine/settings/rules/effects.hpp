@@ -1,7 +1,7 @@
 // Effects: what a scene calls for, and nothing else. shaders/effect_rows.hpp says what each bit is and what it needs,
 // effect_table.cpp beside it when it is on.
 #pragma once
-#include "engine/settings/settings.hpp"
+#include "engine/settings/data/settings.hpp"
 #include "shaders/effect_rows.hpp"
 #include "shaders/params.hpp"
 #include <cstdint>
@@ -31,6 +31,8 @@ struct Effect : EffectRow {
 
 /// All effects, dependencies first.
 std::span<const Effect> effect_table();
+/// Their names, as level files write them.
+const std::vector<std::string>& effect_names();
 /// "sand, water": the effects of a mask, without the choices of method.
 std::string effect_names(std::uint32_t mask);
 

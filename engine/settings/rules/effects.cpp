@@ -1,4 +1,4 @@
-#include "engine/settings/effects.hpp"
+#include "engine/settings/rules/effects.hpp"
 #include <algorithm>
 
 namespace wadi {
@@ -10,6 +10,15 @@ bool any_above_zero(const std::vector<float>& field) {
 }
 
 } // namespace
+
+const std::vector<std::string>& effect_names() {
+    static const std::vector<std::string> names = [] {
+        std::vector<std::string> found;
+        for (const Effect& effect : effect_table()) found.emplace_back(effect.name);
+        return found;
+    }();
+    return names;
+}
 
 Result<EffectChoice> effects_required(const Settings& settings, Content content) {
     for (const auto& forced : settings.effects) {

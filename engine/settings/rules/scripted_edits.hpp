@@ -1,6 +1,6 @@
 // The edits that a level brings along: which of them act ahead of a step.
 #pragma once
-#include "engine/settings/settings.hpp"
+#include "engine/settings/data/settings.hpp"
 
 namespace wadi {
 

@@ -2,7 +2,7 @@
 // loader fills it from JSON, hosts fill it by hand. validate() checks every field and names field and range.
 #pragma once
 #include "engine/compute/status.hpp"
-#include "engine/settings/edit.hpp"
+#include "engine/settings/data/edit.hpp"
 #include <array>
 #include <cstdint>
 #include <string>
@@ -193,12 +193,5 @@ struct InitialFields {
 
 /// Q: the height quantum the settings ask for [m]; 0 = plain float (NUMERICS 2.2).
 double height_quantum(const Method& method);
-
-/// Checks every number; the message names the field as the level file writes it, its value and its range.
-Status validate(const Settings& settings);
-Status validate(const Material& material);
-/// Checks sizes and finiteness (the message gives the first bad cell), non-negative depths, the declared largest height; of the
-/// settings their roughness.
-Status validate(const InitialFields& fields, const Settings& settings);
 
 } // namespace wadi

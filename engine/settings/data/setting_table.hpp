@@ -2,7 +2,7 @@
 // The level reader, validate(), material keys, the level digest, the schema and the tables of pages walk these rows; defaults
 // are those of the structs in settings.hpp.
 #pragma once
-#include "engine/settings/settings.hpp"
+#include "engine/settings/data/settings.hpp"
 #include <span>
 #include <string>
 #include <string_view>
@@ -81,8 +81,7 @@ inline constexpr double EDIT_TIME_MOST = 1e9;           // of a level's edit [s]
 inline constexpr double EDIT_EVERY_LEAST = 1e-3;        // [s]
 inline constexpr double SATURATION_GAP = 1e-3;          // least distance of 0, phi1, phi2 and phi3
 
-/// Names as level files write them; sides are indexed by SideName.
-const std::vector<std::string>& effect_names();
+/// As level files write them, indexed by SideName.
 const std::vector<std::string>& side_names();
 
 } // namespace wadi

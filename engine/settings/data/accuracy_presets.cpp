@@ -1,4 +1,4 @@
-#include "engine/settings/accuracy_presets.hpp"
+#include "engine/settings/data/accuracy_presets.hpp"
 
 namespace wadi {
 

@@ -1,5 +1,5 @@
 // When each effect is on by itself, and which choice of method sets which bit: a rule beside each row of shaders/effect_rows.hpp.
-#include "engine/settings/effects.hpp"
+#include "engine/settings/rules/effects.hpp"
 #include <algorithm>
 #include <iterator>
 

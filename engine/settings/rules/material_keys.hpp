@@ -1,6 +1,6 @@
 // The numbers of a material by the names that level files give them: to list them, and to change one of a running world.
 #pragma once
-#include "engine/settings/settings.hpp"
+#include "engine/settings/data/settings.hpp"
 #include <span>
 #include <string_view>
 

@@ -1,4 +1,4 @@
-#include "engine/settings/method_presets.hpp"
+#include "engine/settings/data/method_presets.hpp"
 
 namespace wadi {
 

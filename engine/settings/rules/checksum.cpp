@@ -1,4 +1,4 @@
-#include "engine/settings/checksum.hpp"
+#include "engine/settings/rules/checksum.hpp"
 #include <algorithm>
 #include <bit>
 #include <cstring>

@@ -1,6 +1,7 @@
-#include "engine/settings/material_keys.hpp"
-#include "engine/settings/effects.hpp"
-#include "engine/settings/setting_table.hpp"
+#include "engine/settings/rules/material_keys.hpp"
+#include "engine/settings/data/setting_table.hpp"
+#include "engine/settings/rules/checks.hpp"
+#include "engine/settings/rules/effects.hpp"
 #include <algorithm>
 
 namespace wadi {
