@@ -372,7 +372,7 @@ Status run_perf(Session& session, const PerfOptions& options, bool first) {
         return status;
     };
     std::vector<bool> kinds = {false};
-    if ((*device)->capabilities().fused_gain_cells > 0) kinds.push_back(true);
+    if ((*device)->tuning().fused_gain_cells > 0) kinds.push_back(true);
     for (int size = options.min_size; size <= options.max_size; size *= 2) {
         for (const bool fused : kinds)
             if (auto status = told(measure_stages(**device, size, fused, options, rows)); !status) return status;

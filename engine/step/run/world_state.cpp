@@ -20,21 +20,21 @@ void WorldState::tell(int severity, const std::string& text) const {
 }
 
 bool WorldState::fuses() const {
-    const auto& device = (*device_).capabilities();
     const std::int64_t cells = std::int64_t{settings_.grid.nx} * settings_.grid.ny;
-    const bool gains = device.fused_gain_cells > 0 && cells >= device.fused_gain_cells;
+    const std::int64_t least = (*device_).tuning().fused_gain_cells;
+    const bool gains = least > 0 && cells >= least;
     const bool asked =
         settings_.fused_stages == FusedStages::always || (settings_.fused_stages == FusedStages::automatic && gains);
-    return asked && device.fused_stages;
+    return asked && (*device_).capabilities().fused_stages;
 }
 
 // Where a GPU does not fuse, its grid is so small that a step is short passes that wait for each other, whatever they run over;
 // and scratch fields of their own would take memory.
 bool WorldState::may_choose_tiles() const {
-    const auto& device = (*device_).capabilities();
+    const auto& tuning = (*device_).tuning();
     const std::int64_t cells = std::int64_t{settings_.grid.nx} * settings_.grid.ny;
-    if (settings_.active_tiles == tiles_where_cheap) return fuses() && cells >= device.tiles_gain_cells;
-    return settings_.active_tiles == tiles_where_they_gain && (device.fused_gain_cells == 0 || fuses());
+    if (settings_.active_tiles == tiles_where_cheap) return fuses() && cells >= tuning.tiles_gain_cells;
+    return settings_.active_tiles == tiles_where_they_gain && (tuning.fused_gain_cells == 0 || fuses());
 }
 
 StepPlan WorldState::plan_for(std::uint32_t effects, bool tiles) const {
