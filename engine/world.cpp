@@ -1,6 +1,7 @@
 #include "engine/world.hpp"
-#include "engine/step/initial_fields.hpp"
-#include "engine/step/prestress.hpp"
+#include "engine/settings/rules/checks.hpp"
+#include "engine/step/run/initial_fields.hpp"
+#include "engine/step/run/prestress.hpp"
 
 namespace wadi {
 

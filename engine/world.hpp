@@ -8,7 +8,7 @@
 #include "engine/reads/state_reader.hpp"
 #include "engine/saves/roll_back.hpp"
 #include "engine/saves/snapshots.hpp"
-#include "engine/step/stepper.hpp"
+#include "engine/step/run/stepper.hpp"
 
 namespace wadi {
 

@@ -1,7 +1,7 @@
 // Devices, and worlds made from levels or arrays.
 #include "backends/registry.hpp"
 #include "engine/level/level.hpp"
-#include "engine/settings/accuracy_presets.hpp"
+#include "engine/settings/data/accuracy_presets.hpp"
 #include "plugin/abi.hpp"
 #include "plugin/vulkan_host.hpp"
 #include <cstdio>

@@ -1,6 +1,6 @@
 // Brushes, stamps, pushes, written regions and changes of the material; effects that follow them.
-#include "engine/settings/material_keys.hpp"
-#include "engine/settings/messages.hpp"
+#include "engine/settings/rules/material_keys.hpp"
+#include "engine/settings/rules/messages.hpp"
 #include "plugin/abi.hpp"
 
 using namespace wadi;

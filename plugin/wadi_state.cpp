@@ -1,5 +1,5 @@
 // Stepping, and reading the state.
-#include "engine/settings/quanta.hpp"
+#include "engine/settings/data/quanta.hpp"
 #include "plugin/abi.hpp"
 
 using namespace wadi;

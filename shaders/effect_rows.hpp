@@ -1,5 +1,5 @@
 // What each bit of effects.h is to a user, and what it needs: a row per effect and per choice of method. stagec compiles no mask
-// that lacks what it needs; the engine adds when each is on (engine/settings/effect_table.cpp).
+// that lacks what it needs; the engine adds when each is on (engine/settings/rules/effect_table.cpp).
 #pragma once
 #include "effects.h"
 #include <cstddef>

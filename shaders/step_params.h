@@ -1,6 +1,6 @@
 // The two parameter blocks of every stage, shared by the host and by all three stage compilers.
-// Only 4-byte scalars, and vec4 arrays at 16-byte offsets, so that the C++ struct and the std140 block
-// have the same layout (checked by static_assert in engine/compute/params.hpp).
+// Only 4-byte scalars, and arrays of whole vec4 at 16-byte offsets, so that the C++ struct and the std140 block
+// have the same layout (checked by static_assert in shaders/params.hpp).
 #ifndef WADI_STEP_PARAMS_H
 #define WADI_STEP_PARAMS_H
 
@@ -10,7 +10,6 @@
 #define MAX_SOURCES 32   // sources and sinks of one world
 #define SOURCE_VECTORS (4 * MAX_SOURCES) // vec4 of all shapes and of the boxes that hold them
 #define MAX_EDITS 16     // edits of one submission
-#define EDIT_VECTORS 3   // vec4 per edit
 #define STAMP_PAGE 1024  // floats; the image of a stamp begins at a multiple of it
 #define EDIT_BRUSH 0
 #define EDIT_STAMP 1
@@ -148,7 +147,27 @@ struct WorldParams {
     float smooth2;
 };
 
-// What changes with every water step. At most 2 KiB.
+// One edit, lengths in cells; what another kind has is 0.
+struct EditInput {
+    float from_x;               // start of a brush or push, low corner of a rectangle (stamp, balance, values)
+    float from_y;
+    float along_x;              // from there to the end, or the rectangle's size
+    float along_y;
+    int kind;                   // EDIT_*
+    int layer;                  // LAYER_*
+    float amount;               // brush [m], stamp [m per unit of its image], push: its strength, balance: 1 adds it, -1 takes it
+    float velocity_x;           // of a push [m/s]
+    float velocity_y;
+    float radius;               // of a brush or push
+    float inv_fade;             // 1/width of its falloff
+    float inv_length2;          // 1/length^2 from start to end, 0 for a disc
+    int rim_parts;              // of a brush with a hard rim: parts of a cell's side that it counts; 0 = it fades
+    int columns;                // of a stamp's image
+    int rows;
+    int page;                   // where that begins among the images
+};
+
+// What changes with every water step. At most 2304 bytes.
 struct StepInput {
     int step;                   // index of the water step
     float rain;                 // depth of rain in this step [m], a whole number of quanta
@@ -158,11 +177,7 @@ struct StepInput {
     vec4 side[4];               // west, east, south, north: discharge per width [m2/s] or level [m],
                                 // least ghost depth (negative: the ghost depth) or the level's rise since the last step [m],
                                 // first and last index of the open span
-    // Per edit, lengths in cells. Brush and push: (x, y of the start, x, y to the end), (radius, 1/width of the falloff,
-    // 1/length^2, kind), brush (amount [m], layer, parts of a cell's side at a hard rim or 0, 0), push (strength, velocity x, y [m/s],
-    // 0). Stamp: (x, y of the low corner, size), (columns, rows, page, kind), (metres per unit, layer, columns and rows per cell).
-    // Balance: (x, y of the low corner, width, height), (0, 0, 0, kind), (1 to add the stretch in balance, -1 to take it, 0, 0, 0).
-    vec4 edit[EDIT_VECTORS * MAX_EDITS];
+    EditInput edit[MAX_EDITS];
     vec4 wake[MAX_WAKES];       // tiles woken in this step: first column, row, last column, row
     int edit_count;             // edits in this submission of apply_edits
     int point_count;            // points of a POINTS stage

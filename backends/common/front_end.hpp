@@ -23,6 +23,7 @@ class FrontEnd final : public compute::Device, private compute::HostSync {
     explicit FrontEnd(std::unique_ptr<compute::Device> device) : device_(std::move(device)) {}
 
     const compute::Capabilities& capabilities() const override { return device_->capabilities(); }
+    const compute::Tuning& tuning() const override { return device_->tuning(); }
     compute::DeviceCounters counters() const override { return device_->counters(); }
     Result<compute::Buffer> create_buffer(const compute::BufferDesc& desc) override;
     std::span<std::byte> mapped(compute::Buffer buffer) override;

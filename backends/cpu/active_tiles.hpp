@@ -1,7 +1,7 @@
 // Running a stage over the active tiles of a step, and finding out in which of them it changed a bit.
 #pragma once
 #include "backends/cpu/stages.hpp"
-#include "engine/compute/stage_table.hpp"
+#include "shaders/stage_table.hpp"
 #include <cstddef>
 #include <cstdint>
 #include <vector>

@@ -28,6 +28,7 @@ class CpuDevice final : public compute::Device {
     void start(int threads, const compute::RunJobs& jobs);
 
     const compute::Capabilities& capabilities() const override { return capabilities_; }
+    const compute::Tuning& tuning() const override { return tuning_; }
     compute::DeviceCounters counters() const override { return counters_; }
     Result<compute::Buffer> create_buffer(const compute::BufferDesc& desc) override;
     std::span<std::byte> mapped(compute::Buffer buffer) override;
@@ -131,6 +132,7 @@ class CpuDevice final : public compute::Device {
     const bool full_barriers_;
     const std::shared_ptr<const compute::Allocator> allocator_; // null: pages of the system's
     compute::Capabilities capabilities_;
+    compute::Tuning tuning_; // all 0: stages run one by one, and worlds do not choose tiles
     compute::DeviceCounters counters_;
     PageArena pages_{true}, small_pages_{false};
     backends::HandleTable<Memory> buffers_;

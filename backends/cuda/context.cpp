@@ -46,8 +46,8 @@ Status read_capabilities(Context& c, const ListedDevice& chosen) {
     c.capabilities.largest_buffer_bytes = std::min(chosen.info.memory_bytes, largest_indexed_buffer) / 4 * 4;
     c.capabilities.groups = {largest_group, largest_group, largest_group, 256};
     c.capabilities.timestamps = true;
-    c.capabilities.fused_gain_cells = std::int64_t{1} << 16; // H100: below it too few groups fill the GPU (engine/step/README.md)
-    c.capabilities.tiles_gain_cells = std::int64_t{1} << 20;
+    c.tuning.fused_gain_cells = std::int64_t{1} << 16; // H100: below it too few groups fill the GPU (engine/step/README.md)
+    c.tuning.tiles_gain_cells = std::int64_t{1} << 20;
     c.capabilities.fused_stages = true; // every architecture that is compiled for has 48 KiB a group
     return ok_status();
 }

@@ -36,6 +36,7 @@ struct Context {
     std::string lost_reason;
     compute::DeviceOptions options;
     compute::Capabilities capabilities;
+    compute::Tuning tuning;
     compute::DeviceCounters counters;
 };
 

@@ -19,6 +19,7 @@ class CudaDevice final : public compute::Device {
     }
 
     const compute::Capabilities& capabilities() const override { return context_->capabilities; }
+    const compute::Tuning& tuning() const override { return context_->tuning; }
 
     compute::DeviceCounters counters() const override { return context_->counters; }
 

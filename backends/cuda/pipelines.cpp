@@ -1,6 +1,6 @@
 #include "backends/cuda/pipelines.hpp"
 #include "backends/cuda/stages.hpp"
-#include "engine/compute/stage_table.hpp"
+#include "shaders/stage_table.hpp"
 
 namespace wadi::cuda {
 

@@ -1,5 +1,5 @@
 #include "backends/vulkan/context.hpp"
-#include "engine/compute/stage_table.hpp"
+#include "shaders/stage_table.hpp"
 #include <algorithm>
 #include <cstring>
 
@@ -63,8 +63,8 @@ void read_properties(Context& c, const PhysicalDevice& chosen) {
                                   c.limits.storage_buffers >= bindings;
     // H100: below it too few groups fill the GPU (engine/step/README.md). A software device gains nothing.
     const bool gpu = chosen.info.kind != compute::DeviceKind::software_gpu && chosen.info.kind != compute::DeviceKind::cpu;
-    c.capabilities.fused_gain_cells = gpu ? std::int64_t{1} << 18 : 0;
-    c.capabilities.tiles_gain_cells = gpu ? std::int64_t{1} << 20 : 0;
+    c.tuning.fused_gain_cells = gpu ? std::int64_t{1} << 18 : 0;
+    c.tuning.tiles_gain_cells = gpu ? std::int64_t{1} << 20 : 0;
     c.capabilities.backend = "vulkan";
     c.capabilities.name = chosen.info.name;
     c.capabilities.driver = names_driver ? std::string(driver.driverName) + " " + driver.driverInfo

@@ -43,6 +43,7 @@ struct Context {
     bool lost = false;
     compute::DeviceOptions options;
     compute::Capabilities capabilities;
+    compute::Tuning tuning;
     compute::DeviceCounters counters;
 };
 

@@ -24,6 +24,7 @@ class VulkanDevice final : public compute::Device {
     }
 
     const compute::Capabilities& capabilities() const override { return context_->capabilities; }
+    const compute::Tuning& tuning() const override { return context_->tuning; }
 
     compute::DeviceCounters counters() const override {
         compute::DeviceCounters counters = context_->counters;

@@ -1,5 +1,5 @@
 #include "backends/vulkan/pipelines.hpp"
-#include "engine/compute/stage_table.hpp"
+#include "shaders/stage_table.hpp"
 #include <cstddef>
 
 namespace wadi::vulkan {

@@ -20,7 +20,7 @@ class Submissions final : public compute::HostSync {
 
     /// The uniform buffer that holds the inputs of the submission that runs, input_stride bytes apart.
     VkBuffer input_buffer() const { return inputs_.buffer; }
-    static constexpr VkDeviceSize input_stride = 2048; // a multiple of every device's minUniformBufferOffsetAlignment
+    static constexpr VkDeviceSize input_stride = 2304; // a multiple of every device's minUniformBufferOffsetAlignment
     /// The slot of the next submission, once its previous occupant has finished.
     Result<std::uint32_t> acquire();
     /// The slot's own command buffer, for programs that are recorded anew.

@@ -3,9 +3,9 @@
 #pragma once
 #include "engine/compute/host_sync.hpp"
 #include "engine/compute/lender.hpp"
-#include "engine/compute/params.hpp"
 #include "engine/compute/program.hpp"
 #include "engine/compute/status.hpp"
+#include "shaders/params.hpp"
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -38,9 +38,13 @@ struct Capabilities {
     bool exact_float = false; // measured: + - * / sqrt agree with the CPU in every bit
     bool timestamps = false;
     bool fused_stages = false;         // groups of fused_group_x x fused_group_y threads that share fused_shared_bytes
-    std::int64_t fused_gain_cells = 0; // cells of a grid from which fused stages are faster than one by one, measured; 0 = never
-    std::int64_t tiles_gain_cells = 0; // and from which active tiles may be, where few are awake, measured
     std::uint32_t queue_depth = 0;     // submissions in flight before submit() waits for the oldest
+};
+
+/// What was measured to be faster on devices of this kind. It changes no bit.
+struct Tuning {
+    std::int64_t fused_gain_cells = 0; // cells of a grid from which fused stages are faster than one by one; 0 = never
+    std::int64_t tiles_gain_cells = 0; // and from which active tiles may be, where few are awake
 };
 
 /// A host's own Vulkan device to run on instead of one that we open. Handles as Vulkan's, opaque here; all must outlive the
@@ -130,6 +134,7 @@ class Device {
     virtual ~Device() = default;
 
     virtual const Capabilities& capabilities() const = 0;
+    virtual const Tuning& tuning() const = 0;
     virtual DeviceCounters counters() const = 0;
 
     /// A linear buffer, filled with zeros. Errors: bad_argument (0 bytes, or above largest_buffer_bytes), out_of_memory.

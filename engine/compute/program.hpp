@@ -1,7 +1,7 @@
 // A Program as plain data: an ordered list of dispatches, copies, fills and timestamps, before any device sees it.
 #pragma once
-#include "engine/compute/params.hpp"
-#include "engine/compute/stage_table.hpp"
+#include "shaders/params.hpp"
+#include "shaders/stage_table.hpp"
 #include <cstdint>
 #include <string>
 #include <variant>

@@ -9,7 +9,7 @@
 //         material: u32 index of material_keys(), 0; f64 value
 #include "engine/edits/command_log.hpp"
 #include "engine/saves/sealed_bytes.hpp"
-#include "engine/settings/material_keys.hpp"
+#include "engine/settings/rules/material_keys.hpp"
 
 namespace wadi {
 

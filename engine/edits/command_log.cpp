@@ -1,6 +1,6 @@
 #include "engine/edits/command_log.hpp"
-#include "engine/settings/material_keys.hpp"
-#include "engine/step/prestress.hpp"
+#include "engine/settings/rules/material_keys.hpp"
+#include "engine/step/run/prestress.hpp"
 #include <algorithm>
 
 namespace wadi {

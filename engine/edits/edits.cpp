@@ -1,6 +1,6 @@
 #include "engine/edits/edits.hpp"
-#include "engine/settings/scripted_edits.hpp"
-#include "engine/step/step_number.hpp"
+#include "engine/settings/rules/scripted_edits.hpp"
+#include "engine/step/run/step_number.hpp"
 #include <algorithm>
 
 namespace wadi {
@@ -86,7 +86,7 @@ std::uint64_t Edits::undisturbed(std::uint64_t most) const {
 
 Status Edits::promote() {
     Content content = state_.content;
-    vec4 packed[EDIT_VECTORS];
+    EditInput packed;
     for (const Edit& edit : due_) {
         if (!pack_edit(edit, stamps_, state_.settings().grid, packed)) continue;
         const Content brought = content_brought(edit, stamps_);
@@ -106,8 +106,7 @@ Status Edits::submit() {
         input.step = stage_step(state_.steps);
         std::size_t taken = 0;
         for (; taken < due_.size() && input.edit_count < MAX_EDITS; ++taken) {
-            vec4* to = input.edit + EDIT_VECTORS * input.edit_count;
-            if (pack_edit(due_[taken], stamps_, state_.settings().grid, to)) ++input.edit_count;
+            if (pack_edit(due_[taken], stamps_, state_.settings().grid, input.edit[input.edit_count])) ++input.edit_count;
         }
         if (input.edit_count > 0) {
             state_.tiles().wake_edits(input);

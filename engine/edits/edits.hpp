@@ -1,8 +1,8 @@
 // Edits of a running world: brushes, stamps and bodies that push. They wait for their step and run on the device ahead of it.
 #pragma once
-#include "engine/settings/edit_checks.hpp"
-#include "engine/step/state_program.hpp"
-#include "engine/step/stepper.hpp"
+#include "engine/settings/rules/edit_checks.hpp"
+#include "engine/step/run/state_program.hpp"
+#include "engine/step/run/stepper.hpp"
 #include <map>
 #include <span>
 
@@ -55,7 +55,7 @@ class Edits {
     Material recorded_with_; // what program_ knows of sand in balance
 };
 
-/// Writes an edit as apply_edits reads it: EDIT_VECTORS vec4. False where it misses the grid. `stamps` by their number less 1.
-bool pack_edit(const Edit& edit, std::span<const Stamp> stamps, const Grid& grid, vec4* to);
+/// Writes an edit as apply_edits reads it. False where it misses the grid. `stamps` by their number less 1.
+bool pack_edit(const Edit& edit, std::span<const Stamp> stamps, const Grid& grid, EditInput& to);
 
 } // namespace wadi

@@ -5,7 +5,7 @@
 
 namespace wadi {
 
-bool pack_edit(const Edit& edit, std::span<const Stamp> stamps, const Grid& grid, vec4* to) {
+bool pack_edit(const Edit& edit, std::span<const Stamp> stamps, const Grid& grid, EditInput& to) {
     const auto f = [](double x) { return static_cast<float>(x); };
     // Whole 1/256 cells: distances to cell centres are then exact (shaders/physics/edit.glsl).
     const auto cells = [&](double metres) { return std::nearbyint(metres / grid.dx * 256) / 256; };
@@ -16,13 +16,20 @@ bool pack_edit(const Edit& edit, std::span<const Stamp> stamps, const Grid& grid
     if (std::max(x, x + along_x) + radius < 0 || std::min(x, x + along_x) - radius > grid.nx ||
         std::max(y, y + along_y) + radius < 0 || std::min(y, y + along_y) - radius > grid.ny)
         return false;
-    const float kind = static_cast<float>(edit.kind), layer = static_cast<float>(edit.layer);
-    to[0] = {f(x), f(y), f(along_x), f(along_y)};
+    to = {};
+    to.from_x = f(x);
+    to.from_y = f(y);
+    to.along_x = f(along_x);
+    to.along_y = f(along_y);
+    to.kind = static_cast<int>(edit.kind);
+    to.layer = static_cast<int>(edit.layer);
     if (is_stamp) {
         if (along_x <= 0 || along_y <= 0) return false; // narrower than 1/256 cell
         const auto& stamp = stamps[edit.stamp - 1];
-        to[1] = {f(stamp.nx), f(stamp.ny), static_cast<float>(stamp.page), kind};
-        to[2] = {f(edit.amount), layer, f(stamp.nx / along_x), f(stamp.ny / along_y)};
+        to.amount = f(edit.amount);
+        to.columns = stamp.nx;
+        to.rows = stamp.ny;
+        to.page = static_cast<int>(stamp.page);
         return true;
     }
     // A fade narrower than a cell would hit or miss middles of cells: a hard rim in its middle, by the share that it covers.
@@ -31,14 +38,18 @@ bool pack_edit(const Edit& edit, std::span<const Stamp> stamps, const Grid& grid
     const double rim = hard ? radius - fade / 2 : radius;
     const double length2 = along_x * along_x + along_y * along_y;
     constexpr double sharp = 1e30; // no falloff: weight 1 up to the radius
-    to[1] = {f(rim), edit.softness > 0 ? f(std::min(sharp, 1 / (edit.softness * radius))) : f(sharp),
-             length2 > 0 ? f(1 / length2) : 0.0F, kind};
+    to.radius = f(rim);
+    to.inv_fade = edit.softness > 0 ? f(std::min(sharp, 1 / (edit.softness * radius))) : f(sharp);
+    to.inv_length2 = length2 > 0 ? f(1 / length2) : 0.0F;
     if (edit.kind == EditKind::brush) {
         constexpr double small = 2; // cells: below it the rim bends within a cell
-        constexpr float parts = 8;
-        to[2] = {f(edit.amount), layer, !hard ? 0.0F : rim < small ? parts : 1.0F, 0};
+        constexpr int parts = 8;
+        to.amount = f(edit.amount);
+        to.rim_parts = !hard ? 0 : rim < small ? parts : 1;
     } else {
-        to[2] = {f(edit.strength), f(edit.velocity_x), f(edit.velocity_y), 0};
+        to.amount = f(edit.strength);
+        to.velocity_x = f(edit.velocity_x);
+        to.velocity_y = f(edit.velocity_y);
     }
     return true;
 }

@@ -1,9 +1,9 @@
 #include "engine/edits/regions.hpp"
-#include "engine/settings/messages.hpp"
-#include "engine/settings/quanta.hpp"
-#include "engine/step/ledger.hpp"
-#include "engine/step/prestress.hpp"
-#include "engine/step/world_params.hpp"
+#include "engine/settings/data/quanta.hpp"
+#include "engine/settings/rules/messages.hpp"
+#include "engine/step/plan/world_params.hpp"
+#include "engine/step/run/ledger.hpp"
+#include "engine/step/run/prestress.hpp"
 #include <algorithm>
 #include <cmath>
 

@@ -1,7 +1,7 @@
 // Rectangles of cells written by the host, between two steps. Every call waits for the device.
 #pragma once
 #include "engine/edits/edits.hpp"
-#include "engine/step/region.hpp"
+#include "engine/step/run/region.hpp"
 #include <span>
 
 namespace wadi {

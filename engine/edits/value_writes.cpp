@@ -1,6 +1,6 @@
 #include "engine/edits/value_writes.hpp"
-#include "engine/settings/effects.hpp"
-#include "engine/step/step_number.hpp"
+#include "engine/settings/rules/effects.hpp"
+#include "engine/step/run/step_number.hpp"
 #include <cstring>
 
 namespace wadi {
@@ -100,9 +100,8 @@ Status ValueWrites::write(EditLayer layer, const Region& region, const ValueSour
     }
     StepInput input{};
     input.step = stage_step(state_.steps);
-    const auto f = [](int cells) { return static_cast<float>(cells); };
-    input.edit[0] = {f(region.i0), f(region.j0), f(region.nx), f(region.ny)};
-    input.edit[1] = {static_cast<float>(layer), 0, 0, 0};
+    cover(region, input.edit[0]);
+    input.edit[0].layer = static_cast<int>(layer);
     if (auto ticket = program_.submit(input); !ticket) return ticket.status();
     constexpr int margin = 2; // as the stages look
     state_.tiles().wake(region.i0 - margin, region.j0 - margin, region.i0 + region.nx + margin, region.j0 + region.ny + margin);

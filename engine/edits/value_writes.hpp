@@ -1,9 +1,9 @@
 // Rectangles of cells written from values on the device or in the host's memory, without waiting: the stage write_values rounds,
 // checks and counts what write_region() does on the host.
 #pragma once
-#include "engine/step/region.hpp"
-#include "engine/step/state_program.hpp"
-#include "engine/step/stepper.hpp"
+#include "engine/step/run/region.hpp"
+#include "engine/step/run/state_program.hpp"
+#include "engine/step/run/stepper.hpp"
 #include <array>
 
 namespace wadi {

@@ -1,7 +1,7 @@
 // Turns the host's frames into water steps: fixed dt, bounded work per frame, never waiting for a slow device.
 #pragma once
 #include "engine/frames/step_clock.hpp"
-#include "engine/step/stepper.hpp"
+#include "engine/step/run/stepper.hpp"
 #include <array>
 
 namespace wadi {

@@ -1,6 +1,6 @@
 // Copies of published buffers in host memory, for hosts that share no API with the device: one frame late, never waited for.
 #pragma once
-#include "engine/step/world_state.hpp"
+#include "engine/step/run/world_state.hpp"
 #include <optional>
 #include <span>
 

@@ -1,5 +1,5 @@
 #include "engine/frames/output_tiles.hpp"
-#include "engine/step/step_number.hpp"
+#include "engine/step/run/step_number.hpp"
 #include <algorithm>
 #include <array>
 #include <cstring>

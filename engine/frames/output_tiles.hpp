@@ -1,7 +1,7 @@
 // Output tiles, of STRIP x STRIP cells, for a host's collision shapes: how high they reach, and when they last changed.
 #pragma once
-#include "engine/compute/params.hpp"
-#include "engine/step/region.hpp"
+#include "engine/step/run/region.hpp"
+#include "shaders/params.hpp"
 #include <cstdint>
 #include <span>
 

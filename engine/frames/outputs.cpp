@@ -1,5 +1,5 @@
 #include "engine/frames/outputs.hpp"
-#include "engine/step/step_number.hpp"
+#include "engine/step/run/step_number.hpp"
 #include <algorithm>
 
 namespace wadi {

@@ -2,7 +2,7 @@
 #pragma once
 #include "engine/frames/host_copies.hpp"
 #include "engine/frames/output_tiles.hpp"
-#include "engine/step/state_program.hpp"
+#include "engine/step/run/state_program.hpp"
 
 namespace wadi {
 

@@ -2,9 +2,9 @@
 #include "engine/level/coverage.hpp"
 #include "engine/level/lakes.hpp"
 #include "engine/level/layers.hpp"
-#include "engine/settings/messages.hpp"
-#include "engine/settings/quanta.hpp"
-#include "engine/settings/setting_table.hpp"
+#include "engine/settings/data/quanta.hpp"
+#include "engine/settings/data/setting_table.hpp"
+#include "engine/settings/rules/messages.hpp"
 #include "engine/threads/bands.hpp"
 #include <algorithm>
 #include <array>

@@ -1,6 +1,6 @@
 #include "engine/level/films.hpp"
-#include "engine/settings/messages.hpp"
-#include "engine/settings/setting_table.hpp"
+#include "engine/settings/data/setting_table.hpp"
+#include "engine/settings/rules/messages.hpp"
 #include <algorithm>
 #include <cmath>
 

@@ -1,6 +1,6 @@
 // Advice on flows thinner than the quantum of height can carry, and on sources that bring more than a cell takes.
 #pragma once
-#include "engine/settings/settings.hpp"
+#include "engine/settings/data/settings.hpp"
 #include <string>
 #include <vector>
 

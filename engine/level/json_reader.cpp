@@ -1,5 +1,5 @@
 #include "engine/level/json_reader.hpp"
-#include "engine/settings/messages.hpp"
+#include "engine/settings/rules/messages.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -5,7 +5,7 @@
 #include "engine/level/json_reader.hpp"
 #include "engine/level/level_files.hpp"
 #include "engine/level/shapes.hpp"
-#include "engine/settings/settings.hpp"
+#include "engine/settings/data/settings.hpp"
 #include <optional>
 #include <string>
 #include <utility>

@@ -3,7 +3,8 @@
 #include "engine/level/overrides.hpp"
 #include "engine/level/settings_reader.hpp"
 #include "engine/level/variants.hpp"
-#include "engine/settings/accuracy_presets.hpp"
+#include "engine/settings/data/accuracy_presets.hpp"
+#include "engine/settings/rules/checks.hpp"
 #include <algorithm>
 #include <filesystem>
 #include <new>

@@ -2,7 +2,7 @@
 #pragma once
 #include "engine/compute/status.hpp"
 #include "engine/image/map.hpp"
-#include "engine/settings/settings.hpp"
+#include "engine/settings/data/settings.hpp"
 #include <optional>
 #include <string>
 #include <vector>

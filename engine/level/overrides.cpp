@@ -1,9 +1,9 @@
 #include "engine/level/overrides.hpp"
 #include "engine/compute/available_memory.hpp"
-#include "engine/settings/accuracy_presets.hpp"
-#include "engine/settings/messages.hpp"
-#include "engine/settings/method_presets.hpp"
-#include "engine/settings/setting_table.hpp"
+#include "engine/settings/data/accuracy_presets.hpp"
+#include "engine/settings/data/method_presets.hpp"
+#include "engine/settings/data/setting_table.hpp"
+#include "engine/settings/rules/messages.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

@@ -1,6 +1,6 @@
 #include "engine/image/map.hpp"
 #include "engine/level/layers.hpp"
-#include "engine/settings/setting_table.hpp"
+#include "engine/settings/data/setting_table.hpp"
 #include <cstddef>
 
 namespace wadi {

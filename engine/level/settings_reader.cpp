@@ -1,6 +1,7 @@
 #include "engine/level/settings_reader.hpp"
-#include "engine/settings/method_presets.hpp"
-#include "engine/settings/setting_table.hpp"
+#include "engine/settings/data/method_presets.hpp"
+#include "engine/settings/data/setting_table.hpp"
+#include "engine/settings/rules/effects.hpp"
 #include <cstddef>
 
 namespace wadi {

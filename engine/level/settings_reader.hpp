@@ -2,7 +2,7 @@
 #pragma once
 #include "engine/level/json_reader.hpp"
 #include "engine/level/level_files.hpp"
-#include "engine/settings/settings.hpp"
+#include "engine/settings/data/settings.hpp"
 #include <string>
 
 namespace wadi {

@@ -2,9 +2,10 @@
 #include "engine/level/layers.hpp"
 #include "engine/level/level.hpp"
 #include "engine/level/overrides.hpp"
-#include "engine/settings/messages.hpp"
-#include "engine/settings/quanta.hpp"
-#include "engine/settings/setting_table.hpp"
+#include "engine/settings/data/quanta.hpp"
+#include "engine/settings/data/setting_table.hpp"
+#include "engine/settings/rules/checks.hpp"
+#include "engine/settings/rules/messages.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

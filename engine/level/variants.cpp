@@ -1,5 +1,5 @@
 #include "engine/level/variants.hpp"
-#include "engine/settings/messages.hpp"
+#include "engine/settings/rules/messages.hpp"
 
 namespace wadi {
 

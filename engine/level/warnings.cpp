@@ -2,8 +2,8 @@
 // Rules and constants: NUMERICS.md sections 2.4b, 2.4d, 2.7, 2.8 and 4.
 #include "engine/level/films.hpp"
 #include "engine/level/level.hpp"
-#include "engine/settings/messages.hpp"
-#include "engine/settings/setting_table.hpp"
+#include "engine/settings/data/setting_table.hpp"
+#include "engine/settings/rules/messages.hpp"
 #include "engine/threads/bands.hpp"
 #include <algorithm>
 #include <cmath>

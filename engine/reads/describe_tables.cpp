@@ -1,9 +1,9 @@
 #include "engine/reads/describe_tables.hpp"
-#include "engine/compute/stage_table.hpp"
-#include "engine/settings/effects.hpp"
-#include "engine/settings/messages.hpp"
-#include "engine/settings/setting_table.hpp"
-#include "engine/step/step_plan.hpp"
+#include "engine/settings/data/setting_table.hpp"
+#include "engine/settings/rules/effects.hpp"
+#include "engine/settings/rules/messages.hpp"
+#include "engine/step/plan/step_plan.hpp"
+#include "shaders/stage_table.hpp"
 #include <algorithm>
 #include <vector>
 

@@ -1,7 +1,7 @@
 // What the state is at points of the world: asked in batches, answered some time later, never waiting for the device.
 #pragma once
-#include "engine/step/state_program.hpp"
-#include "engine/step/stepper.hpp"
+#include "engine/step/run/state_program.hpp"
+#include "engine/step/run/stepper.hpp"
 #include <span>
 
 namespace wadi {

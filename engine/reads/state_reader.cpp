@@ -1,7 +1,7 @@
 #include "engine/reads/state_reader.hpp"
-#include "engine/settings/quanta.hpp"
-#include "engine/step/active_count.hpp"
-#include "engine/step/world_params.hpp"
+#include "engine/settings/data/quanta.hpp"
+#include "engine/step/plan/world_params.hpp"
+#include "engine/step/run/active_count.hpp"
 #include "engine/threads/bands.hpp"
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
 // Reading a world's state between two steps on the host: fields, ledger, statistics, hash. Every call waits for the device.
 #pragma once
-#include "engine/step/ledger.hpp"
-#include "engine/step/region.hpp"
-#include "engine/step/state_program.hpp"
-#include "engine/step/stepper.hpp"
+#include "engine/step/run/ledger.hpp"
+#include "engine/step/run/region.hpp"
+#include "engine/step/run/state_program.hpp"
+#include "engine/step/run/stepper.hpp"
 #include <functional>
 #include <span>
 

@@ -1,7 +1,7 @@
 // Earlier states on the device, to go back to.
 #pragma once
-#include "engine/step/state_program.hpp"
-#include "engine/step/stepper.hpp"
+#include "engine/step/run/state_program.hpp"
+#include "engine/step/run/stepper.hpp"
 
 namespace wadi {
 

@@ -5,7 +5,7 @@
 //     24  u64      checksum of all other bytes
 #pragma once
 #include "engine/compute/status.hpp"
-#include "engine/settings/checksum.hpp"
+#include "engine/settings/rules/checksum.hpp"
 #include <cstddef>
 #include <cstdint>
 #include <cstring>

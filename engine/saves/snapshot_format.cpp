@@ -1,5 +1,6 @@
 #include "engine/saves/snapshot_format.hpp"
-#include "engine/settings/material_keys.hpp"
+#include "engine/settings/rules/checks.hpp"
+#include "engine/settings/rules/material_keys.hpp"
 #include <cstring>
 
 namespace wadi {

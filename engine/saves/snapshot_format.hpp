@@ -18,7 +18,7 @@
 //      .  the fields in that order, as they lie on the device, ghosts and padding included
 #pragma once
 #include "engine/saves/sealed_bytes.hpp"
-#include "engine/step/stepper.hpp"
+#include "engine/step/run/stepper.hpp"
 #include <cstddef>
 #include <span>
 

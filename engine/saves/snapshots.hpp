@@ -3,7 +3,7 @@
 #include "engine/saves/roll_back.hpp"
 #include "engine/saves/snapshot_format.hpp"
 #include "engine/saves/worker.hpp"
-#include "engine/step/state_program.hpp"
+#include "engine/step/run/state_program.hpp"
 #include <optional>
 
 namespace wadi {

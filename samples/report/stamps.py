@@ -20,9 +20,9 @@ ROW = re.compile(r"\| `([^`]+)` \| `([0-9a-f]+)` \| (.+) \|")
 
 PARTS = {  # what decides the state after a step, whatever runs it
     "stages": tuple(f"shaders/stages/{room}/*.stage" for room in ("boundary", "layer", "sand", "water")) + ("shaders/step_params.h",),
-    "step": ("engine/step/step_plan.cpp", "engine/step/world_params.cpp", "engine/step/step_inputs.cpp", "engine/step/initial_fields.cpp",
-             "engine/step/prestress.cpp", "engine/step/source_shapes.cpp"),
-    "defaults": ("engine/settings/settings.hpp", "engine/settings/method_presets.cpp"),
+    "step": ("engine/step/plan/step_plan.cpp", "engine/step/plan/world_params.cpp", "engine/step/run/step_inputs.cpp", "engine/step/run/initial_fields.cpp",
+             "engine/step/run/prestress.cpp", "engine/step/plan/source_shapes.cpp"),
+    "defaults": ("engine/settings/data/settings.hpp", "engine/settings/data/method_presets.cpp"),
     "levels": ("samples/levels/*/level.json",),
 }
 SAND_LAB = tuple(f"tests/sand/{name}.py" for name in ("columns", "cuts", "scene", "shapes"))

@@ -7,14 +7,14 @@
 #define STAMP_SAMPLES 8 // most samples of a stamp along a side of a cell
 
 // Weight at (x, y) of a capsule: 1 inside, falling to 0 at its radius over 1/inv_fade by 3 s^2 - 2 s^3. Length 0: a disc.
-FN float capsule_weight(float x, float y, vec4 segment, float radius, float inv_fade, float inv_length2) {
-    float rx = x - segment.x;
-    float ry = y - segment.y;
-    float along = wclamp((rx * segment.z + ry * segment.w) * inv_length2, 0.0f, 1.0f);
-    float ax = rx - along * segment.z;
-    float ay = ry - along * segment.w;
-    float inside = radius - wsqrt(ax * ax + ay * ay);
-    float s = wclamp(inside * inv_fade, 0.0f, 1.0f);
+FN float capsule_weight(float x, float y, EditInput edit) {
+    float rx = x - edit.from_x;
+    float ry = y - edit.from_y;
+    float along = wclamp((rx * edit.along_x + ry * edit.along_y) * edit.inv_length2, 0.0f, 1.0f);
+    float ax = rx - along * edit.along_x;
+    float ay = ry - along * edit.along_y;
+    float inside = edit.radius - wsqrt(ax * ax + ay * ay);
+    float s = wclamp(inside * edit.inv_fade, 0.0f, 1.0f);
     return s * s * (3.0f - 2.0f * s);
 }
 
@@ -30,23 +30,24 @@ FN float covered_share(float inside, float a, float b) {
     return inside > 0.0f ? 1.0f - tail : tail;
 }
 
-// Share of the cell at (x, y) that a capsule with a hard rim covers, from parts x parts squares in which the rim counts as straight.
+// Share of the cell at (x, y) that a capsule with a hard rim covers, from rim_parts x rim_parts squares in which the rim counts as straight.
 // Where it bends round an end, the mean distance over a square of side h is that of its middle and h^2/12 more, squared. Shares
 // are whole 2^-18, so that sums of 64 are exact: their order does not count.
-FN float capsule_share(float x, float y, vec4 segment, float radius, float inv_length2, int parts) {
+FN float capsule_share(float x, float y, EditInput edit) {
+    int parts = edit.rim_parts;
     float h = wdiv(1.0f, float(parts));
     float sum = 0.0f;
     for (int q = 0; q < parts; ++q) {
         for (int p = 0; p < parts; ++p) {
-            float rx = x - 0.5f + (float(p) + 0.5f) * h - segment.x;
-            float ry = y - 0.5f + (float(q) + 0.5f) * h - segment.y;
-            float along = wclamp((rx * segment.z + ry * segment.w) * inv_length2, 0.0f, 1.0f);
-            float ax = rx - along * segment.z;
-            float ay = ry - along * segment.w;
+            float rx = x - 0.5f + (float(p) + 0.5f) * h - edit.from_x;
+            float ry = y - 0.5f + (float(q) + 0.5f) * h - edit.from_y;
+            float along = wclamp((rx * edit.along_x + ry * edit.along_y) * edit.inv_length2, 0.0f, 1.0f);
+            float ax = rx - along * edit.along_x;
+            float ay = ry - along * edit.along_y;
             float square_of = ax * ax + ay * ay;
             float distance = wsqrt(square_of);
             bool bent = along <= 0.0f || along >= 1.0f;
-            float inside = radius - (bent ? wsqrt(square_of + h * h * 0.0833333333f) : distance);
+            float inside = edit.radius - (bent ? wsqrt(square_of + h * h * 0.0833333333f) : distance);
             float share = covered_share(inside, h * divide_or_zero(ax, distance), h * divide_or_zero(ay, distance));
             sum += wtrunc(share * 262144.0f + 0.5f);
         }

@@ -1,7 +1,7 @@
 // Fused files: several stages as one pass over windows in shared memory, written from the stages' own text (shaders/README.md,
 // "Fused stages").
 #pragma once
-#include "engine/compute/stage_table.hpp"
+#include "shaders/stage_table.hpp"
 #include "stage_file.hpp"
 
 namespace stagec {

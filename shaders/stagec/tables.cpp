@@ -32,7 +32,7 @@ std::string stage_table(const std::vector<std::string>& paths, const Effects& ef
         }
     }
     std::ostringstream o;
-    o << "// Written by stagec from the stage files.\n#include \"engine/compute/stage_table.hpp\"\n#include <array>\nnamespace "
+    o << "// Written by stagec from the stage files.\n#include \"shaders/stage_table.hpp\"\n#include <array>\nnamespace "
          "wadi::compute {\nnamespace {\n";
     for (const auto& fused : stages) {
         const Stage& s = fused.stage;

@@ -1,6 +1,6 @@
 // Comparison of a device's field with the reference, by a tolerance that is computed and not chosen; guards round buffers.
 #pragma once
-#include "engine/compute/stage_table.hpp"
+#include "shaders/stage_table.hpp"
 #include "tests/conformance/case.hpp"
 #include <cstddef>
 #include <span>

@@ -1,5 +1,5 @@
 // The device as a whole: capabilities, loss, several devices, planned barriers, group sizes, and steps that allocate nothing.
-#include "engine/step/world_params.hpp"
+#include "engine/step/plan/world_params.hpp"
 #include "tests/conformance/compare.hpp"
 #include "tests/conformance/contracts.hpp"
 #include "tests/conformance/masks.hpp"

@@ -1,4 +1,4 @@
-#include "engine/step/world_params.hpp"
+#include "engine/step/plan/world_params.hpp"
 #include "tests/conformance/contracts.hpp"
 #include "tests/conformance/inputs.hpp"
 #include <cstring>

@@ -318,7 +318,7 @@ Stamp stamp_of_cases() {
 void add_edits(const Scene& scene, StepInput& input) {
     const std::vector<Stamp> stamps = {stamp_of_cases()};
     for (const Edit& edit : edits_of(scene)) {
-        if (pack_edit(edit, stamps, scene.settings.grid, input.edit + EDIT_VECTORS * input.edit_count)) ++input.edit_count;
+        if (pack_edit(edit, stamps, scene.settings.grid, input.edit[input.edit_count])) ++input.edit_count;
     }
 }
 

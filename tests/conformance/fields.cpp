@@ -1,5 +1,5 @@
 #include "tests/conformance/fields.hpp"
-#include "engine/step/step_plan.hpp"
+#include "engine/step/plan/step_plan.hpp"
 #include <algorithm>
 #include <map>
 

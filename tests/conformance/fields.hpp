@@ -1,6 +1,6 @@
 // Between Wadi's fields (one ghosted layout, V - I, pitch) and the reference solver's dense arrays.
 #pragma once
-#include "engine/compute/stage_table.hpp"
+#include "shaders/stage_table.hpp"
 #include "tests/reference/solver.hpp"
 #include <string>
 #include <vector>

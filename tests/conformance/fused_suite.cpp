@@ -1,6 +1,6 @@
 // Suite 5: each fused stage against the stages that it stands for, in bits: two plans of one step, with and without fused stages,
 // from the same state on the same device. A tile that is cut wrongly differs at its rim, so that grids end inside and at tiles.
-#include "engine/step/step_inputs.hpp"
+#include "engine/step/run/step_inputs.hpp"
 #include "tests/conformance/case.hpp"
 #include "tests/conformance/masks.hpp"
 #include "tests/conformance/pass_runner.hpp"

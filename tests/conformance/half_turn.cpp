@@ -1,5 +1,5 @@
 #include "tests/conformance/half_turn.hpp"
-#include "engine/step/world_params.hpp"
+#include "engine/step/plan/world_params.hpp"
 #include "tests/conformance/bench.hpp"
 #include "tests/conformance/target.hpp"
 #include <array>

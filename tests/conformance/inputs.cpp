@@ -1,5 +1,5 @@
 #include "tests/conformance/inputs.hpp"
-#include "engine/settings/effects.hpp"
+#include "engine/settings/rules/effects.hpp"
 #include <algorithm>
 #include <array>
 #include <charconv>

@@ -1,7 +1,7 @@
 // Inputs of the cases: grids, scenes and choices of method, by the names that case strings use.
 #pragma once
 #include "engine/compute/status.hpp"
-#include "engine/settings/settings.hpp"
+#include "engine/settings/data/settings.hpp"
 #include <cstdint>
 #include <span>
 #include <string>

@@ -1,5 +1,5 @@
 // Suite 4: what must hold in any scene after many steps.
-#include "engine/step/world_params.hpp"
+#include "engine/step/plan/world_params.hpp"
 #include "tests/conformance/compare.hpp"
 #include "tests/conformance/effect_sets.hpp"
 #include "tests/conformance/half_turn.hpp"

@@ -1,6 +1,6 @@
 #include "tests/conformance/masks.hpp"
-#include "engine/settings/effects.hpp"
-#include "engine/step/step_plan.hpp"
+#include "engine/settings/rules/effects.hpp"
+#include "engine/step/plan/step_plan.hpp"
 #include <algorithm>
 #include <bit>
 #include <map>

@@ -2,7 +2,7 @@
 // runs in one go, taken apart to find the first pass that differs, or to time each.
 #pragma once
 #include "engine/compute/device.hpp"
-#include "engine/step/step_plan.hpp"
+#include "engine/step/plan/step_plan.hpp"
 #include "tests/conformance/inputs.hpp"
 #include <array>
 #include <map>

@@ -1,6 +1,6 @@
 #include "tests/conformance/perf.hpp"
 #include "engine/edits/edits.hpp"
-#include "engine/step/step_inputs.hpp"
+#include "engine/step/run/step_inputs.hpp"
 #include "tests/conformance/masks.hpp"
 #include "tests/conformance/pass_runner.hpp"
 #include "tests/conformance/report.hpp"
@@ -299,7 +299,7 @@ Status measure_host_work(Device& device, int size, const PerfOptions& options, s
     edit.radius = 32 * dx;
     edit.softness = 0.5;
     edit.amount = 0; // the same work, and the state stays what it is
-    brush.edit_count = pack_edit(edit, {}, scene->settings.grid, brush.edit) ? 1 : 0;
+    brush.edit_count = pack_edit(edit, {}, scene->settings.grid, brush.edit[0]) ? 1 : 0;
     query.point_count = points;
     if (status)
         status = measure_beside_step(device, runner, "apply_edits", brush, extra, {.name = "one brush of 64 cells", .size = size},
@@ -373,7 +373,7 @@ Status run_perf(Session& session, const PerfOptions& options, bool first) {
         return status;
     };
     std::vector<bool> kinds = {false};
-    if ((*device)->capabilities().fused_gain_cells > 0) kinds.push_back(true);
+    if ((*device)->tuning().fused_gain_cells > 0) kinds.push_back(true);
     for (int size = options.min_size; size <= options.max_size; size *= 2) {
         for (const bool fused : kinds)
             if (auto status = told(measure_stages(**device, size, fused, options, rows)); !status) return status;

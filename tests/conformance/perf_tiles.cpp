@@ -73,7 +73,7 @@ Status run_perf_tiles(Session& session, const PerfTilesOptions& options) {
         if (!scene) return scene.status();
         std::optional<std::uint64_t> expected;
         for (const bool fused : {false, true}) {
-            if (fused && (*device)->capabilities().fused_gain_cells == 0) continue;
+            if (fused && (*device)->tuning().fused_gain_cells == 0) continue;
             if (!fused && options.fused_only) continue;
             scene->settings.fused_stages = fused ? FusedStages::always : FusedStages::never;
             for (const int side : options.tiles) {

@@ -1,7 +1,7 @@
 // What most of these tests include, for CMake to precompile. A file includes what it uses all the same: preset dev compiles
 // without.
 #pragma once
-#include "engine/step/world_params.hpp"
+#include "engine/step/plan/world_params.hpp"
 #include "tests/conformance/case.hpp"
 #include "tests/conformance/worlds.hpp"
 #include <algorithm>

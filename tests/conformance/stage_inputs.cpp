@@ -1,5 +1,5 @@
 #include "tests/conformance/stage_inputs.hpp"
-#include "engine/step/source_shapes.hpp"
+#include "engine/step/plan/source_shapes.hpp"
 #include "tests/conformance/active_tiles_check.hpp"
 #include "tests/conformance/compare.hpp"
 #include "tests/conformance/edits_check.hpp"

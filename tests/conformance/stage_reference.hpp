@@ -1,6 +1,6 @@
 // The reference solver, stage by stage, under the names of Wadi's stages.
 #pragma once
-#include "engine/step/step_inputs.hpp"
+#include "engine/step/run/step_inputs.hpp"
 #include "tests/conformance/inputs.hpp"
 #include "tests/reference/solver.hpp"
 #include <memory>

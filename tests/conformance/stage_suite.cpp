@@ -1,5 +1,5 @@
 #include "tests/conformance/stage_suite.hpp"
-#include "engine/step/world_params.hpp"
+#include "engine/step/plan/world_params.hpp"
 #include "tests/conformance/active_tiles_check.hpp"
 #include "tests/conformance/compare.hpp"
 #include "tests/conformance/edits_check.hpp"

@@ -1,5 +1,5 @@
 #include "tests/conformance/values_check.hpp"
-#include "engine/step/region.hpp"
+#include "engine/step/run/region.hpp"
 #include "tests/conformance/stage_inputs.hpp"
 #include "tests/reference/solver.hpp"
 #include <algorithm>
@@ -158,9 +158,8 @@ Verdict check_ledger(const StageRun& run) {
 
 void add_values(const Scene& scene, StepInput& input) {
     const Region region = region_of(scene);
-    const auto f = [](int cells) { return static_cast<float>(cells); };
-    input.edit[0] = {f(region.i0), f(region.j0), f(region.nx), f(region.ny)};
-    input.edit[1] = {f(layer_of(scene)), 0, 0, 0};
+    cover(region, input.edit[0]);
+    input.edit[0].layer = layer_of(scene);
 }
 
 std::vector<float> values_of_cases(const Scene& scene) {

@@ -1,6 +1,6 @@
 // A fuzzed case: a world, what a host does to it, and how long it runs.
 #pragma once
-#include "engine/settings/edit.hpp"
+#include "engine/settings/data/edit.hpp"
 #include "tests/conformance/inputs.hpp"
 #include <cstdint>
 #include <string>

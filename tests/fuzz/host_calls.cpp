@@ -1,5 +1,5 @@
 // What a host does to a running world, and the log of it.
-#include "engine/settings/material_keys.hpp"
+#include "engine/settings/rules/material_keys.hpp"
 #include "tests/fuzz/run.hpp"
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,6 @@
 // A case as a level file, so that whoever gets it can open it in the recorder and the viewer.
 #include "engine/level/level.hpp"
-#include "engine/settings/setting_table.hpp"
+#include "engine/settings/data/setting_table.hpp"
 #include "tests/fuzz/fuzz_case.hpp"
 #include <cmath>
 #include <cstring>

@@ -1,4 +1,4 @@
-#include "engine/settings/method_presets.hpp"
+#include "engine/settings/data/method_presets.hpp"
 #include "tests/fuzz/fuzz_case.hpp"
 #include "tests/fuzz/random.hpp"
 #include <algorithm>

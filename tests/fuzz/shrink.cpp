@@ -1,5 +1,5 @@
 // Greedy: whatever can go without the failure going stays away.
-#include "engine/settings/setting_table.hpp"
+#include "engine/settings/data/setting_table.hpp"
 #include "tests/fuzz/checks.hpp"
 #include <chrono>
 #include <functional>

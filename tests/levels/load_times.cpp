@@ -1,7 +1,7 @@
 // wadi-load-times: how long the shipped levels take to load, on one thread and on several, and whether they load to the same
 // bits. Usage: wadi-load-times SIZE THREADS [LEVEL ...]; the levels are drawn on SIZE x SIZE cells.
 #include "engine/level/level.hpp"
-#include "engine/settings/checksum.hpp"
+#include "engine/settings/rules/checksum.hpp"
 #include "engine/threads/bands.hpp"
 #include <chrono>
 #include <cstdio>

@@ -2,7 +2,7 @@
 // equations alone and sharing no code with either. Closed walls, two layers of water, elastoplastic sand. Where the print is
 // wrong or silent it reads as engine/NUMERICS.md 0.1 says. Judges method `published` in whole steps.
 #pragma once
-#include "engine/settings/settings.hpp"
+#include "engine/settings/data/settings.hpp"
 #include <algorithm>
 #include <array>
 #include <cmath>

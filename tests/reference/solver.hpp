@@ -2,7 +2,7 @@
 // written without looking at the stages, in float or double. Plain loops, every intermediate field public, so that a
 // single stage can be compared with a backend's. Choices where the page is silent: README.md.
 #pragma once
-#include "engine/settings/settings.hpp"
+#include "engine/settings/data/settings.hpp"
 #include "tests/reference/grid.hpp"
 #include <array>
 #include <cstdint>

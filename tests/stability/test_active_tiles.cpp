@@ -1,7 +1,7 @@
 // Active tiles leave tiles out of a step in which nothing changes any more. Every bit must be that of the dense run: step by
 // step, with all that can wake a tile, and after a long rest.
-#include "engine/settings/material_keys.hpp"
-#include "engine/settings/method_presets.hpp"
+#include "engine/settings/data/method_presets.hpp"
+#include "engine/settings/rules/material_keys.hpp"
 #include "tests/support/worlds.hpp"
 #include <algorithm>
 #include <cmath>

@@ -28,6 +28,7 @@ class FaultyDevice final : public Device {
     }
 
     const compute::Capabilities& capabilities() const override { return device_.capabilities(); }
+    const compute::Tuning& tuning() const override { return device_.tuning(); }
     compute::DeviceCounters counters() const override { return device_.counters(); }
     Result<compute::Buffer> create_buffer(const compute::BufferDesc& desc) override {
         if (auto status = fault(); !status) return status;

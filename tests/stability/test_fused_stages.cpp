@@ -1,6 +1,6 @@
 // Fused stages run several stages in one pass over tiles. Every bit must be that of the stages one by one, on every backend, for
 // every level, in parts, after edits that change the effects, and across snapshots.
-#include "engine/settings/method_presets.hpp"
+#include "engine/settings/data/method_presets.hpp"
 #include "tests/support/worlds.hpp"
 #include <doctest/doctest.h>
 

@@ -1,7 +1,7 @@
 // Worlds that run for months: steps beyond what an int holds.
 #include "engine/saves/sealed_bytes.hpp"
 #include "engine/saves/snapshot_format.hpp"
-#include "engine/step/step_number.hpp"
+#include "engine/step/run/step_number.hpp"
 #include "tests/support/worlds.hpp"
 #include <doctest/doctest.h>
 

@@ -1,6 +1,6 @@
 // What a game calls every frame does not wait for the device: not after a promotion or a change of the material either, when
 // programs are recorded anew.
-#include "engine/settings/material_keys.hpp"
+#include "engine/settings/rules/material_keys.hpp"
 #include "tests/support/worlds.hpp"
 #include <doctest/doctest.h>
 

@@ -1,6 +1,6 @@
 // Worlds that gain and lose materials while they run: the same bits as one that could hold all from the start, and no more
 // passes and memory than what they hold calls for.
-#include "engine/settings/method_presets.hpp"
+#include "engine/settings/data/method_presets.hpp"
 #include "tests/stability/quality.hpp"
 #include <cmath>
 #include <doctest/doctest.h>

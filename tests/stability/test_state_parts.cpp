@@ -1,6 +1,6 @@
 // Fields too large to pass between host and device at once: written, read, counted and hashed in parts, on several threads.
-#include "engine/settings/quanta.hpp"
-#include "engine/step/field_store.hpp"
+#include "engine/settings/data/quanta.hpp"
+#include "engine/step/run/field_store.hpp"
 #include "engine/threads/bands.hpp"
 #include "tests/support/worlds.hpp"
 #include <bit>

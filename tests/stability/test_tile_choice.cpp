@@ -1,5 +1,5 @@
 // A world that chooses for itself whether its steps run over active tiles: the choice by itself, and that it changes no bit.
-#include "engine/step/tile_choice.hpp"
+#include "engine/step/run/tile_choice.hpp"
 #include "tests/support/worlds.hpp"
 #include <algorithm>
 #include <cmath>

@@ -16,6 +16,7 @@ class BorrowedDevice final : public compute::Device {
     }
 
     const compute::Capabilities& capabilities() const override { return device_.capabilities(); }
+    const compute::Tuning& tuning() const override { return device_.tuning(); }
     compute::DeviceCounters counters() const override { return device_.counters(); }
     Result<compute::Buffer> create_buffer(const compute::BufferDesc& desc) override {
         auto made = device_.create_buffer(desc);

@@ -1,6 +1,6 @@
 // engine/threads: work shared among threads, and levels that load to the same bits whatever the number.
 #include "engine/level/level.hpp"
-#include "engine/settings/quanta.hpp"
+#include "engine/settings/data/quanta.hpp"
 #include "engine/threads/bands.hpp"
 #include <atomic>
 #include <cerrno>

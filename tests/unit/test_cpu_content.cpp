@@ -2,7 +2,7 @@
 // each field that a stage names is needed: without it some bits differ.
 #include "backends/cpu/content.hpp"
 #include "backends/registry.hpp"
-#include "engine/step/world_params.hpp"
+#include "engine/step/plan/world_params.hpp"
 #include "tests/support/worlds.hpp"
 #include <array>
 #include <cstring>

@@ -1,5 +1,5 @@
 // What tests/fuzz draws: every setting that levels have, also at the ends of its range and next to nothing.
-#include "engine/settings/setting_table.hpp"
+#include "engine/settings/data/setting_table.hpp"
 #include "tests/fuzz/fuzz_case.hpp"
 #include <doctest/doctest.h>
 #include <map>

@@ -1,6 +1,6 @@
 // The level digest: that of the levels that ship, as snapshots and command logs hold it.
-#include "engine/settings/level_digest.hpp"
-#include "engine/settings/setting_table.hpp"
+#include "engine/settings/data/setting_table.hpp"
+#include "engine/settings/rules/level_digest.hpp"
 #include "tests/unit/level_text.hpp"
 #include <doctest/doctest.h>
 

@@ -1,7 +1,7 @@
-// engine/level/read_edits.cpp and engine/settings/scripted_edits.cpp: edits in a level, their times, ranges and stretching.
+// engine/level/read_edits.cpp and engine/settings/rules/scripted_edits.cpp: edits in a level, their times, ranges and stretching.
 #include "engine/saves/snapshot_format.hpp"
-#include "engine/settings/level_digest.hpp"
-#include "engine/settings/scripted_edits.hpp"
+#include "engine/settings/rules/level_digest.hpp"
+#include "engine/settings/rules/scripted_edits.hpp"
 #include "tests/unit/level_text.hpp"
 #include <doctest/doctest.h>
 

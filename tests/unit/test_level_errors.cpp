@@ -1,5 +1,5 @@
 // engine/level: every class of wrong level file, and random damage.
-#include "engine/settings/messages.hpp"
+#include "engine/settings/rules/messages.hpp"
 #include "tests/unit/level_text.hpp"
 #include "tests/unit/map_files.hpp"
 #include <chrono>

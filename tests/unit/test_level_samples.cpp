@@ -1,6 +1,6 @@
 // engine/level: warnings with their numbers, the levels that ship and their schema.
 #include "engine/level/json_reader.hpp"
-#include "engine/settings/setting_table.hpp"
+#include "engine/settings/data/setting_table.hpp"
 #include "tests/unit/level_text.hpp"
 #include <algorithm>
 #include <cmath>

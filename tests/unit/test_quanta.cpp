@@ -1,4 +1,4 @@
-#include "engine/settings/quanta.hpp"
+#include "engine/settings/data/quanta.hpp"
 #include <doctest/doctest.h>
 #include <limits>
 

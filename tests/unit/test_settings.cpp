@@ -1,7 +1,7 @@
-// validate() and TimeSeries of engine/settings/settings.hpp.
-#include "engine/settings/messages.hpp"
-#include "engine/settings/method_presets.hpp"
-#include "engine/settings/setting_table.hpp"
+// validate() and TimeSeries of engine/settings/data/settings.hpp.
+#include "engine/settings/rules/messages.hpp"
+#include "engine/settings/data/method_presets.hpp"
+#include "engine/settings/data/setting_table.hpp"
 #include "tests/unit/level_text.hpp"
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
-// How sources' boxes are cut into pieces for apply_sources: engine/step/source_shapes.hpp.
-#include "engine/step/source_shapes.hpp"
+// How sources' boxes are cut into pieces for apply_sources: engine/step/plan/source_shapes.hpp.
+#include "engine/step/plan/source_shapes.hpp"
 #include <algorithm>
 #include <cmath>
 #include <doctest/doctest.h>

@@ -1,7 +1,7 @@
 // Effects decide which passes and buffers exist: checked for every legal mask.
-#include "engine/settings/effects.hpp"
-#include "engine/settings/method_presets.hpp"
-#include "engine/step/step_plan.hpp"
+#include "engine/settings/rules/effects.hpp"
+#include "engine/settings/data/method_presets.hpp"
+#include "engine/step/plan/step_plan.hpp"
 #include "tests/support/worlds.hpp"
 #include <algorithm>
 #include <doctest/doctest.h>
@@ -317,7 +317,7 @@ TEST_CASE(
 }
 
 TEST_CASE("fields: a name without a row is refused; no name, number or symbol stands in two rows") {
-    CHECK_THROWS_WITH(field_row("sand_hight"), "the field 'sand_hight' has no row in engine/step/field_table.cpp");
+    CHECK_THROWS_WITH(field_row("sand_hight"), "the field 'sand_hight' has no row in engine/step/plan/field_table.cpp");
     CHECK(find_field("sand_height_water") == nullptr); // lists of tiles are two, fields are not
     CHECK(&field_row("active_list_sand") == &field_row("active_list"));
     std::set<std::string_view> names, symbols;

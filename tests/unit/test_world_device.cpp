@@ -1,6 +1,6 @@
 #include "backends/registry.hpp"
-#include "engine/step/named_buffers.hpp"
-#include "engine/step/world_device.hpp"
+#include "engine/step/run/named_buffers.hpp"
+#include "engine/step/run/world_device.hpp"
 #include <array>
 #include <doctest/doctest.h>
 

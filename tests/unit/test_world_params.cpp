@@ -1,7 +1,8 @@
 // What the stages are given of a world's settings: numbers that a float holds, whatever the settings are.
-#include "engine/settings/method_presets.hpp"
-#include "engine/settings/setting_table.hpp"
-#include "engine/step/world_params.hpp"
+#include "engine/settings/data/method_presets.hpp"
+#include "engine/settings/data/setting_table.hpp"
+#include "engine/settings/rules/checks.hpp"
+#include "engine/step/plan/world_params.hpp"
 #include <array>
 #include <bit>
 #include <cmath>

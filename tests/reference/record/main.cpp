@@ -1,7 +1,7 @@
 // Runs a level by the reference solver in double precision, without quantum, and writes its fields as NPY: what samples/report
 // measures errors against where no exact solution is known.
 #include "engine/level/level.hpp"
-#include "engine/settings/effects.hpp"
+#include "engine/settings/rules/effects.hpp"
 #include "samples/recorder/files.hpp"
 #include "tests/reference/solver.hpp"
 #include <CLI/CLI.hpp>

@@ -1,6 +1,6 @@
 // Explicit drag and Laplacian diffusion of the method published (NUMERICS 2.14, 2.15) beside our forms: a lake over saturated
 // sand shows both faults, and explicit drag its bound.
-#include "engine/settings/method_presets.hpp"
+#include "engine/settings/data/method_presets.hpp"
 #include "tests/support/worlds.hpp"
 #include <cmath>
 #include <doctest/doctest.h>

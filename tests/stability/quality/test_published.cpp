@@ -1,6 +1,6 @@
 // Method `published` against a reading of the paper's Algorithm 1 that shares no code with it (tests/reference/printed.hpp), in
 // whole steps; what differs a little from the paper must show.
-#include "engine/settings/method_presets.hpp"
+#include "engine/settings/data/method_presets.hpp"
 #include "tests/reference/printed.hpp"
 #include "tests/support/worlds.hpp"
 #include <cmath>

@@ -1,5 +1,5 @@
 // Lakes and piles with quantum and rest rule off: rounding stays rounding, for thousands of steps.
-#include "engine/settings/method_presets.hpp"
+#include "engine/settings/data/method_presets.hpp"
 #include "tests/stability/quality.hpp"
 
 using namespace wadi;

@@ -1,5 +1,5 @@
 // What of the deformation gradient moves with the sand (NUMERICS 2.5, 2.13): backends agree, and each form is another one.
-#include "engine/settings/method_presets.hpp"
+#include "engine/settings/data/method_presets.hpp"
 #include "tests/support/worlds.hpp"
 #include <cmath>
 #include <doctest/doctest.h>

@@ -1,5 +1,5 @@
 // Semi-Lagrangian velocities of the method published beside the flux form (NUMERICS 2.12).
-#include "engine/settings/method_presets.hpp"
+#include "engine/settings/data/method_presets.hpp"
 #include "tests/support/worlds.hpp"
 #include <cmath>
 #include <doctest/doctest.h>

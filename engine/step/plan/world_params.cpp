@@ -1,0 +1,177 @@
+#include "engine/step/plan/world_params.hpp"
+#include "engine/step/plan/source_shapes.hpp"
+#include <algorithm>
+#include <cmath>
+
+namespace wadi {
+
+namespace {
+
+// Neutral values that switch a guard off without a branch. Large, but far from overflow in what the stages do with them.
+constexpr float off = 1e30F;
+constexpr float gravity_cap_off = 1e9F;
+constexpr double steep = 1e9; // slope of a wedge that limits nothing
+
+// Next to nothing: less would not change a bit of what moves, but its inverse does not fit into a float. Below it gravity is
+// none, and sand has this stiffness if it has any.
+constexpr double least_gravity = 1e-15;   // [m/s2]
+constexpr double least_stiffness = 1e-15; // [Pa]
+
+// As a float, within what stages can multiply: neutral values of guards included.
+// What is next to nothing is nothing, as in stages (flush): quotients of denormals are the processor's own.
+float as_float(double x) {
+    return std::abs(x) < 1e-20 ? 0.0F : static_cast<float>(std::clamp(x, -static_cast<double>(off), static_cast<double>(off)));
+}
+
+void set_sources(const Settings& s, WorldParams& p) {
+    const SourcePieces pieces = source_pieces(s);
+    p.source_count = static_cast<int>(s.sources.size());
+    p.source_boxes = static_cast<int>(pieces.boxes.size());
+    p.source_pieces = pieces.count;
+    p.source_rows = pieces.rows;
+}
+
+// Cohesion of the yield surface per cohesion of the material: its tip then holds cuts up to Rankine's height (NUMERICS 2.7).
+double yield_cohesion(const Material& m) {
+    const double c_f = m.yield_friction;
+    return 4 * c_f * (c_f + std::sqrt(1 + c_f * c_f));
+}
+
+} // namespace
+
+double ledger_quantum(const Method& method) {
+    Method chosen = method;
+    chosen.quantum = -1;
+    return height_quantum(method) > 0 ? height_quantum(method) : height_quantum(chosen);
+}
+
+float velocity_limit(const Method& method, double k) { return static_cast<float>(method.velocity_clamp / k); }
+
+WorldParams derive_params(const Settings& s, std::uint32_t effects) {
+    const auto& m = s.material;
+    const auto& w = s.method;
+    const FieldLayout layout{s.grid.nx, s.grid.ny};
+    const auto f = as_float;
+    const double gravity = s.gravity < least_gravity ? 0 : s.gravity;
+    const double dx = s.grid.dx, dt = s.dt, dts = dt / w.substeps, k = dt / dx, ks = dts / dx, quantum = height_quantum(w);
+    WorldParams p{};
+    p.nx = s.grid.nx;
+    p.ny = s.grid.ny;
+    p.pitch = layout.pitch();
+    p.strips = layout.strips();
+    p.substeps = w.substeps;
+    p.tile_size = s.tile_side();
+    p.tile_rings = 1; // WorldState widens it to the plan's reach
+    p.tile_columns = s.tile_side() > 0 ? FieldLayout::active_tiles(s.grid.nx, s.tile_side()) : 0;
+    p.tile_rows = s.tile_side() > 0 ? FieldLayout::active_tiles(s.grid.ny, s.tile_side()) : 0;
+    set_sources(s, p);
+    p.side_kind_west = static_cast<int>(s.sides[SIDE_WEST].kind);
+    p.side_kind_east = static_cast<int>(s.sides[SIDE_EAST].kind);
+    p.side_kind_south = static_cast<int>(s.sides[SIDE_SOUTH].kind);
+    p.side_kind_north = static_cast<int>(s.sides[SIDE_NORTH].kind);
+    p.dx = f(dx);
+    p.inv_dx = f(1 / dx);
+    p.gravity = f(gravity);
+    p.quantum = f(quantum);
+    p.inv_quantum = quantum > 0 ? f(1 / quantum) : 0.0F;
+    p.inv_ledger_quantum = f(1 / ledger_quantum(w));
+    p.largest_height = f(w.largest_height);
+    p.dry_threshold = f(w.dry_threshold);
+
+    p.k = f(k);
+    p.water_velocity_clamp = velocity_limit(w, k);
+    p.shock_viscosity = f(w.shock_viscosity * k * std::sqrt(gravity));
+    p.gravity_cap_base = w.gravity_cap > 0 ? f(w.gravity_cap) : gravity_cap_off;
+    p.inv_k2 = f(1 / (k * k));
+    const double rest_surface = 2 * ledger_quantum(w);
+    p.rest_surface = w.rest_rule ? f(rest_surface) : -1.0F;
+    p.rest_velocity = w.rest_rule ? f(1.5 * k * gravity * rest_surface) : -1.0F; // rounding of the push does not decide
+    const double spreads = (effects & EFFECT_PUBLISHED) != 0 ? m.diffusion_rate : std::min(m.diffusion_rate, 0.2 * dx * dx / dt);
+    p.diffusion_number = f(spreads * dt / (dx * dx));
+    p.bed_friction_dt = f(dt * m.bed_friction);
+    p.manning = f(m.manning);
+    p.gravity_dt = f(dt * gravity);
+    const double submerged = std::max(m.sand_density / m.water_density - 1, 0.05) * gravity; // (s - 1) g
+    p.bed_shear = f(m.bed_shear);
+    p.bed_shear_dt = f(dt * m.bed_shear);
+    p.bed_shear_threshold = f(0.047 * submerged * m.grain_size);
+    p.bed_load = submerged > 0 ? f(8 / submerged) : 0.0F;
+    p.bed_slope_number = f(2 / dx);
+    p.bed_slope_cap = f(0.2 * dx / dt);
+    p.limiter = w.outflow_limiter ? 1.0F : 0.0F;
+    p.inv_substeps = f(1.0 / w.substeps);
+
+    p.ks = f(ks);
+    p.dts = f(dts);
+    p.sand_velocity_clamp = velocity_limit(w, ks);
+    p.sand_gravity_cap = w.sand_gravity_cap > 0 ? f(w.sand_gravity_cap / (ks * ks)) : off;
+    p.density_ratio = f(m.water_density / m.sand_density);
+    p.water_density = f(m.water_density);
+    p.sand_density = f(m.sand_density);
+    p.friction = f(m.friction);
+    const double kd = (effects & EFFECT_DRAG) != 0 ? dts * m.exchange_rate : 0;
+    p.drag_kd = f(kd);
+    p.drag_coupling = f(kd * m.water_density / (m.water_density + kd) / m.sand_density);
+    p.drag_share = f(kd / (m.water_density + kd));
+    const double wedge = m.slope_normal > 0 ? m.friction + std::sqrt(m.friction * m.friction + 1 / m.slope_normal) : steep;
+    p.slope_normal = f(m.slope_normal);
+    p.wedge_slope = f(std::min(wedge, steep));
+    p.wedge_slope2 = f(std::min(wedge * wedge, steep * steep));
+    p.wedge_weight = f(1 / (1 + m.slope_normal * std::min(wedge * wedge, steep * steep)));
+    p.internal_friction = f(m.internal_friction);
+    const bool retains = (effects & EFFECT_RETENTION) != 0;
+    p.retained = retains ? f(m.retention) : -1.0F; // all water is free
+    p.inv_drainable = retains ? f(1 / (1 - m.retention)) : 1.0F;
+    p.prestress = w.prestress ? 1.0F : 0.0F;
+
+    const double young = m.young_modulus > 0 ? std::max(m.young_modulus, least_stiffness) : 0;
+    double lambda = young * m.poisson_ratio / ((1 + m.poisson_ratio) * (1 - 2 * m.poisson_ratio));
+    double shear = young / (2 * (1 + m.poisson_ratio));
+    if (w.elastic_cap > 0 && lambda + 2 * shear > 0) {
+        const double stiffness = lambda + 2 * shear,
+                     scale = std::min(1.0, std::max(w.elastic_cap * m.sand_density * dx * dx / (dts * dts * stiffness),
+                                                    least_stiffness / stiffness));
+        lambda *= scale;
+        shear *= scale;
+    }
+    const double slope = m.yield_friction * (2 * shear + 2 * lambda);
+    const double weight = m.sand_density * gravity;
+    p.lambda = f(lambda);
+    p.shear = f(shear);
+    p.inv_two_shear = shear > 0 ? f(0.5 / shear) : 0.0F;
+    p.yield_slope = f(slope);
+    p.inv_yield_slope = slope > 0 ? f(1 / slope) : 0.0F;
+    p.inv_bulk = lambda + shear > 0 ? f(1 / (lambda + shear)) : 0.0F;
+    p.cliff_share = weight > 0 ? f(4 / (m.yield_friction * weight)) : 0.0F;
+    p.passive_pressure = w.passive_pressure > 0 ? f(w.passive_pressure * weight) : off;
+    // The explicit viscous stress is stable with the elastic one while nu dts/dx^2 <= 1/4 - c^2 dts^2/(2 dx^2).
+    const double wave = std::sqrt((lambda + 2 * shear) / m.sand_density) * ks;
+    // Viscosity of shear takes half of that room at most, the bulk's the rest.
+    const double room = std::max(0.0, 0.2 - 0.4 * wave * wave),
+                 sheared = std::min(m.sand_viscosity * dts / (dx * dx), 0.5 * room);
+    const double viscous = std::min(w.bulk_viscosity * dts / (dx * dx), room - sheared);
+    p.viscosity_number = f(sheared);
+    p.bulk_viscosity = f(viscous * m.sand_density / ks);
+    p.tip_pressure = f(0.5 / m.yield_friction);
+    p.inv_friction_yield = f(1 / m.yield_friction);
+    p.force_scale = f(ks / m.sand_density);
+    p.gradient_clamp = w.gradient_clamp > 0 ? f(w.gradient_clamp) : off;
+    p.cohesion_cap = w.cohesion_cap > 0 ? f(2 * m.yield_friction * w.cohesion_cap * weight) : off;
+    const auto [phi1, phi2, phi3] = m.saturation;
+    const double apex = (effects & EFFECT_PUBLISHED) != 0 ? 1 : yield_cohesion(m);
+    p.cohesion0 = f(apex * m.cohesion_dry);
+    p.cohesion1 = f(apex * m.cohesion_wet);
+    p.phi1 = f(phi1);
+    p.phi2 = f(phi2);
+    p.phi3 = f(phi3);
+    p.slope01 = f(apex * (m.cohesion_wet - m.cohesion_dry) / phi1);
+    p.slope12 = f(apex * (m.cohesion_capillary - m.cohesion_wet) / (phi2 - phi1));
+    p.slope23 = f(apex * m.cohesion_capillary / (phi3 - phi2));
+    // Tensor weights: 1 | 2,1 | 3,2,1 by distance; zero weights switch the outer rings off.
+    p.smooth0 = f(w.saturation_smoothing + 1);
+    p.smooth1 = f(std::max(0, w.saturation_smoothing));
+    p.smooth2 = f(std::max(0, w.saturation_smoothing - 1));
+    return p;
+}
+
+} // namespace wadi

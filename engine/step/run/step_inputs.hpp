@@ -1,0 +1,40 @@
+// What changes with every water step: sources, rain and sides over time, in whole quanta.
+#pragma once
+#include "engine/settings/data/settings.hpp"
+#include "shaders/params.hpp"
+#include <vector>
+
+namespace wadi {
+
+/// Produces the StepInput of each step in turn. A rate below one quantum per step is not lost: the running total is rounded
+/// down to whole quanta and each step gets the difference.
+class StepInputs {
+  public:
+    /// Running total of one rate.
+    struct Total {
+        double metres = 0, quanta = 0;
+    };
+    /// Of every source, then rain, evaporation and, where they are discharges, the sides.
+    using Totals = std::vector<Total>;
+
+    explicit StepInputs(const Settings& settings);
+    /// The input of step `step`, which must be one more than at the last call.
+    StepInput next(std::uint64_t step);
+    /// Takes the last next() back: its step could not be submitted.
+    void undo() { totals_ = before_; }
+    const Totals& totals() const { return totals_; }
+    void set_totals(const Totals& totals) { totals_ = totals; }
+
+  private:
+    float advance(Total& total, double rate) const;
+    /// Depth per time of source n [m/s].
+    double rate_of(std::size_t n, double time) const;
+    void set_sides(StepInput& input, double time);
+
+    const Settings settings_;
+    const double quantum_;
+    std::vector<double> areas_; // covered by each source with a discharge [m2]
+    Totals totals_, before_;    // before the last next()
+};
+
+} // namespace wadi
