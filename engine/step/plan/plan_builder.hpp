@@ -1,7 +1,7 @@
 // Passes of a step plan in order, as either method appends them.
 #pragma once
 #include "engine/step/plan/step_plan.hpp"
-#include "shaders/effects.h"
+#include "shaders/params.hpp"
 #include <map>
 #include <string>
 #include <vector>
