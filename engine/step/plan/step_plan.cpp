@@ -234,9 +234,7 @@ StepPlan make_step_plan(std::uint32_t effects, int substeps, PlanChoice choice) 
     plan.fields.push_back({"source_ledger", field_row("source_ledger").role}); // edits count there in any world
     for (const auto* passes : {&plan.water_passes, &plan.substep_passes}) {
         for (const auto& pass : *passes) {
-            const auto& bindings = compute::stage_table()[static_cast<std::size_t>(pass.stage)].bindings;
-            for (std::size_t n = 0; n < pass.fields.size(); ++n) {
-                const auto& name = pass.fields[n];
+            for (const auto& name : pass.fields) {
                 if (name.empty()) continue;
                 const std::string base = base_name(name);
                 auto found =

@@ -41,7 +41,7 @@ StepPlan WorldState::plan_for(std::uint32_t effects, bool tiles) const {
     return make_step_plan(effects, settings_.method.substeps, {tiles, fuses()});
 }
 
-Status WorldState::check_device(std::uint32_t effects) const {
+Status WorldState::check_device() const {
     const auto& device = (*device_).capabilities();
     if (settings_.fused_stages == FusedStages::always && !device.fused_stages) {
         return error(Code::not_supported, "fused_stages: '" + device.name + "' has no groups of " +
@@ -58,7 +58,7 @@ Status WorldState::check_device(std::uint32_t effects) const {
 }
 
 Status WorldState::set_effects(const EffectChoice& effects) {
-    if (auto status = check_device(effects.mask); !status) return status;
+    if (auto status = check_device(); !status) return status;
     StepPlan plan = plan_for(effects.mask, settings_.active_tiles > tiles_where_cheap);
     std::optional<StepPlan> other;
     if (may_choose_tiles()) {

@@ -83,7 +83,7 @@ class WorldState {
 
   private:
     /// ok, or not_supported.
-    Status check_device(std::uint32_t effects) const;
+    Status check_device() const;
     StepPlan plan_for(std::uint32_t effects, bool tiles) const;
     /// Whether the plan has fused stages.
     bool fuses() const;
