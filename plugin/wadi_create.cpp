@@ -162,9 +162,7 @@ wadi_result wadi_list_accuracy_presets(wadi_accuracy_preset* presets, uint32_t* 
         const uint32_t capacity = presets != nullptr ? *count : 0;
         uint32_t found = 0;
         for (const AccuracyPreset& preset : accuracy_presets()) {
-            if (found < capacity)
-                presets[found] = {preset.name,  preset.cells,    preset.substeps, preset.water_order,
-                                  preset.error, preset.gpu_cost, preset.cpu_cost};
+            if (found < capacity) presets[found] = {preset.name, preset.cells, preset.substeps, preset.water_order};
             ++found;
         }
         *count = found;

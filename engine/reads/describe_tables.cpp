@@ -108,12 +108,9 @@ bool takes_turns(std::string_view field) {
     for (const std::uint32_t mask : {all_effects, (all_effects & ~never_published) | EFFECT_PUBLISHED}) {
         const StepPlan plan = make_step_plan(mask, 1);
         const PlanField* found = plan.find(std::string(field));
-        return found != nullptr && found->ping_pong;
-    };
-    return turns(all_effects) || std::any_of(std::begin(choice_rows), std::end(choice_rows), [&](const EffectRow& choice) {
-               const std::uint32_t mask = with_needs(all_effects | choice.bit);
-               return is_legal(mask) && turns(mask);
-           });
+        if (found != nullptr && found->ping_pong) return true;
+    }
+    return false;
 }
 
 std::string describe_fields() {

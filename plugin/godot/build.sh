@@ -50,7 +50,7 @@ python3 "$here/generate.py" "$output/interface/extension_api.json" "$here/source
 flags=(-std=c11 -fPIC -fvisibility=hidden -Wall -Wextra -Werror -I"$output/interface" -I"$here/source" -I"$root/plugin/include")
 [ -n "$debug" ] && flags+=(-O0 -g) || flags+=(-O2)
 objects=()
-for source in "$here"/source/*.c "$output"/interface/*.c; do
+for source in "$here"/source/*.c "$here"/source/*/*.c "$output"/interface/*.c; do
     [ -e "$source" ] || continue
     object=$output/objects/$(basename "$source" .c).o
     gcc "${flags[@]}" -c "$source" -o "$object"

@@ -40,7 +40,7 @@ def table(macro: str, enum: str, prefix: str, names: list, owners: dict) -> list
 
 def class_docs(folder: pathlib.Path) -> str:
     """The XML files as bytes: a text of C may not be that long."""
-    lines = ["/* Written by generate.py from doc_classes. */", '#include "class_docs.h"', ""]
+    lines = ["/* Written by generate.py from doc_classes. */", '#include "engine/class_docs.h"', ""]
     names = []
     for path in sorted(folder.glob("*.xml")):
         names.append(path.stem)
@@ -57,7 +57,7 @@ def main() -> None:
         sys.exit(__doc__)
     api = json.loads(pathlib.Path(sys.argv[1]).read_text())
     folder, docs, output = (pathlib.Path(word) for word in sys.argv[2:])
-    sources = sorted([*folder.glob("*.c"), *folder.glob("*.h")])
+    sources = sorted([*folder.rglob("*.c"), *folder.rglob("*.h")])
     classes = {entry["name"]: entry for entry in api["classes"]}
     types = {entry["name"]: entry for entry in api["builtin_classes"]}
     builtin = used(sources, "BUILTIN")

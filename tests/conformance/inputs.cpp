@@ -1,4 +1,5 @@
 #include "tests/conformance/inputs.hpp"
+#include "engine/settings/rules/checks.hpp"
 #include "engine/settings/rules/effects.hpp"
 #include <algorithm>
 #include <array>

@@ -1,5 +1,6 @@
 // Settings at the ends of their ranges and next to nothing, whatever the case is otherwise.
 #include "engine/settings/data/setting_table.hpp"
+#include "engine/settings/rules/checks.hpp"
 #include "engine/settings/rules/edit_checks.hpp"
 #include "tests/fuzz/fuzz_case.hpp"
 #include "tests/fuzz/random.hpp"

@@ -76,7 +76,7 @@ class Frames {
         check(wadi_world_get_info(world_, &info_), "wadi_world_get_info");
         wadi_output_mask mask = 0;
         for (const Drawn& one : drawn) mask |= WADI_OUTPUT_BIT(one.output);
-        // The masks of plugin/godot/source/scene/world.c.
+        // The masks of plugin/godot/source/scene/outputs.c.
         if (way >= Way::host)
             check(wadi_world_set_outputs(world_, WADI_OUTPUT_TILES_BIT | (way == Way::shared ? mask : 0)),
                   "wadi_world_set_outputs");

@@ -27,7 +27,9 @@ RULES = {
     "engine/reads": ["engine/reads/", "engine/step/", "engine/settings/", "engine/threads/", "engine/compute/"],
     "backends": ["backends/", "engine/compute/"],
     "plugin": ["plugin/", "engine/", "wadi/", "backends/registry.hpp"],
-    "plugin/godot": ["engine_methods.h"],
+    "plugin/godot/source": ["engine/", "scene/"],
+    "plugin/godot/source/engine": ["engine_methods.h"],
+    "plugin/godot/source/scene": ["engine/"],
     "samples/recorder": ["wadi/", "samples/recorder/", ""],
     "samples/tune": ["wadi/", "../recorder/files.hpp", "../recorder/levels.hpp", "../recorder/platform.hpp"],
     "samples/viewer": ["wadi/", "../recorder/files.hpp", "../recorder/levels.hpp", "../recorder/png.hpp", "../tune/print.hpp", "../tune/write_variant.hpp", "shaders/",
@@ -55,6 +57,10 @@ LIBRARIES = {
     "doctest/": ["tests"],
 }
 SOURCES = {".c", ".h", ".cpp", ".hpp", ".cu", ".cuh", ".stage", ".glsl", ".comp", ".inl", ".in"}
+# Sources in C, whose calls count as arrows; comments and texts in them; what a file defines for others.
+C_SOURCES = "plugin/godot/source"
+NO_CODE = re.compile(r'/\*.*?\*/|"(?:[^"\\\n]|\\.)*"', re.DOTALL)
+DEFINITION = re.compile(r"^(?!static|typedef|extern|else|return)[A-Za-z][\w \t*]*?[\s*](\w+)(?:\([^;{}]*\)\s*\{|(?:\[\w*\])? =)", re.MULTILINE)
 INCLUDE = re.compile(r'^\s*#\s*include\s+(["<])([^">]+)[">]')
 
 
@@ -91,10 +97,25 @@ def arrows(root, files):
             found = INCLUDE.match(line)
             if not found or found.group(1) != '"':
                 continue
-            for target in (path.parent / found.group(2), root / found.group(2), root / "shaders" / found.group(2)):
+            for target in (path.parent / found.group(2), root / found.group(2), root / "shaders" / found.group(2), root / C_SOURCES / found.group(2)):
                 if target.is_file():
                     yield path.relative_to(root).as_posix(), target.resolve().relative_to(root.resolve()).as_posix()
                     break
+
+
+def calls(root):
+    """(calling file, called file) of the sources in C, where one header declares what several files define: a name that one file defines
+    for the others, function or constant, and another one mentions."""
+    texts = {}
+    for path in sorted((root / C_SOURCES).rglob("*.c")):
+        texts[path.relative_to(root).as_posix()] = NO_CODE.sub(" ", path.read_text(encoding="utf-8"))
+    home = {}
+    for file, text in texts.items():
+        home.update((name, file) for name in DEFINITION.findall(text))
+    for file, text in texts.items():
+        for name in set(re.findall(r"\w+", text)):
+            if home.get(name, file) != file:
+                yield file, home[name]
 
 
 def circle(edges):
@@ -136,7 +157,12 @@ def check(root):
     found = [b for p in files for b in breaches(root, p)]
     edges = list(arrows(root, files))
     product = [(a, b) for a, b in edges if a.startswith(("engine/", "backends/", "plugin/", "shaders/"))]
-    for what, around in (("files", circle(edges)), ("rooms", circle((room(a), room(b)) for a, b in product))):
+    called = list(calls(root))
+    for what, around in (
+        ("files", circle(edges)),
+        ("rooms", circle((room(a), room(b)) for a, b in product + called)),
+        ("calls", circle(called)),
+    ):
         if around:
             found.append(f"a circle of {what}: " + " > ".join(around))
     return files, found
@@ -155,13 +181,15 @@ def main():
             "backends/one/bad.cpp": '#include "backends/other/device.hpp"\n',
             "engine/settings/rules/upward.hpp": '#include "engine/step/below.hpp"\n',
             "engine/step/below.hpp": '#include "engine/settings/rules/upward.hpp"\n',
+            "plugin/godot/source/engine/low.c": "int low(int n) { return n > 0 ? high(n - 1) : 0; }\n",
+            "plugin/godot/source/scene/high.c": "int high(int n) { return n > 0 ? low(n - 1) : 0; }\n",
             "engine/settings/data/upward.hpp": '#include "engine/settings/rules/effects.hpp"\n',
             "engine/step/plan/upward.hpp": '#include "engine/step/run/stepper.hpp"\n',
         }.items():
             (planted / name).parent.mkdir(parents=True, exist_ok=True)
             (planted / name).write_text(text)
         seen = "\n".join(check(planted)[1])
-        for sign in ("only backends may name a backend", "only backends/vulkan", "engine/settings/rules may include only", "engine/settings/data may include only", "engine/step/plan may include only", "backends/one may include only", "circle of files", "circle of rooms"):
+        for sign in ("only backends may name a backend", "only backends/vulkan", "engine/settings/rules may include only", "engine/settings/data may include only", "engine/step/plan may include only", "backends/one may include only", "circle of files", "circle of rooms", "circle of calls"):
             if sign not in seen:
                 print(f"the checker does not see a planted breach: {sign}")
                 return 1

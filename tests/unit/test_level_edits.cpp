@@ -1,5 +1,6 @@
 // engine/level/read_edits.cpp and engine/settings/rules/scripted_edits.cpp: edits in a level, their times, ranges and stretching.
 #include "engine/saves/snapshot_format.hpp"
+#include "engine/settings/rules/checks.hpp"
 #include "engine/settings/rules/level_digest.hpp"
 #include "engine/settings/rules/scripted_edits.hpp"
 #include "tests/unit/level_text.hpp"

@@ -1,4 +1,5 @@
-// Accuracy presets: draft, balanced, accurate, chosen from the measured frontier of error against time (samples/report).
+// Accuracy presets: draft, balanced, accurate, chosen from the measured frontier of error against time (samples/report);
+// what one costs on a machine, wadi-tune measures there.
 #pragma once
 #include <span>
 #include <string>
@@ -6,15 +7,12 @@
 
 namespace wadi {
 
-/// What a preset changes, and what that was measured to err and cost, each as a factor on `balanced`.
+/// What a preset changes.
 struct AccuracyPreset {
     const char* name;
     double cells;    // factor on the level's cells along x and y; dt follows the cells' size
     int substeps;    // sand substeps per water step
     int water_order; // method.water_transport_order; 0 = the level's
-    double error;    // mean absolute error of sand and water surface
-    double gpu_cost; // time per simulated second, one H100
-    double cpu_cost; // the same, 16 threads of its host
 };
 
 /// By rising accuracy.

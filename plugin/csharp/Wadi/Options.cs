@@ -117,7 +117,7 @@ namespace Wadi
         }
     }
 
-    /// <summary>An accuracy preset, with what it was measured to err and to cost against "balanced".</summary>
+    /// <summary>An accuracy preset.</summary>
     public sealed unsafe class AccuracyPreset
     {
         public readonly string Name;
@@ -127,10 +127,6 @@ namespace Wadi
         public readonly int Substeps;
         /// <summary>method.water_transport_order; 0 = the level's.</summary>
         public readonly int WaterOrder;
-        /// <summary>Mean absolute error, factor.</summary>
-        public readonly double Error;
-        /// <summary>Time per simulated second, factor: one H100, 16 CPU threads.</summary>
-        public readonly double GpuCost, CpuCost;
 
         internal AccuracyPreset(RawAccuracyPreset raw)
         {
@@ -138,9 +134,6 @@ namespace Wadi
             Cells = raw.Cells;
             Substeps = raw.Substeps;
             WaterOrder = raw.WaterOrder;
-            Error = raw.Error;
-            GpuCost = raw.GpuCost;
-            CpuCost = raw.CpuCost;
         }
     }
 }

@@ -109,7 +109,7 @@ namespace Wadi
         public IntPtr Variant;
         /// <summary>
         /// "draft", "balanced" or "accurate": half, all or twice the level's cells along x and y (nx, ny win) and two sand steps per
-        /// water step, "accurate" also second order for water; NULL = what the level says. samples/report has errors and costs
+        /// water step, "accurate" also second order for water; NULL = what the level says
         /// </summary>
         public IntPtr Accuracy;
         public ActiveTiles ActiveTiles;
@@ -133,7 +133,7 @@ namespace Wadi
         }
     }
 
-    /// <summary>An accuracy preset, with what it was measured to err and to cost against "balanced" (samples/report).</summary>
+    /// <summary>An accuracy preset.</summary>
     [StructLayout(LayoutKind.Sequential)]
     public struct RawAccuracyPreset
     {
@@ -144,12 +144,6 @@ namespace Wadi
         public int Substeps;
         /// <summary>method.water_transport_order; 0 = the level's</summary>
         public int WaterOrder;
-        /// <summary>mean absolute error, factor</summary>
-        public double Error;
-        /// <summary>time per simulated second, factor: one H100, 16 CPU threads</summary>
-        public double GpuCost;
-        /// <summary>time per simulated second, factor: one H100, 16 CPU threads</summary>
-        public double CpuCost;
     }
 
     /// <summary>

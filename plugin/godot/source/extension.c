@@ -1,9 +1,9 @@
 /* The extension's entry, named in wadi.gdextension. */
-#include "class_docs.h"
-#include "engine.h"
-#include "float.h"
-#include "level.h"
-#include "terrain.h"
+#include "engine/class_docs.h"
+#include "engine/engine.h"
+#include "scene/float.h"
+#include "scene/level.h"
+#include "scene/terrain.h"
 
 #include <wadi/wadi.h>
 

@@ -200,8 +200,7 @@ typedef struct wadi_level_overrides {
     const char* method;        /* "robust" or "published" */
     const char* variant;       /* one of the level's variants; NULL = the level as it is. Not for terrain maps */
     const char* accuracy;      /* "draft", "balanced" or "accurate": half, all or twice the level's cells along x and y (nx, ny win) and
-                                  two sand steps per water step, "accurate" also second order for water; NULL = what the level says.
-                                  samples/report has errors and costs */
+                                  two sand steps per water step, "accurate" also second order for water; NULL = what the level says */
     wadi_active_tiles active_tiles;
     wadi_choice fused_stages;  /* ON = several stages in one pass wherever the effects allow, OFF = one by one. Every bit stays */
     wadi_bool any_files;       /* 1 = maps and series may lie anywhere that the process can read; 0 = in the level's folder and below it
@@ -212,14 +211,12 @@ static inline wadi_level_overrides wadi_default_level_overrides(void) {
     return value;
 }
 
-/** An accuracy preset, with what it was measured to err and to cost against "balanced" (samples/report). */
+/** An accuracy preset. */
 typedef struct wadi_accuracy_preset {
     const char* name;
-    double cells;              /* factor on the level's cells along x and y */
-    int32_t substeps;          /* sand steps per water step */
-    int32_t water_order;       /* method.water_transport_order; 0 = the level's */
-    double error;              /* mean absolute error, factor */
-    double gpu_cost, cpu_cost; /* time per simulated second, factor: one H100, 16 CPU threads */
+    double cells;        /* factor on the level's cells along x and y */
+    int32_t substeps;    /* sand steps per water step */
+    int32_t water_order; /* method.water_transport_order; 0 = the level's */
 } wadi_accuracy_preset;
 /** Lists the accuracy presets by rising accuracy. */
 WADI_API wadi_result wadi_list_accuracy_presets(wadi_accuracy_preset* presets, uint32_t* count);

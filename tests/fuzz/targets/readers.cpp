@@ -5,6 +5,7 @@
 #include "engine/image/map.hpp"
 #include "engine/level/level.hpp"
 #include "engine/saves/sealed_bytes.hpp"
+#include "engine/settings/rules/checks.hpp"
 #include "engine/world.hpp"
 #include <cstdlib>
 #include <memory>

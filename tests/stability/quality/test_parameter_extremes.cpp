@@ -1,6 +1,7 @@
 // Parameters from nothing to far beyond sense: every setting's range, exchange rate, stiffness, cohesion, sources.
 #include "backends/registry.hpp"
 #include "engine/settings/data/setting_table.hpp"
+#include "engine/settings/rules/checks.hpp"
 #include "engine/settings/rules/messages.hpp"
 #include "tests/fuzz/random.hpp"
 #include "tests/stability/quality.hpp"

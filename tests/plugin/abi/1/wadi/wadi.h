@@ -131,8 +131,7 @@ typedef struct wadi_level_overrides {
     const char* method;        /* "robust" or "published" */
     const char* variant;       /* one of the level's variants; NULL = the level as it is. Not for terrain maps */
     const char* accuracy;      /* "draft", "balanced" or "accurate": half, all or twice the level's cells along x and y (nx, ny win) and
-                                  two sand steps per water step, "accurate" also second order for water; NULL = what the level says.
-                                  samples/report has errors and costs */
+                                  two sand steps per water step, "accurate" also second order for water; NULL = what the level says */
     int32_t active_tiles;      /* side of the active tiles in cells: 8, 16, 32 or 64; -1 = off, 1 = on while little of the world is
                                   awake, 0 = as the level says, which by default is 1 in large grids on GPUs. Tiles in which
                                   nothing changes any more are left out of a step; every bit stays, also in snapshots */
@@ -145,14 +144,12 @@ static inline wadi_level_overrides wadi_default_level_overrides(void) {
     return value;
 }
 
-/** An accuracy preset, with what it was measured to err and to cost against "balanced" (samples/report). */
+/** An accuracy preset. */
 typedef struct wadi_accuracy_preset {
     const char* name;
-    double cells;              /* factor on the level's cells along x and y */
-    int32_t substeps;          /* sand steps per water step */
-    int32_t water_order;       /* method.water_transport_order; 0 = the level's */
-    double error;              /* mean absolute error, factor */
-    double gpu_cost, cpu_cost; /* time per simulated second, factor: one H100, 16 CPU threads */
+    double cells;        /* factor on the level's cells along x and y */
+    int32_t substeps;    /* sand steps per water step */
+    int32_t water_order; /* method.water_transport_order; 0 = the level's */
 } wadi_accuracy_preset;
 /** Fills up to *count presets by rising accuracy and sets *count to their number; presets may be NULL to ask for it. */
 WADI_API wadi_result wadi_list_accuracy_presets(wadi_accuracy_preset* presets, uint32_t* count);

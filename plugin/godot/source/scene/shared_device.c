@@ -1,6 +1,6 @@
 #include "shared_device.h"
 
-#include "engine.h"
+#include "engine/engine.h"
 #include "vulkan_calls.h"
 
 #include <stdio.h>

@@ -1,3 +1,4 @@
+#include "engine/collections.h"
 #include "results.h"
 #include "terrain.h"
 

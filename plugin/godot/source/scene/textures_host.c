@@ -1,4 +1,5 @@
-#include "engine.h"
+#include "engine/collections.h"
+#include "engine/engine.h"
 #include "textures.h"
 
 #include <stdlib.h>

@@ -1,6 +1,7 @@
 #include "terrain.h"
 
-#include "engine.h"
+#include "engine/collections.h"
+#include "engine/engine.h"
 #include "float.h"
 #include "level.h"
 

@@ -1,8 +1,11 @@
 #include "pose.h"
 
-#include "engine.h"
+#include "engine/engine.h"
 
 #include <math.h>
+
+double world_x(const Terrain* terrain, double x) { return x + terrain->info.nx * terrain->info.dx / 2; }
+double world_y(const Terrain* terrain, double z) { return terrain->info.ny * terrain->info.dx / 2 - z; }
 
 /* Column c of a basis. */
 static Vector3 column(const Vector3 rows[3], int c) {

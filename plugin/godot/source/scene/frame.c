@@ -1,4 +1,4 @@
-#include "engine.h"
+#include "engine/engine.h"
 #include "float.h"
 #include "results.h"
 #include "shared_device.h"

@@ -4,6 +4,10 @@
 
 #include "terrain.h"
 
+/* A point of the node's space in metres from the grid's south-west corner. */
+double world_x(const Terrain* terrain, double x);
+double world_y(const Terrain* terrain, double z);
+
 /** A terrain's node in the scene. Scaled nodes are not supported: false. */
 bool pose_of_terrain(const Terrain* terrain, Transform3D* pose);
 

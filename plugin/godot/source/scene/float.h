@@ -24,6 +24,14 @@ struct Float {
 
 extern const Class float_class;
 
+/* floats.c: the bodies of a terrain. */
+/** The RigidBody3D that floats, or NULL. */
+Object float_body(const Float* body);
+/** Logs what keeps it from floating, once per cause: it would be said at every tick. */
+void float_tell(Float* body, const char* what);
+/** Takes it from the list of its terrain. */
+void float_leave(Float* body);
+
 /** Gives each body of the terrain the force of the newest answers, and asks anew. */
 void floats_tick(Terrain* terrain);
 /** Forgets answers of a world that ends. */

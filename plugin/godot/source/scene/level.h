@@ -2,7 +2,7 @@
 #ifndef WADI_GODOT_LEVEL_H
 #define WADI_GODOT_LEVEL_H
 
-#include "classes.h"
+#include "engine/classes.h"
 
 #include <wadi/wadi.h>
 

@@ -1,12 +1,10 @@
-#include "engine.h"
+#include "engine/engine.h"
 #include "float.h"
 #include "level.h"
 #include "results.h"
 #include "shared_device.h"
 #include "terrain.h"
 
-#include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,50 +17,6 @@ static void log_line(void* user, wadi_log_level level, const char* message) {
         log_error("%s", message);
     else if (level == WADI_LOG_WARNING)
         log_warning("%s", message);
-}
-
-static void lose(Terrain* terrain) {
-    if (terrain->lost) return;
-    terrain->lost = true;
-    String text = string_of(terrain->message);
-    Variant argument = variant_of(GDEXTENSION_VARIANT_TYPE_STRING, &text);
-    value_free(GDEXTENSION_VARIANT_TYPE_STRING, &text);
-    emit(terrain->object, "device_lost", &argument, 1);
-}
-
-int64_t world_failed(Terrain* terrain, const char* call, wadi_result result) {
-    snprintf(terrain->message, sizeof terrain->message, "%s: %s", call, wadi_get_last_error());
-    if (!terrain->lost) log_error("%s", terrain->message); /* a lost device fails every tick */
-    if (result == WADI_ERROR_DEVICE_LOST) lose(terrain);
-    return error_of(result);
-}
-
-int64_t world_refused(Terrain* terrain, int64_t error, const char* format, ...) {
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(terrain->message, sizeof terrain->message, format, arguments);
-    va_end(arguments);
-    log_error("%s", terrain->message);
-    return error;
-}
-
-bool world_needed(Terrain* terrain, const char* call) {
-    if (terrain->started) return true;
-    world_refused(terrain, ERROR_UNCONFIGURED, "%s: there is no world yet; start() makes it", call);
-    return false;
-}
-
-double world_x(const Terrain* terrain, double x) { return x + terrain->info.nx * terrain->info.dx / 2; }
-double world_y(const Terrain* terrain, double z) { return terrain->info.ny * terrain->info.dx / 2 - z; }
-
-wadi_result world_set_outputs(Terrain* terrain) {
-    const wadi_output_mask mask = (wadi_output_mask)terrain->outputs;
-    const wadi_output_mask heights = terrain->heights_asked ? WADI_OUTPUT_BIT(WADI_OUTPUT_SAND_SURFACE) : 0;
-    const wadi_output_mask on_device = terrain->textures.shared ? mask : 0, on_host = terrain->textures.shared ? 0 : mask;
-    terrain->updates_due = 2;
-    wadi_result result = wadi_world_set_outputs(terrain->world, on_device | WADI_OUTPUT_TILES_BIT);
-    if (result == WADI_OK) result = wadi_world_set_host_outputs(terrain->world, on_host | heights);
-    return result;
 }
 
 static wadi_result set_pace(const Terrain* terrain) {

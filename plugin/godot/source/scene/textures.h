@@ -2,7 +2,7 @@
 #ifndef WADI_GODOT_TEXTURES_H
 #define WADI_GODOT_TEXTURES_H
 
-#include "values.h"
+#include "engine/values.h"
 
 #include <wadi/wadi.h>
 

@@ -2,7 +2,7 @@
 #ifndef WADI_GODOT_TERRAIN_H
 #define WADI_GODOT_TERRAIN_H
 
-#include "classes.h"
+#include "engine/classes.h"
 #include "textures.h"
 
 #include <wadi/wadi.h>
@@ -45,8 +45,8 @@ int64_t world_start(Terrain* terrain);
 void world_stop(Terrain* terrain);
 void world_settings_changed(void* self);
 void world_outputs_changed(void* self);
-/** Tells the library what to publish. */
-wadi_result world_set_outputs(Terrain* terrain);
+
+/* report.c */
 /** Keeps and logs the text of an error that `call` met; the engine's error. A lost device is told by its signal. */
 int64_t world_failed(Terrain* terrain, const char* call, wadi_result result);
 /** The same for an error of the extension's own. */
@@ -54,9 +54,9 @@ int64_t world_refused(Terrain* terrain, int64_t error, const char* format, ...) 
 /** Whether there is a world; where not it logs that `call` needs one. */
 bool world_needed(Terrain* terrain, const char* call);
 
-/* A point of the node's space in metres from the grid's south-west corner. */
-double world_x(const Terrain* terrain, double x);
-double world_y(const Terrain* terrain, double z);
+/* outputs.c */
+/** Tells the library what to publish. */
+wadi_result world_set_outputs(Terrain* terrain);
 
 /* frame.c */
 void frame_tick(Terrain* terrain);

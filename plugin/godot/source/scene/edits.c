@@ -1,3 +1,5 @@
+#include "engine/collections.h"
+#include "pose.h"
 #include "results.h"
 #include "terrain.h"
 

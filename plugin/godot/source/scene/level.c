@@ -2,8 +2,9 @@
 
 #include "level.h"
 
-#include "engine.h"
-#include "files.h"
+#include "engine/collections.h"
+#include "engine/engine.h"
+#include "engine/files.h"
 
 #include <stdio.h>
 #include <stdlib.h>
