@@ -1,7 +1,6 @@
 // Passes of a step plan in order, as either method appends them.
 #pragma once
 #include "engine/step/step_plan.hpp"
-#include "shaders/effects.h"
 #include <map>
 #include <string>
 #include <vector>
