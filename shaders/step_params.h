@@ -128,7 +128,7 @@ struct WorldParams {
     float force_scale;          // ks/rho_s
     float gradient_clamp;       // largest |dts grad v| entry (0.4)
     float cohesion_cap;         // 1.8 c_f rho_s g [Pa/m]: largest cohesion per metre of sand
-    float cohesion0;            // of the yield surface: 4 c_f tan(45 + phi/2) times the material's, algorithm_1: the material's [Pa]
+    float cohesion0;            // of the yield surface: 4 c_f tan(45 + phi/2) times the material's, published: the material's [Pa]
     float cohesion1;
     float phi1;                 // saturations of the piecewise linear cohesion
     float phi2;

@@ -77,7 +77,7 @@ def pareto(page, scene, rows):
     good = unguarded(rows, scene)
     best = sweep.frontier(good)
     place = lambda row: (row["ms_per_second"], max(row["error"], 1e-3))
-    groups = {"order 1": ("robust",), "order 2": ("second_order", "second_order_sand"), "paper_like": ("paper_like",)}
+    groups = {"order 1": ("robust",), "order 2": ("second_order", "second_order_sand"), "published": ("published",)}
     named = {choice for choices_of_group in groups.values() for choice in choices_of_group}
     groups["other choices"] = tuple({row["choice"] for row in good} - named)
     series = [("frontier", [place(row) for row in best], "dash")]
@@ -119,7 +119,7 @@ def convergence(page, all_scenes, rows):
     for scene in all_scenes:
         if scene.sweep:
             continue
-        for choice in ("robust", "second_order", "paper_like"):
+        for choice in ("robust", "second_order", "published"):
             mine = by_size(rows, scene, choice)
             if not mine:
                 continue

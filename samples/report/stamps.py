@@ -33,7 +33,7 @@ KINDS = {  # a kind of page: the parts, and the scripts and files besides
     "effects": (("stages", "step", "defaults", "levels"), ("samples/report/effects.py", "samples/report/pairs.py")),
     "errors": (("stages", "step", "defaults"), tuple(f"samples/report/{name}.py" for name in ("errors", "pairs", "scene", "scenes", "sweep"))),
     "frontier": (("stages", "step", "defaults"), ("samples/report/frontier.py", "samples/report/frontier_cases.py", "tests/sand/columns.py", "tests/sand/scene.py")),
-    "methods": (("stages", "step", "defaults", "levels"), ("samples/report/side_by_side.py", "samples/report/literal.py", "samples/report/cases.py", "samples/report/exact.py",
+    "methods": (("stages", "step", "defaults", "levels"), ("samples/report/side_by_side.py", "samples/report/cases.py", "samples/report/exact.py",
                                                            "samples/levels/*/expected.json")),
     "mpm": (("stages", "step", "defaults"), ("samples/report/mpm.py", "samples/report/mpm_solver.py", *SAND_LAB)),
     "timings": (("stages", "step", "defaults", "levels"), ("samples/report/timings.py",)),

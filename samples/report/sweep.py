@@ -7,14 +7,9 @@ import recordings
 # What `method` is changed by, by the name in a point.
 CHOICES = {
     "robust": {},
-    "paper_like": {"name": "paper_like"},
+    "published": {"name": "published"},
     "second_order": {"water_transport_order": 2},
     "second_order_sand": {"water_transport_order": 2, "sand_transport_order": 2},
-    "semi_lagrangian": {"velocity_transport": "semi_lagrangian"},
-    "polar": {"strain_transport": "polar"},
-    "direct": {"strain_transport": "direct"},
-    "sequence": {"drag_friction": "sequence"},
-    "laplacian": {"diffusion": "laplacian"},
     "no_limiter": {"outflow_limiter": False},
     "no_quantum": {"quantum": 0},
     "no_gravity_caps": {"gravity_cap": 0, "sand_gravity_cap": 0},
@@ -28,8 +23,8 @@ GUARDS = [choice for choice in CHOICES if choice.startswith("no_")]
 METHODS = [choice for choice in CHOICES if not choice.startswith("no_")]
 EFFECTS = ("elastoplastic", "cohesion", "drag", "diffusion", "mixture")
 NEEDED_BY = {"elastoplastic": "cohesion", "mixture": "diffusion"}  # what needs an effect goes with it
-CHOICES_OF = {"water": ("robust", "paper_like", "second_order", "semi_lagrangian"),
-              "dry sand": ("robust", "paper_like", "second_order_sand", "semi_lagrangian", "polar", "direct"),
+CHOICES_OF = {"water": ("robust", "published", "second_order"),
+              "dry sand": ("robust", "published", "second_order_sand"),
               "wet sand": tuple(METHODS)}  # what a kind of scene has something of to show
 STEPS = (0.25, 0.5, 1, 2, 4)
 RATIOS = (1, 2, 3, 4, 6)
@@ -76,7 +71,7 @@ def points_of(scene, quick):
                 for dt in (1, 2) if quick else (0.5, 1, 2):
                     for ratio in (2, 3) if sand else (3,):
                         yield Point(scene.key, n, dt, ratio, choice)
-        for choice in [c for c in CHOICES_OF[scene.kind] if not quick or c in ("robust", "paper_like", "second_order")]:
+        for choice in [c for c in CHOICES_OF[scene.kind] if not quick or c in ("robust", "published", "second_order")]:
             yield Point(scene.key, sizes[-1], 1, 3, choice)
             yield Point(scene.key, sizes[-1], 0.25, 3, choice)
     else:
@@ -84,7 +79,7 @@ def points_of(scene, quick):
         if scene.key == "monai":
             sizes = [scene.n // 2] if quick else [scene.n // 2, scene.n, 2 * scene.n - 1]
         for n in sizes:
-            for choice in ("robust", "second_order", "paper_like") if scene.key != "monai" or not quick else ("robust", "second_order"):
+            for choice in ("robust", "second_order", "published") if scene.key != "monai" or not quick else ("robust", "second_order"):
                 if choice != "second_order" or wet:
                     yield Point(scene.key, n, 1, 3, choice)
         for dt in () if quick else (0.5, 2):

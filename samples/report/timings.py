@@ -32,7 +32,7 @@ ROWS = {  # the paper's rows and the stages that do their work
     "integrate sand velocity": ("integrate_sand_velocity", "backtrace_sand_velocity", "push_sand", "compute_sand_stress", "apply_sand_stress"),
     "project deformation gradient": ("project_deformation_gradient", "yield_right_stretch"),
     "evolve deformation gradient": ("evolve_deformation_gradient", "advect_deformation_gradient", "stretch_deformation_gradient"),
-    "compute momentum exchange": ("compute_momentum_exchange", "measure_layer_exchange", "give_layer_exchange", "renew_split", "apply_drag"),
+    "compute momentum exchange": ("compute_momentum_exchange", "measure_layer_exchange", "give_layer_exchange"),
     "apply frictional force": ("apply_friction",),
     "update boundary conditions": ("update_water_boundary_types", "update_sand_boundary_types", "extrapolate_velocity",
                                    "extrapolate_strain", "open_sides", "open_sand_sides")}

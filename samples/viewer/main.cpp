@@ -46,7 +46,7 @@ int main_checked(int argc, char** argv) {
     app.add_option("--variant", options.simulation.variant, "one of the level's variants");
     app.add_option("--accuracy", options.simulation.accuracy,
                    "draft, balanced or accurate: half, all or twice the cells, two sand substeps; accurate: order 2 for water");
-    app.add_option("--method", options.simulation.method, "robust, paper_like or published instead of the level's");
+    app.add_option("--method", options.simulation.method, "robust or published instead of the level's");
     app.add_option("--grid", grid, "grid NxM instead of the level's; keeps the length in x");
     app.add_option("--size", size, "WIDTHxHEIGHT of the picture or window, default 1280x720");
     app.add_option("--camera", options.camera, "overview, opposite, top, close, low, or YAW,PITCH,SHARE,EAST,NORTH (README.md)")

@@ -45,7 +45,7 @@ constexpr FieldRow rows[] = {
     {"mixed_predicted", scratch, cell, no_hash, no_host, "", "m", EFFECT_MIXTURE, "mixed water before the split is taken anew"},
     {"mixed_diffused", scratch, cell, no_hash, no_host, "", "m", EFFECT_DIFFUSION | EFFECT_PUBLISHED, "mixed water that has spread ahead of transport"},
     {"layer_exchange_x", scratch, west_face, no_hash, no_host, "", "m2/s", EFFECT_MIXTURE | EFFECT_PUBLISHED,
-     "momentum of water that gets mixed, per area and density"},
+     "momentum of water that gets mixed / (area density)"},
     {"layer_exchange_y", scratch, south_face, no_hash, no_host, "", "m2/s", EFFECT_MIXTURE | EFFECT_PUBLISHED, ""},
     {"centered_water_velocity_x", scratch, west_face, no_hash, no_host, "", "m/s", EFFECT_WATER | EFFECT_SECOND_ORDER_WATER,
      "uw at the time of the heights"},
