@@ -21,7 +21,7 @@ if [ ! -e /dev/nvidiactl ]; then # no GPU to run them on: that CUDA's stages com
     options+=(-DWADI_CUDA_ARCHITECTURES=75 -DWADI_CUDA_MASKS=largest)
 fi
 if [ "$(uname -m)" = x86_64 ] && ! grep -qw avx512f /proc/cpuinfo; then # preset ci has all masks of the widest set alone: of one that runs here
-    options+=(-DWADI_AVX512=OFF)
+    options+=("-DWADI_CPU_SETS=base;avx2")
 fi
 # Two tests at once on two processors are done sooner when Mesa's software device starts no threads of its own. The shaders that it has
 # compiled are kept here, where a home that cannot be written would mean compiling them for each world anew.

@@ -46,7 +46,8 @@ Status WorldState::check_device(std::uint32_t effects) const {
     if (settings_.fused_stages == FusedStages::always && !device.fused_stages) {
         return error(Code::not_supported, "fused_stages: '" + device.name + "' has no groups of " +
                                               std::to_string(compute::fused_group_x * compute::fused_group_y) +
-                                              " threads that share " + std::to_string(compute::fused_shared_bytes) + " bytes");
+                                              " threads that share " + std::to_string(compute::fused_shared_bytes) +
+                                              " bytes, or its build leaves them out");
     }
     if ((effects & EFFECT_HALF_STORAGE) != 0 && !device.half_storage) {
         return error(Code::not_supported,

@@ -28,7 +28,7 @@ def half_bit(source):
 def stage_text(stage, stagec, source, isa, masks):
     with tempfile.TemporaryDirectory() as folder:
         code = pathlib.Path(folder) / "stage.cpp"
-        subprocess.run([stagec, "cpp", source / "shaders/effects.h", stage, code, isa, masks], check=True)
+        subprocess.run([stagec, "cpp", source / "shaders/effects.h", stage, code, isa, masks, *([] if isa == "base" else ["base"])], check=True)
         return code.read_text()
 
 
