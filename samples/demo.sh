@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# From a fresh clone to pictures: installs what is missing, builds the recorder, records a level, shows it in 3D where it can. Usage: demo.sh [LEVEL]
+# From a fresh clone to pictures: installs what is missing, builds, records a level, draws it in three dimensions where it can. Usage: demo.sh [LEVEL]
 set -euo pipefail
 
 level=${1:-canyon}
@@ -9,47 +9,57 @@ if [[ ! -f samples/levels/$level/level.json ]]; then
     echo "demo.sh: no level \"$level\"; the levels are: $(cd samples/levels && printf '%s ' */ | tr -d /)" >&2
     exit 2
 fi
+build=build/demo
+out=out/$level
+log=$build/demo.log
+mkdir -p "$build"
 
+step=0
 task() { # TITLE COMMAND...: runs a task and says how long it took
-    local title=$1 start=$SECONDS
+    local title="$((++step))/5 $1" start=$SECONDS
     shift
     echo "== $title"
     "$@"
     echo "== $title: done in $((SECONDS - start)) s"
 }
+logged() { # COMMAND...: of what it says each fifth of the files that it makes; the rest is for the log, and for the screen if it fails
+    if ! "$@" 2>&1 | tee "$log" |
+        awk -F'[][/]' '/^\[[0-9]+\/[0-9]+\]/ && int(5 * $2 / $3) > shown { shown = int(5 * $2 / $3); print "   " $2 " of " $3; fflush() }'; then
+        tail -n 20 "$log"
+        echo "demo.sh: that failed; all that it said is in $log" >&2
+        exit 1
+    fi
+}
 
 # A build of its own: without CUDA where there is no GPU for it, since its code for every generation of cards takes minutes to compile.
-build=build/demo
-options=(-DWADI_TESTS=OFF)
+options=()
 [[ -e /dev/nvidiactl ]] || options+=(-DWADI_CUDA=OFF)
-task "1/4 packages" samples/install_packages.sh
-task "2/4 configure" cmake --preset release -B "$build" "${options[@]}"
-task "3/4 build" cmake --build "$build" --target wadi-recorder
+task packages samples/install_packages.sh demo
+task configure logged cmake --preset demo "${options[@]}"
+grep -A 9 "^-- Wadi" "$log" | grep "^   "
+targets=(wadi-recorder)
+! grep -q "WADI_HAS_VIEWER:INTERNAL=ON" "$build/CMakeCache.txt" || targets+=(wadi-viewer)
+task "build ${targets[*]}" logged cmake --build "$build" --target "${targets[@]}"
 # The canyon lasts 70 s: a picture every 6.5 s makes twelve, all of them on the contact sheet.
 every=()
 [[ $level == canyon ]] && every=(--every 6.5)
-task "4/4 record $level" "$build/bin/wadi-recorder" "$level" "${every[@]}" --out "out/$level"
+task "record $level" "$build/bin/wadi-recorder" "$level" "${every[@]}" --out "$out"
 
-# Three moments in three dimensions, where the viewer can be built and a Vulkan device (a software one will do) draws them.
-viewer=$build/bin/wadi-viewer
+# Three moments, where the viewer was built and a Vulkan device (a software one will do) draws them.
 draw() {
-    cmake --build "$build" --target wadi-viewer && [[ -n $("$viewer" --list-gpus) ]] &&
-        samples/levels/gallery.py "$viewer" "$level" --moments 3 --quality low --size 640x360 --coarse 2 --backend cpu --out "out/$level/viewer"
+    if [[ ${#targets[@]} -eq 1 ]]; then
+        echo "left out: see the line \"Viewer\" of the configure report"
+    elif [[ -z $("$build/bin/wadi-viewer" --list-gpus) ]]; then
+        echo "left out: no Vulkan device"
+    elif samples/levels/gallery.py "$build/bin/wadi-viewer" "$level" --moments 3 --quality low --size 640x360 --coarse 2 --backend cpu --out "$out/viewer"; then
+        pictures="$out/viewer"
+    fi
 }
 pictures=
-if grep -q "WADI_HAS_VIEWER:INTERNAL=ON" "$build/CMakeCache.txt"; then
-    start=$SECONDS
-    echo "== viewer"
-    draw && pictures="out/$level/viewer"
-    echo "== viewer: ended after $((SECONDS - start)) s"
-fi
+task "draw $level in three dimensions" draw
 
 echo
 echo "Ready in $SECONDS s. Look at"
-echo "  $root/out/$level/contact_sheet.png"
-echo "  $root/out/$level/frame_*.png"
-if [[ -n $pictures ]]; then
-    echo "  $root/$pictures/*.png ($build/bin/wadi-viewer $level is a window)"
-else
-    echo "(no pictures in three dimensions: see the line \"Viewer\" of the configure report, or the viewer's message above)"
-fi
+echo "  $root/$out/contact_sheet.png"
+echo "  $root/$out/frame_*.png"
+[[ -z $pictures ]] || echo "  $root/$pictures/*.png ($build/bin/wadi-viewer $level is a window)"

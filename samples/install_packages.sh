@@ -1,24 +1,31 @@
 #!/usr/bin/env bash
-# Installs what Wadi needs to build and run on Debian 12, or the packages named, and nothing if all of it is there.
+# Installs on Debian 12 what is missing of what a purpose needs, and nothing where all of it is there.
+# Usage: install_packages.sh [PURPOSE ...]; the purposes are below, tests unless one is named.
 set -euo pipefail
 
-packages=(
-    # build
-    build-essential cmake ninja-build python3 python3-numpy pkg-config
-    # shaders and Vulkan; mesa-vulkan-drivers brings a software device
-    glslang-tools spirv-tools libvulkan-dev libvulkan-volk-dev libvulkan1 mesa-vulkan-drivers vulkan-validationlayers
-    # NVIDIA's Vulkan driver loads these
-    libegl1 libglvnd0 libgl1 libopengl0 libglx0 libgles2
-    # the viewer; xvfb, twm and xdotool for its tests in a window, ffmpeg for its videos
-    libglfw3-dev libimgui-dev xvfb twm xdotool ffmpeg
-    # tests of the C# binding
-    mono-mcs mono-runtime
-    # pictures
-    libdeflate-dev
-    # header libraries
-    libglm-dev doctest-dev nlohmann-json3-dev libcli11-dev libstb-dev
-)
-[[ $# -eq 0 ]] || packages=("$@")
+declare -A packages_of
+packages_of[demo]="build-essential cmake ninja-build python3 libglm-dev nlohmann-json3-dev libcli11-dev libstb-dev libdeflate-dev
+    glslang-tools spirv-tools libvulkan-dev libvulkan-volk-dev mesa-vulkan-drivers libglfw3-dev libimgui-dev" # mesa: a software device
+[[ ! -e /dev/nvidiactl ]] || packages_of[demo]+=" libegl1 libglvnd0 libgl1 libopengl0 libglx0 libgles2" # NVIDIA's Vulkan driver loads these
+packages_of[viewer]="${packages_of[demo]} ffmpeg" # for its videos
+# To run all tests: the viewer in a window, validation layers, the C# binding, arrays in Python.
+packages_of[tests]="${packages_of[viewer]} doctest-dev python3-numpy pkg-config vulkan-validationlayers xvfb twm xdotool mono-mcs mono-runtime"
+# Lanes of tests/platforms, beside the tests.
+packages_of[windows]="g++-mingw-w64-x86-64-posix wine64"
+packages_of[aarch64]="g++-aarch64-linux-gnu qemu-user"
+packages_of[wasm]="emscripten node-acorn chromium"
+packages_of[swiftshader]="chromium-common"
+
+[[ $# -ne 0 ]] || set -- tests
+packages=()
+for purpose in "$@"; do
+    if [[ -z $purpose || -z ${packages_of[$purpose]:-} ]]; then
+        echo "install_packages.sh: no purpose \"$purpose\"; the purposes are: demo viewer tests windows aarch64 wasm swiftshader" >&2
+        exit 2
+    fi
+    # shellcheck disable=SC2206 # words
+    packages+=(${packages_of[$purpose]})
+done
 
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
     echo "install_packages.sh: this is not a Debian system; install the counterparts of: ${packages[*]}" >&2
@@ -34,7 +41,7 @@ if [[ ${#missing[@]} -eq 0 ]]; then
     exit 0
 fi
 
-echo "These packages are missing and will be installed with apt-get: ${missing[*]}"
+echo "${#missing[@]} packages are missing and will be installed with apt-get: ${missing[*]}"
 as_root=()
 if [[ $EUID -ne 0 ]]; then
     if ! command -v sudo >/dev/null; then
@@ -52,5 +59,10 @@ if [[ $EUID -ne 0 ]]; then
     fi
     as_root=(sudo)
 fi
-"${as_root[@]}" apt-get update -qq
-"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}"
+log=$(mktemp /tmp/wadi-packages.XXXXXX.log)
+if ! { "${as_root[@]}" apt-get update -qq && "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -qq -y --no-install-recommends "${missing[@]}"; } >"$log" 2>&1; then
+    tail -n 5 "$log" >&2
+    echo "install_packages.sh: apt-get failed; all that it said is in $log" >&2
+    exit 1
+fi
+rm "$log"

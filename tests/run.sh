@@ -1,51 +1,111 @@
 #!/usr/bin/env bash
-# All tests: installs what is missing, builds, runs. Usage: tests/run.sh [PRESET ...], default: o3 ci asan.
-# o3: no tests; warnings that g++ has at -O3 alone, which are errors.
-# ci: every backend that this machine has, as preset release but quicker to build; then two lanes of tests/platforms. asan: the CPU
-# backend under the address and undefined-behaviour sanitizers with every stage index checked. release, tsan, dev, cpu-only,
-# vulkan-lavapipe and cuda work as well.
+# Tests: installs what is missing, builds, runs. README.md beside it says what each of these runs and how long it takes.
+#   tests/run.sh                  presets ci and asan, all but what is labelled long; at its end the lanes that have fallen behind
+#   tests/run.sh quick            of preset ci what takes seconds
+#   tests/run.sh long [LANE ...]  the lanes of tests/lanes.txt, all or some; each that passes is stamped there
+#   tests/run.sh PRESET ...       all tests of a preset: release, ci, asan, tsan, dev, cpu-only, vulkan-lavapipe, cuda
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-presets=("$@")
-if [ ${#presets[@]} -eq 0 ]; then
-    presets=(o3 ci asan)
-fi
 say() { printf '\n== %s (%d s)\n' "$1" "$SECONDS"; }
-
-say "packages"
-./samples/install_packages.sh
+failed=()
 jobs=$(nproc)
+# Clones share what a compiler cache holds, where there is one, precompiled headers included.
+export CCACHE_BASEDIR="$PWD" CCACHE_NOHASHDIR=1 CCACHE_SLOPPINESS="pch_defines,time_macros${CCACHE_SLOPPINESS:+,$CCACHE_SLOPPINESS}"
+# Two tests at once on two processors are done sooner when Mesa's software device starts no threads of its own. The shaders that it has
+# compiled are kept here, where a home that cannot be written would mean compiling them for each world anew.
+export LP_NUM_THREADS=0 MESA_SHADER_CACHE_DIR="$PWD/build/shader-cache"
 options=()
 if [ ! -e /dev/nvidiactl ]; then # no GPU to run them on: that CUDA's stages compile, ptxas included, is seen from the smallest one and all effects
     options+=(-DWADI_CUDA_ARCHITECTURES=75 -DWADI_CUDA_MASKS=largest)
 fi
 if [ "$(uname -m)" = x86_64 ] && ! grep -qw avx512f /proc/cpuinfo; then # preset ci has all masks of the widest set alone: of one that runs here
-    options+=(-DWADI_AVX512=OFF)
+    options+=("-DWADI_CPU_SETS=base;avx2")
 fi
-# Two tests at once on two processors are done sooner when Mesa's software device starts no threads of its own. The shaders that it has
-# compiled are kept here, where a home that cannot be written would mean compiling them for each world anew.
-export LP_NUM_THREADS=0 MESA_SHADER_CACHE_DIR="$PWD/build/shader-cache"
-failed=()
-for preset in "${presets[@]}"; do
-    say "configure $preset"
-    cmake --preset "$preset" "${options[@]}"
-    say "build $preset"
-    if [ "$preset" = o3 ]; then # engine, backends and plugin compiled, not linked: the stages would take most of the time
+
+build() { # PRESET CMAKE_OPTION ...
+    say "configure $1"
+    cmake --preset "$1" "${options[@]}" "${@:2}" && say "build $1" && cmake --build --preset "$1" -j "$jobs"
+}
+tests() { # PRESET CTEST_OPTION ...
+    say "test $1 ${*:2}"
+    ctest --preset "$1" -j "$jobs" "${@:2}"
+}
+preset() { # PRESET CMAKE_OPTION ...: all of it
+    build "$@" && tests "$1"
+}
+
+# A lane returns 0 where it has passed and 77 where this machine lacks what it needs.
+lane_o3() { # engine, backends and plugin compiled, not linked: g++ warns of more at -O3, file by file
+    say "configure o3"
+    cmake --preset o3 && say "build o3" &&
         ninja -C build/o3 -t targets all | sed -nE 's/^((engine|backends|plugin)\/.*\.o): .*/\1/p' | xargs ninja -C build/o3 -j "$jobs"
-        continue
-    fi
-    cmake --build --preset "$preset" -j "$jobs"
-    say "test $preset"
-    ctest --preset "$preset" -j "$jobs" || failed+=("$preset")
-    if [ "$preset" = ci ]; then
-        say "other platforms, those that cost least"
-        WADI_NATIVE_BUILD=build/ci WADI_JOBS=$jobs tests/platforms/run.sh static swiftshader || failed+=(platforms)
-    fi
-done
+}
+lane_asan() { preset asan -DWADI_BASE_STAGES_OF=; }
+lane_tsan() { preset tsan; }
+lane_release() { preset release; }
+lane_reports() { build ci && tests ci -L long; }
+lane_godot() { build ci && tests/godot/run.sh build/ci; }
+lane_gpu() {
+    [ -e /dev/nvidiactl ] || { echo "no NVIDIA device" && return 77; }
+    build release && build/release/bin/conformance test --require cuda,vulkan
+}
+
+long() { # LANE ...
+    local lanes known lane status
+    known=$(tests/lanes.py list)
+    lanes=("$@")
+    [ ${#lanes[@]} -ne 0 ] || read -r -a lanes <<<"$known"
+    for lane in "${lanes[@]}"; do
+        [[ " $known " == *" $lane "* ]] || { echo "run.sh: no lane \"$lane\"; the lanes are: $known" >&2 && exit 2; }
+    done
+    for lane in "${lanes[@]}"; do
+        say "lane $lane"
+        status=0
+        if [ "$(type -t "lane_$lane")" = function ]; then
+            "lane_$lane" || status=$?
+        else
+            WADI_JOBS=$jobs tests/platforms/run.sh "$lane" || status=$?
+        fi
+        case $status in
+        0) tests/lanes.py passed "$lane" || true ;;
+        77) echo "lane $lane: not run here" ;;
+        *) failed+=("$lane") ;;
+        esac
+    done
+}
+
+say "packages"
+./samples/install_packages.sh
+case ${1:-} in
+quick)
+    ran=quick
+    build ci
+    tests ci -L quick || failed+=(quick)
+    ;;
+long)
+    ran=$*
+    long "${@:2}"
+    ;;
+"")
+    ran="ci asan"
+    build ci
+    tests ci -LE long || failed+=(ci)
+    build asan -DWADI_BASE_STAGES_OF="$PWD/build/ci"
+    tests asan -LE long || failed+=(asan)
+    ;;
+*)
+    ran=$*
+    for name in "$@"; do
+        preset "$name" -DWADI_BASE_STAGES_OF= || failed+=("$name")
+    done
+    ;;
+esac
 say "done"
+behind=$(tests/lanes.py stale)
+[ -z "$behind" ] || printf 'lanes that are older than the code that they guard ("tests/run.sh long LANE"):\n%s\n' "$behind"
 if [ ${#failed[@]} -ne 0 ]; then
     echo "FAILED: ${failed[*]}"
     exit 1
 fi
-echo "all tests passed: ${presets[*]}"
+echo "passed: $ran"

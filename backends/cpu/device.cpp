@@ -36,7 +36,7 @@ CpuDevice::CpuDevice(const InstructionSet& set, const compute::DeviceOptions& op
         capabilities_.memory_bytes != 0 ? capabilities_.memory_bytes : std::numeric_limits<std::ptrdiff_t>::max();
     capabilities_.exact_float = true;
     capabilities_.timestamps = true;
-    capabilities_.fused_stages = true;
+    capabilities_.fused_stages = set.fused;
     capabilities_.queue_depth = most_in_flight;
 }
 
@@ -443,9 +443,12 @@ const backends::Backend& cpu_backend() {
                              "threads: " + std::to_string(options.threads) + " is outside 0 ... " + std::to_string(most_threads));
             }
             const auto* set = choose_instruction_set(options.instruction_set);
-            if (set == nullptr)
-                return error(Code::not_supported,
-                             "this processor or build has no instruction set '" + options.instruction_set + "'");
+            if (set == nullptr) {
+                const std::string wanted = options.instruction_set;
+                return error(Code::not_supported, wanted.empty()
+                                                      ? "this build is for other processors than this one (WADI_CPU_SETS)"
+                                                      : "this processor or build has no instruction set '" + wanted + "'");
+            }
             const int cores = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
             try {
                 auto device = std::make_unique<CpuDevice>(*set, options);

@@ -25,9 +25,10 @@ struct StageCall {
 struct InstructionSet {
     std::string_view name;
     const StageSelect* select; // in the order of the stage table
+    bool fused;                // fused stages are there; otherwise null
 };
 
-/// Defined in the generated file; "base" first.
+/// Defined in the generated file, ascending: "base", "avx2", "avx512", those of WADI_CPU_SETS.
 std::span<const InstructionSet> instruction_sets();
 
 /// The named set, or the best one this processor runs for "". Null if there is no such set or the processor lacks it.

@@ -1,7 +1,9 @@
 // stagec: the build's own tool for stage files and fused files. It has no dependencies and is built first.
 //   stagec glsl  EFFECTS_H STAGE OUT.comp          GLSL wrapper: prelude, stage, main()
-//   stagec cpp   EFFECTS_H STAGE OUT.cpp ISA all|largest  a function per mask the stage distinguishes, for one instruction set;
-//                                                  largest: of each choice of methods the masks that no other one includes
+//   stagec cpp   EFFECTS_H STAGE OUT.cpp ISA all|largest [BELOW]  a function per mask the stage distinguishes, for one
+//   instruction
+//                                                  set; largest: of each choice of methods the masks that no other one includes;
+//                                                  BELOW: the set whose functions run the masks that are left out
 //   stagec cuda  EFFECTS_H STAGE OUT.cu all|largest  every mask as CUDA kernels; largest: masks that no other one includes
 //   stagec nocontract IN.spv OUT.spv               decorates every float operation NoContraction
 //   stagec embed IN.spv OUT.inc                    a module as the words of a C++ array
@@ -18,11 +20,11 @@ int main(int argc, char** argv) {
     if (mode == "glsl" && a.size() == 4) {
         const Effects effects = parse_effects(a[1]);
         write_code(a[3], is_fused(a[2]) ? write_glsl(parse_fused(a[2], effects), effects) : write_glsl(parse_stage(a[2])));
-    } else if (mode == "cpp" && a.size() == 6 && (a[5] == "all" || a[5] == "largest")) {
+    } else if (mode == "cpp" && (a.size() == 6 || a.size() == 7) && (a[5] == "all" || a[5] == "largest")) {
         const Effects effects = parse_effects(a[1]);
-        const bool all = a[5] == "all";
-        write_code(a[3], is_fused(a[2]) ? write_cpp(parse_fused(a[2], effects), a[4], effects, all)
-                                        : write_cpp(parse_stage(a[2]), a[4], effects, all));
+        const CpuSet set{a[4], a.size() == 7 ? a[6] : "", a[5] == "all"};
+        write_code(a[3], is_fused(a[2]) ? write_cpp(parse_fused(a[2], effects), set, effects)
+                                        : write_cpp(parse_stage(a[2]), set, effects));
     } else if (mode == "cuda" && a.size() == 5 && (a[4] == "all" || a[4] == "largest")) {
         const Effects effects = parse_effects(a[1]);
         const bool all = a[4] == "all";

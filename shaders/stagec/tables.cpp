@@ -68,25 +68,27 @@ std::string stage_table(const std::vector<std::string>& paths, const Effects& ef
 
 std::string cpu_rows(const std::string& isas, const std::vector<std::string>& paths) {
     std::ostringstream o;
-    // Fused stages are slower here than their parts and compiled for the base set alone: they are there to be compared with.
-    const auto function = [](const std::string& isa, const std::string& path) {
-        return "wadi_cpu_" + (is_fused(path) ? std::string("base") : isa) + "_" + stem(path);
-    };
     std::vector<std::string> sets;
     std::istringstream list(isas);
     for (std::string isa; std::getline(list, isa, ',');) sets.push_back(isa);
+    // Fused stages are slower here than their parts and compiled for the base set alone: they are there to be compared with.
+    const bool fused = std::find(sets.begin(), sets.end(), "base") != sets.end();
+    const auto function = [](const std::string& isa, const std::string& path) {
+        return "wadi_cpu_" + (is_fused(path) ? std::string("base") : isa) + "_" + stem(path);
+    };
     o << "// Written by stagec: which function runs a stage, by instruction set; in the order of the stage table.\n"
       << "#include \"backends/cpu/stages.hpp\"\nextern \"C\" {\n";
     for (const auto& isa : sets)
-        for (const auto& path : paths) o << "wadi::cpu::StageBlock " << function(isa, path) << "(unsigned effects);\n";
+        for (const auto& path : paths)
+            if (fused || !is_fused(path)) o << "wadi::cpu::StageBlock " << function(isa, path) << "(unsigned effects);\n";
     o << "}\nnamespace wadi::cpu {\nnamespace {\n";
     for (const auto& isa : sets) {
         o << "constexpr StageSelect select_" << isa << "[] = {\n";
-        for (const auto& path : paths) o << "    " << function(isa, path) << ",\n";
+        for (const auto& path : paths) o << "    " << (fused || !is_fused(path) ? function(isa, path) : "nullptr") << ",\n";
         o << "};\n";
     }
     o << "constexpr InstructionSet sets[] = {\n";
-    for (const auto& isa : sets) o << "    {\"" << isa << "\", select_" << isa << "},\n";
+    for (const auto& isa : sets) o << "    {\"" << isa << "\", select_" << isa << ", " << (fused ? "true" : "false") << "},\n";
     o << "};\n} // namespace\nstd::span<const InstructionSet> instruction_sets() {\n    return sets;\n}\n} // namespace "
          "wadi::cpu\n";
     return o.str();

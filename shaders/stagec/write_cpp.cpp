@@ -35,10 +35,10 @@ std::string file_head(const Stage& s, const std::string& isa) {
            ".\nnamespace wadi_stage_" + isa + " {\n#include \"language/stage_cpp.h\"\n";
 }
 
-// Base has every mask, and what a set lacks is that of the set below.
-std::string select_function(const Stage& s, const std::string& isa, unsigned tested, std::vector<unsigned> masks,
-                            const Effects& effects, bool all_masks) {
-    const std::string below = isa == "base" ? "" : isa == "avx512" ? "avx2" : "base";
+// The lowest set has every mask, and what another lacks is that of the set below.
+std::string select_function(const Stage& s, const CpuSet& set, unsigned tested, std::vector<unsigned> masks,
+                            const Effects& effects) {
+    const auto& [isa, below, all_masks] = set;
     if (!below.empty() && !all_masks) masks = largest(masks, ~(effects.at(first_choice) - 1));
     std::ostringstream o;
     o << "using Block = void (*)(void* const*, const unsigned long long*, const void*, const void*, int, int, int, int);\n";
@@ -53,10 +53,10 @@ std::string select_function(const Stage& s, const std::string& isa, unsigned tes
 
 } // namespace
 
-std::string write_cpp(const Stage& s, const std::string& isa, const Effects& effects, bool all_masks) {
+std::string write_cpp(const Stage& s, const CpuSet& set, const Effects& effects) {
     const unsigned tested = tested_bits(s, effects);
     std::ostringstream o;
-    o << file_head(s, isa) << stage_text(s) << block_head() << "    const " << s.struct_name << "<E> stage{P, S\n"
+    o << file_head(s, set.isa) << stage_text(s) << block_head() << "    const " << s.struct_name << "<E> stage{P, S\n"
       << buffer_members(s) << "    };\n    for (int j = j0; j < j1; ++j) {\n        const " << s.struct_name
       << "<E> local = stage;\n"
       << (length(s.extent).empty()
@@ -65,17 +65,17 @@ std::string write_cpp(const Stage& s, const std::string& isa, const Effects& eff
       << "#if defined(__GNUC__) && !defined(__clang__)\n#pragma GCC ivdep\n#elif defined(__clang__)\n#pragma clang loop "
          "vectorize(assume_safety)\n#endif\n"
       << "        for (int i = i0; i < i1; ++i) local.kernel(i, j);\n    }\n}\n} // namespace\n"
-      << select_function(s, isa, tested, masks(tested), effects, all_masks);
+      << select_function(s, set, tested, masks(tested), effects);
     return o.str();
 }
 
 // One window after the other, what a GPU keeps in shared memory on the stack. Slower than the stages one by one: it is there to
 // be compared with them.
-std::string write_cpp(const FusedStage& f, const std::string& isa, const Effects& effects, bool all_masks) {
+std::string write_cpp(const FusedStage& f, const CpuSet& set, const Effects& effects) {
     const Stage& s = f.stage;
     std::ostringstream o;
     // What is loaded from a buffer that the fused stage's masks do not have is a constant, and its place used by nobody.
-    o << file_head(s, isa)
+    o << file_head(s, set.isa)
       << "#pragma GCC diagnostic ignored \"-Wunused-but-set-variable\"\n#pragma GCC diagnostic ignored \"-Wunused-parameter\"\n"
       << physics_includes(f) << "struct Place { int x, y; };\n#define PLACE(X, Y) Place{X, Y}\n"
       << index_macros << shared_macros() << one_by_one
@@ -97,7 +97,7 @@ std::string write_cpp(const FusedStage& f, const std::string& isa, const Effects
          "FUSED_COLUMNS) {\n            stage.own_i0 = i;\n            stage.own_j0 = j;\n            stage.own_i1 = i + "
          "FUSED_COLUMNS < i1 ? i + FUSED_COLUMNS : i1;\n            stage.own_j1 = j + FUSED_ROWS < j1 ? j + FUSED_ROWS : "
          "j1;\n            stage.window();\n        }\n    }\n}\n} // namespace\n"
-      << select_function(s, isa, tested_bits(s, effects), masks(tested_bits(s, effects), f.needs, f.without), effects, all_masks);
+      << select_function(s, set, tested_bits(s, effects), masks(tested_bits(s, effects), f.needs, f.without), effects);
     return o.str();
 }
 

@@ -39,8 +39,13 @@ std::string tile_part(const std::string& member, const std::string& skip);
 
 std::string write_glsl(const Stage& stage);
 std::string write_glsl(const FusedStage& fused, const Effects& effects);
-std::string write_cpp(const Stage& stage, const std::string& isa, const Effects& effects, bool all_masks);
-std::string write_cpp(const FusedStage& fused, const std::string& isa, const Effects& effects, bool all_masks);
+/// An instruction set of the CPU, and the one whose functions run the masks that it lacks ("": none, it has all).
+struct CpuSet {
+    std::string isa, below;
+    bool all_masks = true;
+};
+std::string write_cpp(const Stage& stage, const CpuSet& set, const Effects& effects);
+std::string write_cpp(const FusedStage& fused, const CpuSet& set, const Effects& effects);
 std::string write_cuda(const Stage& stage, const Effects& effects, bool all_masks);
 std::string write_cuda(const FusedStage& fused, const Effects& effects, bool all_masks);
 

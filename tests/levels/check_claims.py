@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs a level as its expected.json says and checks every claim, each with a control that must break it. README.md has the format.
 
-usage: check_claims.py RECORDER LEVEL_FOLDER [--backend cpu] [--full] [--keep DIR] [--first-steps N --equal-to BACKEND]
+usage: check_claims.py RECORDER LEVEL_FOLDER [--backend cpu] [--full] [--keep DIR]
 """
 import argparse
 import json
@@ -22,51 +22,27 @@ def fail(message):
     sys.exit(f"check_claims: {message}")
 
 
-def start(recorder, level, run, backend, folder):
-    """The recorder's command line for a run, without its length."""
+def record(recorder, level, name, run, times, backend, folder):
+    """Runs one variant and returns its fields at all times."""
     command = [recorder, str(level), "--backend", backend, "--no-frames", "--out", str(folder), "--summary", str(folder / "summary.json")]
     for key in ("variant", "dt", "method"):
         if key in run:
             command += [f"--{key}", str(run[key])]
     if "size" in run:
         command += ["--size", "{}x{}".format(*run["size"])]
+    dumped = ",".join(f"{time:g}" for time in times)
+    command += ["--seconds", str(run.get("seconds", max(times))), "--dump", f"H,hs,W,hw,surface,phi@{dumped}"]
     folder.mkdir(parents=True)
-    return command
-
-
-def finish(command, name, folder):
-    """Runs it; the summary."""
     done = subprocess.run(command, capture_output=True, text=True)
     if done.returncode != 0:
         fail(f"run {name}: {' '.join(command)}\n{done.stdout}{done.stderr}")
-    return json.loads((folder / "summary.json").read_text())
-
-
-def record(recorder, level, name, run, times, backend, folder):
-    """Runs one variant and returns its fields at all times."""
-    command = start(recorder, level, run, backend, folder)
-    dumped = ",".join(f"{time:g}" for time in times)
-    command += ["--seconds", str(run.get("seconds", max(times))), "--dump", f"H,hs,W,hw,surface,phi@{dumped}"]
-    summary = finish(command, name, folder)
+    summary = json.loads((folder / "summary.json").read_text())
     if any(summary["ledger"][what]["drift_quanta"] != 0 for what in ("water", "sand")):
         fail(f"run {name}: the ledger drifts: {summary['ledger']}")
     grid = summary["grid"]
     print(f"run {name}: {grid['nx']} x {grid['ny']} cells of {grid['dx']:.4g} m, {summary['steps']} steps in "
           f"{summary['wall_seconds']:.1f} s, hash {summary['hash']}")
     return measures.Run(folder, grid["nx"], grid["ny"], grid["dx"], [float(f"{time:g}") for time in times])
-
-
-def first_steps(recorder, level, name, run, steps, backends, folder):
-    """Whether a run's first steps end in the same bits on two backends."""
-    hashes = []
-    dt = finish(start(recorder, level, run, backends[-1], folder / "start") + ["--seconds", "0"], name, folder / "start")["grid"]["dt"]
-    for backend in backends:
-        here = folder / backend
-        command = start(recorder, level, run, backend, here)
-        hashes.append(finish(command + ["--seconds", repr(steps * dt)], name, here)["hash"])
-    print(f"{'OK  ' if hashes[0] == hashes[1] else 'FAIL'} run {name}: after {steps} steps {hashes[0]} on {backends[0]}, "
-          f"{hashes[1]} on {backends[1]}")
-    return hashes[0] == hashes[1]
 
 
 def evaluate(text, runs, what):
@@ -100,8 +76,6 @@ def main():
     parser.add_argument("--backend", default="cpu")
     parser.add_argument("--full", action="store_true", help="the level's own size instead of the small one")
     parser.add_argument("--keep", type=pathlib.Path, help="folder for the fields, kept")
-    parser.add_argument("--equal-to", metavar="BACKEND", help="instead of the claims: the first steps have this backend's bits")
-    parser.add_argument("--first-steps", type=int, default=40, metavar="N")
     options = parser.parse_args()
     expected = json.loads((options.level / "expected.json").read_text())
     unknown = set(expected) - {"small", "runs", "times", "claims"}
@@ -114,13 +88,7 @@ def main():
                 fail(f"run {name}: unknown keys {sorted(set(run) - RUN_KEYS)}")
             small = {} if options.full else expected["small"]
             folder = (options.keep or pathlib.Path(scratch)) / name
-            if options.equal_to is not None:
-                backends = (options.backend, options.equal_to)
-                runs[name] = first_steps(options.recorder, options.level, name, {**small, **run}, options.first_steps, backends, folder)
-                continue
             runs[name] = record(options.recorder, options.level, name, {**small, **run}, expected["times"], options.backend, folder)
-        if options.equal_to is not None:
-            return 0 if runs and all(runs.values()) else 1
         results = [check(claim, runs) for claim in expected["claims"]]
     for good, text in results:
         print(f"{'OK  ' if good else 'FAIL'} {text}")

@@ -64,7 +64,7 @@ build() { # FOLDER TARGETS CMAKE_OPTION ...
     copy_headers
     # shellcheck disable=SC2086
     cmake -S . -B "$work/$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$headers" -DCMAKE_FIND_ROOT_PATH="$headers" -DWADI_BACKENDS=OFF \
-        -DWADI_NARROW_MASKS=largest -DWADI_AVX512=OFF -DWADI_OPTIMISE_BASE="-O1;-ftree-vectorize;-fvect-cost-model=dynamic" \
+        -DWADI_NARROW_MASKS=largest -DWADI_OPTIMISE_BASE="-O1;-ftree-vectorize;-fvect-cost-model=dynamic" \
         -DWADI_OPTIMISE_VECTOR="-O1;-ftree-vectorize;-fvect-cost-model=dynamic" -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON "$@" >"$work/$folder.log" 2>&1 &&
         ninja -C "$work/$folder" -j "$jobs" $targets >>"$work/$folder.log" 2>&1 ||
         { tail -n 20 "$work/$folder.log"; echo "$folder: cannot be built, see $work/$folder.log"; return 1; }
@@ -121,7 +121,7 @@ run() { # TARGET COMPILER FOLDER SUFFIX RUNNER ...
 version() { "$@" 2>/dev/null | grep -m 1 -oE '[0-9]+\.[0-9]+(\.[0-9]+)*' | head -n 1; }
 
 lane_windows() {
-    samples/install_packages.sh g++-mingw-w64-x86-64-posix wine64 && build windows "wadi wadi-minimal-host wadi-test-golden" -DCMAKE_TOOLCHAIN_FILE="$PWD/$here/windows.cmake" || return 1
+    samples/install_packages.sh windows && build windows "wadi wadi-minimal-host wadi-test-golden" -DCMAKE_TOOLCHAIN_FILE="$PWD/$here/windows.cmake" "-DWADI_CPU_SETS=base;avx2" || return 1
     local wine
     wine=$(command -v wine64 || echo /usr/lib/wine/wine64)
     export WINEDEBUG=-all WINEPREFIX=$work/wine
@@ -135,7 +135,7 @@ lane_windows() {
 
 # NEON belongs to the base set of this processor: what base is compiled to is the vector code.
 lane_aarch64() {
-    samples/install_packages.sh g++-aarch64-linux-gnu qemu-user && build aarch64 "wadi wadi-minimal-host wadi-test-golden" -DCMAKE_TOOLCHAIN_FILE="$PWD/$here/aarch64.cmake" || return 1
+    samples/install_packages.sh aarch64 && build aarch64 "wadi wadi-minimal-host wadi-test-golden" -DCMAKE_TOOLCHAIN_FILE="$PWD/$here/aarch64.cmake" || return 1
     python3 tests/unit/vectorised.py "$work/aarch64/tools/stagec_of_builder" . aarch64-linux-gnu-g++ || return 1
     run "aarch64 Linux" "g++ $(version aarch64-linux-gnu-g++ -dumpfullversion), QEMU $(version qemu-aarch64 --version)" aarch64 "" qemu-aarch64 -L /usr/aarch64-linux-gnu
 }
@@ -178,7 +178,7 @@ wasm_host() { # FOLDER COMPILER_OPTION ...
 }
 
 lane_wasm() {
-    samples/install_packages.sh emscripten node-acorn chromium || return 1
+    samples/install_packages.sh wasm || return 1
     # Where Node.js is not Debian's it does not look for Debian's modules; a build's time goes into starting emcc.
     export NODE_PATH=/usr/share/nodejs EMSDK_PYTHON=/usr/bin/python3
     local toolchain=/usr/share/emscripten/cmake/Modules/Platform/Emscripten.cmake good=yes embedded="" file hashes=() emscripten node chromium
@@ -204,7 +204,7 @@ lane_wasm() {
 }
 
 lane_swiftshader() {
-    samples/install_packages.sh chromium-common || return 1
+    samples/install_packages.sh swiftshader || return 1
     local driver native=${WADI_NATIVE_BUILD:-} suite failed=0
     driver=$(dpkg -L chromium-common | grep vk_swiftshader_icd.json) || { echo "swiftshader: chromium-common has no vk_swiftshader_icd.json"; return 1; }
     if [ -z "$native" ]; then
@@ -225,7 +225,7 @@ lane_swiftshader() {
 
 # The set base alone and nothing optimised: what is tried is the archive, and bits are the same.
 lane_static() {
-    samples/install_packages.sh pkg-config || return 1
+    samples/install_packages.sh tests || return 1
     build static "wadi wadi-minimal-host" -DWADI_STATIC=ON -DWADI_TESTS=OFF -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG=-O0 -DCMAKE_UNITY_BUILD=ON \
         -DWADI_CHECK_INDICES=ON || return 1
     local prefix=$work/static/installed

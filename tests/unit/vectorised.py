@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""That g++ turns the rows of every stage of cells and faces into vector code. Usage: vectorised.py STAGEC SOURCE_DIR CXX [STAGE ...].
+"""That g++ turns the rows of every stage of cells and faces into vector code. Usage: vectorised.py STAGEC SOURCE_DIR CXX [-OPTION ...] [STAGE ...].
 
-On x86-64 that is set avx2; a cross compiler for another processor is asked for set base, which on 64-bit ARM may use NEON."""
+On x86-64 that is set avx2; a cross compiler for another processor is asked for set base, which on 64-bit ARM may use NEON.
+-OPTION: how stages are optimised, -O3 unless said."""
 import concurrent.futures
 import os
 import pathlib
@@ -10,7 +11,7 @@ import subprocess
 import sys
 import tempfile
 
-FLAGS = "-std=c++20 -O3 -ffp-contract=off -fno-math-errno -fno-trapping-math -fno-thread-jumps -DNDEBUG".split()
+FLAGS = "-std=c++20 -ffp-contract=off -fno-math-errno -fno-trapping-math -fno-thread-jumps -DNDEBUG".split()
 
 
 def bits(source):
@@ -24,7 +25,7 @@ def effects(mask, source):
 def stage_text(stage, stagec, source, isa, masks):
     with tempfile.TemporaryDirectory() as folder:
         code = pathlib.Path(folder) / "stage.cpp"
-        subprocess.run([stagec, "cpp", source / "shaders/effects.h", stage, code, isa, masks], check=True)
+        subprocess.run([stagec, "cpp", source / "shaders/effects.h", stage, code, isa, masks, *([] if isa == "base" else ["base"])], check=True)
         return code.read_text()
 
 
@@ -33,7 +34,7 @@ def largest_masks(stage, stagec, source):
     return sorted({int(mask) for mask in re.findall(r"case (\d+)u: return wadi_stage_avx2::block", stage_text(stage, stagec, source, "avx2", "largest"))})
 
 
-def fails(text, mask, source, cxx, isa, spoil=""):
+def fails(text, mask, source, cxx, isa, optimise, spoil=""):
     """Whether no loop over a row is vectorised in the stage's text with this mask alone."""
     text = re.sub(rf"    case (?!{mask}u)\d+u: return wadi_stage_{isa}::block<\d+u>;\n", "", text)
     if spoil:
@@ -41,7 +42,7 @@ def fails(text, mask, source, cxx, isa, spoil=""):
     with tempfile.TemporaryDirectory() as folder:
         code = pathlib.Path(folder) / "stage.cpp"
         code.write_text(text)
-        said = subprocess.run([cxx, *FLAGS, *([] if isa == "base" else [f"-m{isa}"]), "-I", source / "shaders", "-I", source, "-c", code, "-o", os.devnull, "-fopt-info-vec-optimized"],
+        said = subprocess.run([cxx, *FLAGS, *optimise, *([] if isa == "base" else [f"-m{isa}"]), "-I", source / "shaders", "-I", source, "-c", code, "-o", os.devnull, "-fopt-info-vec-optimized"],
                               capture_output=True, text=True)
     if said.returncode != 0:
         sys.exit(said.stderr)
@@ -49,7 +50,9 @@ def fails(text, mask, source, cxx, isa, spoil=""):
 
 
 def main():
-    stagec, source, cxx, *names = sys.argv[1:]
+    stagec, source, cxx, *words = sys.argv[1:]
+    optimise = [word for word in words if word.startswith("-")] or ["-O3"]
+    names = [word for word in words if not word.startswith("-")]
     source = pathlib.Path(source)
     if "clang" in subprocess.run([cxx, "--version"], capture_output=True, text=True, check=True).stdout:
         print("not g++: nothing to ask")
@@ -61,15 +64,15 @@ def main():
     texts = {path.stem: stage_text(path, stagec, source, isa, "all") for path in stages}
     asked = [(path.stem, mask) for path in stages for mask in largest_masks(path, stagec, source)]
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        found = list(pool.map(lambda one: fails(texts[one[0]], one[1], source, cxx, isa), asked))
+        found = list(pool.map(lambda one: fails(texts[one[0]], one[1], source, cxx, isa, optimise), asked))
     bad = [f"{name} {effects(mask, source)}" for (name, mask), failed in zip(asked, found) if failed]
     for name in bad:
         print(f"FAIL {name}: no row in vectors; see rule 8 of shaders/README.md")
     branch = "{ if (i % 7 == 3) return; local.kernel(i, j); }"  # leaves the loop: nothing to vectorise
-    if asked and not fails(texts[asked[0][0]], asked[0][1], source, cxx, isa, spoil=branch):
+    if asked and not fails(texts[asked[0][0]], asked[0][1], source, cxx, isa, optimise, spoil=branch):
         bad.append("control")
         print("FAIL control: a loop that is left in its middle passes")
-    print(f"{machine}, set {isa}: {len(stages)} stages, {len(asked)} masks, {len(bad)} failed")
+    print(f"{machine}, set {isa}, {' '.join(optimise)}: {len(stages)} stages, {len(asked)} masks, {len(bad)} failed")
     return 1 if bad else 0
 
 

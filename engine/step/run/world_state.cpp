@@ -46,7 +46,8 @@ Status WorldState::check_device() const {
     if (settings_.fused_stages == FusedStages::always && !device.fused_stages) {
         return error(Code::not_supported, "fused_stages: '" + device.name + "' has no groups of " +
                                               std::to_string(compute::fused_group_x * compute::fused_group_y) +
-                                              " threads that share " + std::to_string(compute::fused_shared_bytes) + " bytes");
+                                              " threads that share " + std::to_string(compute::fused_shared_bytes) +
+                                              " bytes, or its build leaves them out");
     }
     const std::uint64_t bytes = layout_.size() * 4, limit = device.largest_buffer_bytes;
     if (limit != 0 && bytes > limit) {
