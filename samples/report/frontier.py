@@ -19,7 +19,6 @@ import sys
 import charts
 import recordings
 import stamps
-import sweep
 
 try:
     import frontier_cases
@@ -35,6 +34,39 @@ METHODS = {"order 1": ("robust", 2, 1), "order 2": ("robust", 2, 1), "published"
 MACHINES = {"gpu": ("On a GPU", (0.1, 0.5, 2, 8), (256, 512, 1024, 2048, 4096)), "cpu": ("On a CPU", (0.25, 1, 4, 16), (64, 128, 256, 512))}
 BEGIN_MARK, END_MARK = "<!-- frontier.py writes from here -->\n", "<!-- to here -->\n"
 HERE = pathlib.Path(__file__).resolve().parent
+
+
+class Store:
+    """Rows by point in a file of JSON lines: a run that was broken off goes on where it stopped."""
+
+    def __init__(self, path, stamp):
+        self.path, self.stamp, self.rows = path, stamp, {}
+        self.gap = ""
+        if path.exists():
+            self.gap = "" if path.read_text().endswith("\n") else "\n"
+            for line in path.read_text().splitlines():
+                try:
+                    row = json.loads(line)
+                except json.JSONDecodeError:
+                    continue  # broken off in mid-line
+                if row.get("stamp") == stamp:
+                    self.rows[row["point"]] = row
+
+    def add(self, row):
+        self.rows[row["point"]] = row
+        with self.path.open("a") as file:
+            file.write(self.gap + json.dumps({**row, "stamp": self.stamp}) + "\n")
+        self.gap = ""
+
+
+def undominated(rows):
+    """Of rows with an error those that no other beats in both error and time, by time."""
+    best, result = math.inf, []
+    for row in sorted((r for r in rows if r["error"] is not None), key=lambda r: (r["ms_per_frame"], r["error"])):
+        if row["error"] < best:
+            best = row["error"]
+            result.append(row)
+    return result
 
 
 def level_of(case, n, method):
@@ -122,8 +154,7 @@ def chart_of(case, kind, rows, middle):
 
 
 def table_of(rows, middle):
-    best = sweep.frontier([{**row, "ms_per_second": row["ms_per_frame"]} for row in rows if row["error"] is not None])
-    on = {(row["n"], row["method"]) for row in best}
+    on = {(row["n"], row["method"]) for row in undominated(rows)}
     lines = ["| settings | error [%] | ms a frame | ms a step | on the frontier |", "| --- | ---: | ---: | ---: | --- |"]
     for row in rows:
         if row["error"] is None:
@@ -231,7 +262,7 @@ def main():
     if options.programs:
         program = options.programs / "wadi-recorder"
         version = hashlib.sha256(program.read_bytes() + stamps.state("frontier").encode()).hexdigest()[:16]
-        store = sweep.Store(options.out / f"rows_{kind}.jsonl", f"{options.backend} {options.threads} {options.processor_time} {version}")
+        store = Store(options.out / f"rows_{kind}.jsonl", f"{options.backend} {options.threads} {options.processor_time} {version}")
         with recordings.Recorder(program, options.backend, 1 if options.processor_time else options.threads, options.processor_time) as recorder:
             measure_all(recorder, store, options)
     machines = kept_rows(options.out)

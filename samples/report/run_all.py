@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
 """The measurements of this folder that depend on the machine, unattended, of one build and in one job: with a GPU frontier.py, timings.py,
-effects.py's prices and wadi-report's price lists, on a CPU all of effects.py, wadi-report's sweep and errors.py and side_by_side.py besides, which
-are the same on any machine. Each writes a folder of its own under OUT, what they print is in OUT/log.txt. A backend that the machine lacks is left
-out, and said; a part that outlasts its share of the time is ended, and what it has written stays. Exit code 1 where a part failed or was ended.
+prices.py and effects.py's prices, on a CPU all of effects.py and side_by_side.py besides, which are the same on any machine. Each writes a
+folder of its own under OUT, what they print is in OUT/log.txt. A backend that the machine lacks is left out, and said; a part that outlasts its share of the time is ended, and what it has written stays. Exit code 1 where a part failed or was ended.
 
 usage: samples/report/run_all.py BIN_FOLDER [--quick] [--parts PART ...] [--minutes 30] [--backends cuda,vulkan,cpu] [--relaxed BIN_FOLDER] [--out out/all]
 
@@ -19,9 +18,9 @@ import sys
 import time
 
 HERE = pathlib.Path(__file__).resolve().parent
-PARTS = ("frontier", "timings", "prices", "effects", "sweep", "errors", "methods")
+PARTS = ("frontier", "timings", "prices", "effects", "methods")
 FRONTIER_ROWS = 16  # as many times the longest row that is measured fit: all took 12 times as long on an H100, 8 on two cores
-WRITES_PAGE = 0.9  # of its time: wadi-report stops measuring here
+WRITES_PAGE = 0.9  # of its time: prices.py begins no further round
 
 
 def end_group(process):
@@ -61,11 +60,9 @@ def parts_on(options, there):
                                       *(["--sizes", 16, 32] if quick else [])]),
         "timings": (2, lambda left: ["timings.py", programs, *(["--quick"] if quick else []), "--backends", ",".join(there),
                                      *(["--threads", 2, "--only", "table_2", "scaling", "order", "presets"] if cpu else [])]),
-        "prices": (2, lambda left: ["wadi-report", programs, "--prices", *(["--quick"] if quick else [] if cpu else ["--full"]), *one, *until(left), *relaxed]),
+        "prices": (2, lambda left: ["prices.py", programs, *(["--quick"] if quick or cpu else []), *one, *until(left), *relaxed]),
         "effects": (27 if cpu else 2, lambda left: ["effects.py", programs, *one, *(["--only", "water", "drag"] if quick else []), *([] if cpu else ["--prices", "--rounds", 3])])}
     if cpu:
-        parts["sweep"] = 6, lambda left: ["wadi-report", programs, "--no-prices", "--quick" if quick else "--full", *one, "--repeats", options.repeats, *until(left)]
-        parts["errors"] = 1, lambda left: ["errors.py", programs]
         parts["methods"] = 32, lambda left: ["side_by_side.py", programs, *(["--small"] if quick else [])]
     return {name: part for name, part in parts.items() if name in options.parts}
 
@@ -76,7 +73,6 @@ def main():
     parser.add_argument("--quick", action="store_true", help="small grids: shows that all runs, measures little")
     parser.add_argument("--minutes", type=float, default=30)
     parser.add_argument("--parts", nargs="+", choices=PARTS, default=PARTS, metavar="PART", help=f"of {', '.join(PARTS)} (default all)")
-    parser.add_argument("--repeats", type=int, default=2, metavar="N", help="runs per point of the sweep (default %(default)s)")
     parser.add_argument("--backends", default="cuda,vulkan,cpu", help="wanted, the one to report on first (default %(default)s)")
     parser.add_argument("--relaxed", type=pathlib.Path, metavar="BIN", help="programs of a build with -DWADI_STRICT_FLOAT=OFF, to price strict floats by")
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/all"))

@@ -1,4 +1,4 @@
-"""What a scene of the report is, and the norms in which it errs."""
+"""What a scene with a known answer is, and the norms in which it errs."""
 import math
 
 G = 9.81
@@ -6,19 +6,15 @@ G = 9.81
 
 class Scene:
     """n: cells along x of its base size; step(dx): its base time step; make(n): the level without dt; measure(run, summary, level): list
-    of (name, unit, value, right answer or None), the first an error in percent, which the charts show; most: cells along x of its finest run."""
+    of (name, unit, value, right answer or None), the first an error in percent."""
 
-    def __init__(self, key, kind, title, n, seconds, make, measure, *, truth, step, fields=("W", "hs", "surface"), times=None, files=None, sweep=False, most=None):
+    def __init__(self, key, kind, title, n, seconds, make, measure, *, step, fields=("W", "hs", "surface"), files=None):
         self.key, self.kind, self.title, self.n, self.seconds, self.make, self.measure = key, kind, title, n, seconds, make, measure
-        self.truth, self.step, self.fields, self.times, self.files, self.sweep = truth, step, fields, times or (0, seconds), files, sweep
-        self.most = most or 2 * n
+        self.step, self.fields, self.files = step, fields, files
 
 
 def base(name, nx, ny, dx, **rest):
     return {"format_version": 1, "name": name, "grid": {"nx": nx, "ny": ny, "dx": dx}, **rest}
-
-
-NORMS = ("L1", "L2", "max")
 
 
 def norms(got, truth, scale=None):

@@ -27,29 +27,24 @@ PARTS = {  # what decides the state after a step, whatever runs it
 }
 SAND_LAB = tuple(f"tests/sand/{name}.py" for name in ("columns", "cuts", "scene", "shapes"))
 KINDS = {  # a kind of page: the parts, and the scripts and files besides
-    "report": (("stages", "step", "defaults"),
-               tuple(f"samples/report/{name}" for name in ("wadi-report", "exact.py", "prices.py", "sand_scenes.py", "scene.py", "scenes.py", "sweep.py",
-                                                           "water_scenes.py"))),
     "effects": (("stages", "step", "defaults", "levels"), ("samples/report/effects.py", "samples/report/pairs.py")),
-    "errors": (("stages", "step", "defaults"), tuple(f"samples/report/{name}.py" for name in ("errors", "pairs", "scene", "scenes", "sweep"))),
     "frontier": (("stages", "step", "defaults"), ("samples/report/frontier.py", "samples/report/frontier_cases.py", "tests/sand/columns.py", "tests/sand/scene.py")),
     "methods": (("stages", "step", "defaults", "levels"), ("samples/report/side_by_side.py", "samples/report/literal.py", "samples/report/cases.py", "samples/report/exact.py",
                                                            "samples/levels/*/expected.json")),
     "mpm": (("stages", "step", "defaults"), ("samples/report/mpm.py", "samples/report/mpm_solver.py", *SAND_LAB)),
+    "prices": (("stages", "step", "defaults"), ("samples/report/prices.py", "samples/report/sand_scenes.py")),
     "timings": (("stages", "step", "defaults", "levels"), ("samples/report/timings.py",)),
-    "advice": ((), tuple(f"samples/report/{page}/*.csv" for page in ("sweep", "prices_cpu", "prices_h100", "timings"))),
+    "advice": ((), tuple(f"samples/report/{page}/*.csv" for page in ("frontier", "prices_cpu", "prices_h100", "timings"))),
     "sand": (("stages", "step", "defaults", "levels"), ("tests/sand/*.py",)),
 }
 PAGES = {
     "samples/report/README.md": "advice",
     "samples/report/effects/README.md": "effects",
-    "samples/report/errors/README.md": "errors",
     "samples/report/frontier/README.md": "frontier",
     "samples/report/methods/README.md": "methods",
     "samples/report/mpm/README.md": "mpm",
-    "samples/report/prices_cpu/README.md": "report",
-    "samples/report/prices_h100/README.md": "report",
-    "samples/report/sweep/README.md": "report",
+    "samples/report/prices_cpu/README.md": "prices",
+    "samples/report/prices_h100/README.md": "prices",
     "samples/report/timings/README.md": "timings",
     "samples/report/timings/two_cores/README.md": "timings",
     "tests/sand/README.md": "sand",

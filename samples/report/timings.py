@@ -14,7 +14,6 @@ import sys
 import charts
 import prices
 import recordings
-import scenes
 import stamps
 from side_by_side import METHODS, number, table
 
@@ -143,10 +142,20 @@ def preset_costs(recorders, largest, steps):
     return rows
 
 
+def averaged(values, nx, ny, to_nx):
+    """Means over blocks: a finer field on a coarser grid."""
+    f = nx // to_nx
+    result = []
+    for top in range(0, ny // f * f, f):
+        rows = [values[j * nx:(j + 1) * nx] for j in range(top, top + f)]
+        result += [math.fsum(cell) / (f * f) for cell in zip(*(row[a::f] for row in rows for a in range(f)))]
+    return result
+
+
 def mean_error(run, baseline, name, time):
     """Mean absolute difference of a surface, in percent of the range over which the baseline moved it, as means over the run's cells."""
     now = run.field(name, time)
-    then, start = (scenes.averaged(baseline.field(name, at), baseline.nx, baseline.ny, run.nx) for at in (time, 0))
+    then, start = (averaged(baseline.field(name, at), baseline.nx, baseline.ny, run.nx) for at in (time, 0))
     moved = [b - a for a, b in zip(start, then)]
     return 100 * math.fsum(abs(a - b) for a, b in zip(now, then)) / len(then) / (max(moved) - min(moved))
 

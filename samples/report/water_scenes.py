@@ -20,7 +20,7 @@ def exact_dam_break(key, title, right):
         true_front = exact.stoker_middle(1, right)[2] * t if right else exact.ritter_front(t, 1, 25, 0.05) - 25
         return [*norms(depth, truth, 1), ("front has run", "m", front, true_front)]
 
-    return Scene(key, "water", title, 400, 3, make, measure, truth="exact", step=lambda dx: 0.04 * dx)
+    return Scene(key, "water", title, 400, 3, make, measure, step=lambda dx: 0.04 * dx)
 
 
 def thacker():
@@ -51,7 +51,7 @@ def thacker():
         return [*norms(now, truth),
                 ("amplitude kept after a period", "%", 100 * (now[middle] - h0) / (truth[middle] - h0), 100)]
 
-    return Scene("thacker", "water", "Thacker's radial bowl, one period", 96, period, make, measure, truth="exact", step=lambda dx: 0.1 * dx, fields=("W",),
+    return Scene("thacker", "water", "Thacker's radial bowl, one period", 96, period, make, measure, step=lambda dx: 0.1 * dx, fields=("W",),
                  files=files)
 
 
@@ -72,8 +72,8 @@ def smooth_wave():
         now, truth = middle_row(run, "W", seconds), [exact.simple_wave((i + 0.5) * run.dx, t) for i in range(run.nx)]
         return [*norms(now, truth, 0.3), ("crest", "m", max(now), 1.3)]  # of the wave's height
 
-    return Scene("wave", "water", "Smooth wave, 0.3 m high on 1 m of water, in percent of its height", 480, seconds, make, measure, truth="exact",
-                 step=lambda dx: 0.04 * dx, fields=("W",), files=files, most=480)  # a level holds 256 regions of velocity
+    return Scene("wave", "water", "Smooth wave, 0.3 m high on 1 m of water, in percent of its height", 480, seconds, make, measure,
+                 step=lambda dx: 0.04 * dx, fields=("W",), files=files)
 
 
 def planar_bowl():
@@ -96,7 +96,7 @@ def planar_bowl():
         bent = max(abs(s - s0 - tilt * (x - x0)) for x, s in zip(places, surface))
         return [*norms(now, truth), ("tilt kept after a period", "%", 100 * tilt / bowl.tilt(t), 100), ("surface bent by at most, of the depth", "%", 100 * bent / bowl.h0, 0)]
 
-    return Scene("planar", "water", "Plane surface tilting in a parabolic valley (Thacker), one period", 200, bowl.period, make, measure, truth="exact",
+    return Scene("planar", "water", "Plane surface tilting in a parabolic valley (Thacker), one period", 200, bowl.period, make, measure,
                  step=lambda dx: 0.04 * dx, fields=("W",), files=files)
 
 
@@ -126,7 +126,7 @@ def over_bump(key, title, q, right, through_critical, seconds):
             result.append(("jump stands at", "m", (steepest + 1) * run.dx, exact.jump_behind_bump(q, right, above)))
         return result
 
-    return Scene(key, "water", title, 100, seconds, make, measure, truth="exact", step=lambda dx: 0.04 * dx, fields=("W",), files=files)
+    return Scene(key, "water", title, 100, seconds, make, measure, step=lambda dx: 0.04 * dx, fields=("W",), files=files)
 
 
 def all_scenes():
