@@ -158,9 +158,9 @@ int main_checked(int argc, char** argv) {
     app.add_flag("--any-files", options.any_files, "the level may name files outside its folder; for levels that you trust");
     app.add_option("--size", size, "grid NxM instead of the level's; keeps the length in x");
     app.add_option("--dt", options.dt, "water time step [s] instead of the level's")->check(CLI::Range(1e-7, 100.0));
-    app.add_option(
-           "--active-tiles", options.active_tiles,
-           "8, 16, 32 or 64: tiles of so many cells in which nothing changes are left out; -1 = none are, 1 = while that gains (the default in large grids on GPUs)")
+    app.add_option("--active-tiles", options.active_tiles,
+                   "8, 16, 32 or 64: tiles of so many cells in which nothing changes are left out; -1 = none are, 1 = while that "
+                   "gains (the default in large grids on GPUs)")
         ->check(CLI::IsMember({-1, 1, 8, 16, 32, 64}));
     app.add_option("--fused-stages", options.fused_stages,
                    "1: several stages in one pass wherever the effects allow; -1: one by one")
@@ -185,7 +185,8 @@ int main_checked(int argc, char** argv) {
         ->needs("--mp4")
         ->capture_default_str();
     app.add_flag("--profile", options.profile, "time every stage on the device");
-    app.add_flag("--no-frames", no_frames, "no pictures, for benchmarks")->excludes("--mp4");
+    app.add_flag("--jpeg", options.jpeg, "contact_sheet.jpg instead of contact_sheet.png, for pages");
+    app.add_flag("--no-frames", no_frames, "no pictures, for benchmarks")->excludes("--mp4")->excludes("--jpeg");
     app.add_flag("--print-plan", options.print_plan, "print effects, passes and buffers, and exit");
     app.add_option("--print-tables", table, "print settings, effects, fields, stages or schema of the library, and exit");
     app.add_flag("--list-backends", list_backends, "list devices and exit");

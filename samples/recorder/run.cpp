@@ -2,6 +2,7 @@
 #include "files.hpp"
 #include "frame.hpp"
 #include "gpu_clock.hpp"
+#include "jpeg.hpp"
 #include "platform.hpp"
 #include "png.hpp"
 #include "points.hpp"
@@ -50,6 +51,7 @@ class Recording {
     Failure sample_frame(bool last);
     Failure write_dumps();
     Failure finish();
+    const char* sheet_name() const { return options_.jpeg ? "contact_sheet.jpg" : "contact_sheet.png"; }
 
     const Options& options_;
     World world_;
@@ -225,7 +227,8 @@ Failure Recording::finish() {
     }
     if (sheet_ && !sheet_->empty()) {
         const Image sheet = sheet_->compose(*look_, caption_, metres_per_pixel_);
-        const std::string error = write_file(out_ / "contact_sheet.png", encode_png(sheet.data(), sheet.width(), sheet.height()));
+        const auto encode = options_.jpeg ? encode_jpeg : encode_png;
+        const std::string error = write_file(out_ / sheet_name(), encode(sheet.data(), sheet.width(), sheet.height()));
         if (!error.empty()) return {EXIT_BAD_INPUT, error};
     }
     if (options_.mp4 && report_.frames > 0) {
@@ -288,9 +291,8 @@ int Recording::run() {
 
     if (report_.stats.struct_size != 0) std::printf("\n%s", format_table(report_).c_str());
     if (report_.frames > 0) {
-        std::printf("%d frames%s and contact_sheet.png are in %s%s\n", report_.frames,
-                    options_.mp4 && !unwritten ? ", recording.mp4" : "", out_.string().c_str(),
-                    report_.interrupted ? " (interrupted)" : "");
+        std::printf("%d frames%s and %s are in %s%s\n", report_.frames, options_.mp4 && !unwritten ? ", recording.mp4" : "",
+                    sheet_name(), out_.string().c_str(), report_.interrupted ? " (interrupted)" : "");
     }
     if (failure) return complain(failure);
     if (unwritten) return complain(unwritten);

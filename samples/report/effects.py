@@ -114,12 +114,12 @@ def view(programs, effect, off, picture):
             return [beside(inner) for inner in value] if isinstance(value, list) else value
 
         (scratch / "level.json").write_text(json.dumps(beside(level)))
-        command = [str(programs / "wadi-viewer"), str(scratch / "level.json"), "--backend", "cpu", "--threads", "1", "--grid", f"{FINER * cells[0]}x{FINER * cells[1]}", "--offscreen",
+        command = [str(programs / "wadi-viewer"), str(scratch / "level.json"), "--backend", "cpu", "--threads", "1", "--grid", f"{FINER * cells[0]}x{FINER * cells[1]}", "--offscreen", "--jpeg",
                    "--start", f"{seconds:g}", "--size", PICTURE, "--camera", CAMERA.get(effect, "overview"), "--quality", "high", "--out", str(scratch / "out")]
         done = subprocess.run(command, capture_output=True, text=True, check=False)
         if done.returncode != 0:
             raise recordings.Failed(f"{' '.join(command)}\n{done.stdout}{done.stderr}")
-        pairs.write(picture, pairs.whole(next((scratch / "out").glob("*.png"))))
+        shutil.copy(next((scratch / "out").glob("*.jpg")), picture)
 
 
 def kind_of(recorder):
@@ -152,7 +152,7 @@ def measure(recorder, programs, options):
         for effect in options.only or SHOWN:
             rows = [] if options.prices else [numbers_of(recorder, effect)]
             for off in () if options.prices else (False, True):
-                view(programs, effect, off, options.out / f"{effect}_{'off' if off else 'on'}.png")
+                view(programs, effect, off, options.out / f"{effect}_{'off' if off else 'on'}.jpg")
             for row in [*rows, priced(recorder, effect, options.rounds)]:
                 file.write(json.dumps({**row, "effect": effect, "sources": stamps.state("effects")}) + "\n")
                 file.flush()
@@ -188,7 +188,7 @@ def write_page(out):
                      *(text for on in priced_on.values() for text in (number(on[effect]["ms"]), share(on[effect]))), both(row["passes"]), both(row["bytes_per_cell"])])
         extra = "".join(f", `{key}` {json.dumps(value)}" for key, value in changes.items())
         shown += [f"## {effect}", f"`{level}`, {cells[0]} x {cells[1]} cells (pictures: {FINER} times as many along x and y), {seconds} s{extra}. {look}", "",
-                  f"| with `{effect}` | without |", "| --- | --- |", f"| ![with {effect}]({effect}_on.png) | ![without {effect}]({effect}_off.png) |", ""]
+                  f"| with `{effect}` | without |", "| --- | --- |", f"| ![with {effect}]({effect}_on.jpg) | ![without {effect}]({effect}_off.jpg) |", ""]
     head = ["without", "level", "sand [%]", "water surface [%]", "pixels [%]", *(text for kind in priced_on for text in (f"{kind.upper()}: ms per step", "of that the effect's [%]")), "passes",
             "bytes per cell"]
     machines = "; ".join(f"{kind.upper()}: {first['device']}, {PRICED[kind]} times the cells along x and y, {first['rounds']} pairs"

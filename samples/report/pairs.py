@@ -1,4 +1,4 @@
-"""Frames of recorder and viewer as small PNG files, two beside each other or one; and how much of two differs. No packages."""
+"""Frames of the recorder as small PNG files beside each other; and how much of two differs. No packages."""
 import math
 import struct
 import sys
@@ -34,11 +34,6 @@ def differing(one, other, least=24):
     """Share of the pixels of two maps that differ by `least` of 255 or more in a colour [%]."""
     count = sum(1 for a, b in zip(one[2], other[2]) for x in range(one[0]) if max(abs(a[3 * x + c] - b[3 * x + c]) for c in range(3)) >= least)
     return 100 * count / (one[0] * one[1])
-
-
-def whole(picture):
-    """A picture as it is: (width, height, rows of RGB bytes)."""
-    return pictures.read_png(picture)
 
 
 def write(path, *parts):

@@ -59,7 +59,7 @@ class Recorder:
         if times:
             command += ["--dump", ",".join(fields) + "@" + ",".join(f"{time:g}" for time in times)]
         if pictures:
-            command += ["--every", str(seconds / (pictures - 1))]
+            command += ["--every", str(seconds / (pictures - 1)), "--jpeg"]
         else:
             command += ["--no-frames", *(["--every", str(seconds)] if benchmark else [])]
         command += ["--any-files"] if isinstance(level, dict) else []

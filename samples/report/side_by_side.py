@@ -134,7 +134,7 @@ def picture(recorder, name, method, small, out):
     options = dict(expected["small"]) if small else {}
     options.pop("seconds", None)
     run, _ = recorder.record(**shown(name, method), seconds=max(expected["times"]), pictures=3, **options)
-    shutil.copy(run.folder / "contact_sheet.png", out / f"{name}_{method}.png")
+    shutil.copy(run.folder / "contact_sheet.jpg", out / f"{name}_{method}.jpg")
 
 
 def table(head, rows):
@@ -191,7 +191,7 @@ def write_page(recorder, conformance, options):
                                 + (f", {w['not finite']} values not finite" if w["not finite"] else "")
                                 for method, (_, w) in sides.items()) + ".", ""]
         if name in LEVELS_WITH_PICTURES:
-            lines += table(METHODS, [[f"![{name}, {method}]({name}_{method}.png)" for method in METHODS]]) + [""]
+            lines += table(METHODS, [[f"![{name}, {method}]({name}_{method}.jpg)" for method in METHODS]]) + [""]
     if not options.only:
         lines += literal.lines(recorder, out, table)
     lines += [stamps.stamp("methods"), ""]

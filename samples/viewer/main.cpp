@@ -67,10 +67,11 @@ int main_checked(int argc, char** argv) {
         ->check(CLI::Range(1e-6, 1e3));
     app.add_option("--out", options.out, "folder for pictures; default: out/LEVEL");
     auto* const video = app.add_flag("--video", options.video, "offscreen: also an MP4, where ffmpeg is installed");
+    auto* const jpeg = app.add_flag("--jpeg", options.jpeg, "offscreen: pictures as JPEG, for pages")->excludes(video);
     app.add_flag("--panel", options.panel, "offscreen: draw the panel too, from the level's start on, and keep the last picture")
-        ->excludes(start, video);
+        ->excludes(start, video, jpeg);
     app.add_option("--script", options.script, "input from a file: lines FRAME COMMAND WORDS, see README.md; ends after --frames")
-        ->excludes(start, video);
+        ->excludes(start, video, jpeg);
     app.add_flag("--validate", options.validate, "Vulkan validation layers; any message makes the exit code 3");
     app.add_flag("--list-levels", only_list_levels, "list levels and exit");
     app.add_flag("--list-gpus", only_list_gpus, "list Vulkan devices and exit");
