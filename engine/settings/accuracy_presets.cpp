@@ -6,7 +6,7 @@ namespace {
 
 // More cells buy accuracy, a smaller dt than the cells ask for buys none, and beyond two sand substeps neither do more of those.
 // Second order for water lies on the frontier of every scene with water. Errors: mean of island, heap and wall on 32, 64 and 128
-// cells (samples/report/sweep at tag ablation-2026-11); costs: dam_break, balanced on 1024² (samples/report/timings). The
+// cells (samples/report/sweep at tag ablation-2026-11); costs: dam_break, balanced on 1024² (tests/lab/report/timings). The
 // CPU's are of 16 threads on 512², 1024² and 2048² with order 1, for accurate times 1.15, what order 2 takes there.
 constexpr AccuracyPreset presets[] = {
     {"draft", 0.5, 2, 0, 1.8, 0.27, 0.15},

@@ -1,5 +1,5 @@
 #include "gpu_clock.hpp"
-#include "platform.hpp"
+#include "../common/platform.hpp"
 #include <algorithm>
 
 namespace recorder {

@@ -1,5 +1,5 @@
 // wadi-recorder: runs a level without a window and records shaded pictures, fields and figures.
-#include "levels.hpp"
+#include "../common/levels.hpp"
 #include "run.hpp"
 #include <CLI/CLI.hpp>
 #include <charconv>

@@ -1,5 +1,5 @@
 #include "progress.hpp"
-#include "platform.hpp"
+#include "../common/platform.hpp"
 #include <cstdio>
 #include <system_error>
 

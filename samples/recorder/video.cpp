@@ -1,5 +1,5 @@
 #include "video.hpp"
-#include "platform.hpp"
+#include "../common/platform.hpp"
 
 namespace recorder {
 namespace {

@@ -1,7 +1,7 @@
 // wadi-tune: settings of a level for a budget of milliseconds per frame, by measuring this machine.
-#include "../recorder/files.hpp"
-#include "../recorder/levels.hpp"
-#include "../recorder/platform.hpp"
+#include "../common/files.hpp"
+#include "../common/levels.hpp"
+#include "../common/platform.hpp"
 #include "print.hpp"
 #include "write_variant.hpp"
 #include <CLI/CLI.hpp>

@@ -1,5 +1,5 @@
 #include "level_settings.hpp"
-#include "../recorder/levels.hpp"
+#include "../common/levels.hpp"
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-#include "../recorder/levels.hpp"
+#include "../common/levels.hpp"
 #include "app.hpp"
 #include <CLI/CLI.hpp>
 #include <cstdio>

@@ -1,5 +1,5 @@
 #include "panel.hpp"
-#include "../recorder/levels.hpp"
+#include "../common/levels.hpp"
 #include "controls.hpp"
 #include <algorithm>
 #include <cinttypes>

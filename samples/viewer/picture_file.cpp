@@ -1,7 +1,7 @@
 #include "picture_file.hpp"
-#include "../recorder/files.hpp"
-#include "../recorder/jpeg.hpp"
-#include "../recorder/png.hpp"
+#include "../common/files.hpp"
+#include "../common/jpeg.hpp"
+#include "../common/png.hpp"
 #include <cstdio>
 #include <stdexcept>
 

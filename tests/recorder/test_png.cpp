@@ -1,6 +1,6 @@
-// samples/recorder/png and jpeg: files that another decoder reads to the same pixels, or to ones that look the same.
-#include "samples/recorder/jpeg.hpp"
-#include "samples/recorder/png.hpp"
+// samples/common/png and jpeg: files that another decoder reads to the same pixels, or to ones that look the same.
+#include "samples/common/jpeg.hpp"
+#include "samples/common/png.hpp"
 #include <chrono>
 #include <cstddef>
 #include <cstdlib>

@@ -26,10 +26,10 @@ RULES = {
     "backends": ["backends/", "engine/compute/"],
     "plugin": ["plugin/", "engine/", "wadi/", "backends/registry.hpp"],
     "plugin/godot": ["engine_methods.h"],
-    "samples/recorder": ["wadi/", "samples/recorder/", ""],
-    "samples/tune": ["wadi/", "../recorder/files.hpp", "../recorder/levels.hpp", "../recorder/platform.hpp"],
-    "samples/viewer": ["wadi/", "../recorder/files.hpp", "../recorder/levels.hpp", "../recorder/png.hpp", "../tune/print.hpp", "../tune/write_variant.hpp", "shaders/",
-                       "viewer_shaders/"],
+    "samples/common": [],
+    "samples/recorder": ["wadi/", "../common/"],
+    "samples/tune": ["wadi/", "../common/"],
+    "samples/viewer": ["wadi/", "../common/", "../tune/print.hpp", "../tune/write_variant.hpp", "shaders/", "viewer_shaders/"],
     "samples": ["wadi/"],
 }
 # A folder of backends/ may include itself, what all backends share, the interface, how the stages compiled for the host's processor
@@ -42,8 +42,8 @@ BACKENDS = {
 # Libraries only some folders may use.
 LIBRARIES = {
     "nlohmann/": ["engine/level", "samples", "tests"],
-    "stb/": ["engine/image", "tests"],
-    "libdeflate.h": ["samples/recorder"],
+    "stb/": ["engine/image", "samples/common", "tests"],
+    "libdeflate.h": ["samples/common"],
     "vulkan/": ["backends/vulkan", "plugin/include", "plugin/godot", "samples", "tests"],
     "volk.h": ["backends/vulkan"],
     "cuda": ["backends/cuda"],

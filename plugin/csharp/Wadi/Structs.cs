@@ -109,7 +109,7 @@ namespace Wadi
         public IntPtr Variant;
         /// <summary>
         /// "draft", "balanced" or "accurate": half, all or twice the level's cells along x and y (nx, ny win) and two sand steps per
-        /// water step, "accurate" also second order for water; NULL = what the level says. samples/report has errors and costs
+        /// water step, "accurate" also second order for water; NULL = what the level says. tests/lab/report has errors and costs
         /// </summary>
         public IntPtr Accuracy;
         public ActiveTiles ActiveTiles;
@@ -133,7 +133,7 @@ namespace Wadi
         }
     }
 
-    /// <summary>An accuracy preset, with what it was measured to err and to cost against "balanced" (samples/report).</summary>
+    /// <summary>An accuracy preset, with what it was measured to err and to cost against "balanced" (tests/lab/report).</summary>
     [StructLayout(LayoutKind.Sequential)]
     public struct RawAccuracyPreset
     {

@@ -201,7 +201,7 @@ typedef struct wadi_level_overrides {
     const char* variant;       /* one of the level's variants; NULL = the level as it is. Not for terrain maps */
     const char* accuracy;      /* "draft", "balanced" or "accurate": half, all or twice the level's cells along x and y (nx, ny win) and
                                   two sand steps per water step, "accurate" also second order for water; NULL = what the level says.
-                                  samples/report has errors and costs */
+                                  tests/lab/report has errors and costs */
     wadi_active_tiles active_tiles;
     wadi_choice fused_stages;  /* ON = several stages in one pass wherever the effects allow, OFF = one by one. Every bit stays */
     wadi_bool any_files;       /* 1 = maps and series may lie anywhere that the process can read; 0 = in the level's folder and below it
@@ -212,7 +212,7 @@ static inline wadi_level_overrides wadi_default_level_overrides(void) {
     return value;
 }
 
-/** An accuracy preset, with what it was measured to err and to cost against "balanced" (samples/report). */
+/** An accuracy preset, with what it was measured to err and to cost against "balanced" (tests/lab/report). */
 typedef struct wadi_accuracy_preset {
     const char* name;
     double cells;              /* factor on the level's cells along x and y */
