@@ -4,7 +4,7 @@
 #include <cstring>
 #include <fstream>
 
-namespace recorder {
+namespace common {
 
 std::string write_file(const std::filesystem::path& path, std::string_view bytes) {
     std::filesystem::path temporary = path;
@@ -47,4 +47,4 @@ std::string encode_npy(const std::vector<float>& values, int nx, int ny) {
     return bytes;
 }
 
-} // namespace recorder
+} // namespace common

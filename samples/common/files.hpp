@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace recorder {
+namespace common {
 
 /// Writes to a temporary name beside `path` and renames. Returns an empty string, or what went wrong.
 std::string write_file(const std::filesystem::path& path, std::string_view bytes);
@@ -14,4 +14,4 @@ std::string write_file(const std::filesystem::path& path, std::string_view bytes
 /// A field as the bytes of an NPY file (version 1.0): little-endian float32, shape (ny, nx), row 0 = south.
 std::string encode_npy(const std::vector<float>& values, int nx, int ny);
 
-} // namespace recorder
+} // namespace common

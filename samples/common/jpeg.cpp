@@ -9,7 +9,7 @@
 #include <stb/stb_image_write.h>
 #pragma GCC diagnostic pop
 
-namespace recorder {
+namespace common {
 namespace {
 
 constexpr int QUALITY = 88; // a seventh of a PNG, and the eye sees no difference
@@ -26,4 +26,4 @@ std::string encode_jpeg(const std::uint8_t* rgb, int width, int height) {
     return file;
 }
 
-} // namespace recorder
+} // namespace common

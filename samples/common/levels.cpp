@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-namespace recorder {
+namespace common {
 namespace {
 
 namespace fs = std::filesystem;
@@ -111,4 +111,4 @@ FoundLevel find_level(const std::string& text) {
     return {text, {}, unknown_level(text)};
 }
 
-} // namespace recorder
+} // namespace common

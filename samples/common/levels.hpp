@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace recorder {
+namespace common {
 
 struct LevelEntry {
     std::string name;
@@ -28,4 +28,4 @@ struct FoundLevel {
 /// `text` is a level's name, a level file (.json) or a folder with a level.json.
 FoundLevel find_level(const std::string& text);
 
-} // namespace recorder
+} // namespace common

@@ -14,7 +14,7 @@
 extern char** environ; // POSIX has it in no header
 #endif
 
-namespace recorder {
+namespace common {
 namespace {
 
 volatile std::sig_atomic_t interrupt_flag = 0;
@@ -103,4 +103,4 @@ void catch_interrupt() { std::signal(SIGINT, on_interrupt); }
 
 bool interrupted() { return interrupt_flag != 0; }
 
-} // namespace recorder
+} // namespace common

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace recorder {
+namespace common {
 
 /// Whether standard error is a terminal that understands carriage return.
 bool error_stream_is_terminal();
@@ -39,4 +39,4 @@ class SharedLibrary {
 void catch_interrupt();
 bool interrupted();
 
-} // namespace recorder
+} // namespace common

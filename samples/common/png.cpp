@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace recorder {
+namespace common {
 namespace {
 
 constexpr int COMPRESSION = 1;        // the fastest: files shrink by another tenth at most where it takes four times as long
@@ -63,4 +63,4 @@ std::string encode_png(const std::uint8_t* rgb, int width, int height) {
     return file;
 }
 
-} // namespace recorder
+} // namespace common

@@ -17,7 +17,7 @@ constexpr unsigned NAME_BYTES = 96;
 } // namespace
 
 struct GpuClock::Library {
-    SharedLibrary file;
+    common::SharedLibrary file;
     Start* start = nullptr;
     Start* stop = nullptr;
     GetCount* get_count = nullptr;

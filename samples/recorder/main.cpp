@@ -122,7 +122,7 @@ int print_table(const std::string& name) {
 }
 
 int print_levels() {
-    for (const LevelEntry& level : list_levels()) {
+    for (const common::LevelEntry& level : common::list_levels()) {
         std::printf("%-18s %s\n", level.name.c_str(), level.description.c_str());
         for (const std::string& variant : level.variants) std::printf("%-18s --variant %s\n", "", variant.c_str());
     }
@@ -218,7 +218,7 @@ int main_checked(int argc, char** argv) {
         options.level_name = std::filesystem::path(terrain).stem().string();
         options.level_file = terrain;
     } else if (!level.empty()) {
-        const FoundLevel found = find_level(level);
+        const common::FoundLevel found = common::find_level(level);
         if (!found.error.empty()) return fail(found.error);
         options.level_name = found.name;
         options.level_file = found.file.string();

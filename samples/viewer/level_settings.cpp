@@ -15,7 +15,7 @@ Json read_json(const std::filesystem::path& file) {
 }
 
 Json read_schema() {
-    for (const std::filesystem::path& folder : recorder::level_folders()) {
+    for (const std::filesystem::path& folder : common::level_folders()) {
         Json schema = read_json(folder / "level.schema.json");
         if (schema.is_object()) return schema;
     }

@@ -23,7 +23,7 @@ int print_gpus() {
 }
 
 int print_levels() {
-    for (const recorder::LevelEntry& level : recorder::list_levels())
+    for (const common::LevelEntry& level : common::list_levels())
         std::printf("%-18s %s\n", level.name.c_str(), level.description.c_str());
     return 0;
 }
@@ -96,7 +96,7 @@ int main_checked(int argc, char** argv) {
         options.level_name = std::filesystem::path(level).stem().string();
         options.simulation.level_file = level;
     } else {
-        const recorder::FoundLevel found = recorder::find_level(level);
+        const common::FoundLevel found = common::find_level(level);
         if (!found.error.empty()) throw std::runtime_error(found.error);
         options.level_name = found.name;
         options.simulation.level_file = found.file.string();

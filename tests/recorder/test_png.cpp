@@ -67,16 +67,16 @@ TEST_CASE("png: what stb_image reads is what was written") {
             smooth[k] = static_cast<std::uint8_t>(k / 7 + k % 3 * 40); // wraps: differences to the row above, too
         }
         for (const Pixels& pixels : {noise, smooth, flat}) {
-            const std::string file = recorder::encode_png(pixels.data(), width, height);
+            const std::string file = common::encode_png(pixels.data(), width, height);
             CHECK(decoded(file, width, height) == pixels);
         }
         // Negative control: a pixel of another colour is seen.
         Pixels other = smooth;
         other.back() ^= 1;
-        CHECK(decoded(recorder::encode_png(other.data(), width, height), width, height) != smooth);
+        CHECK(decoded(common::encode_png(other.data(), width, height), width, height) != smooth);
     }
     const Pixels flat(3 * 500 * 500, 7);
-    CHECK(recorder::encode_png(flat.data(), 500, 500).size() < 10000); // and it is compressed
+    CHECK(common::encode_png(flat.data(), 500, 500).size() < 10000); // and it is compressed
 }
 
 TEST_CASE("png: real pictures, smaller than by stb_image_write with the same filter; tells both times") {
@@ -93,7 +93,7 @@ TEST_CASE("png: real pictures, smaller than by stb_image_write with the same fil
                                       &height, &channels) == 1);
         const Pixels pixels = decoded(stored, width, height);
         std::string file;
-        const double ours = timed([&] { file = recorder::encode_png(pixels.data(), width, height); });
+        const double ours = timed([&] { file = common::encode_png(pixels.data(), width, height); });
         unsigned char* other = nullptr;
         const double theirs = timed([&] { other = stbi_write_png_to_mem(pixels.data(), 3 * width, width, height, 3, &length); });
         stbi_image_free(other);
@@ -110,7 +110,7 @@ TEST_CASE("jpeg: a real picture looks the same in a quarter of a PNG's bytes or 
     REQUIRE(stbi_info_from_memory(reinterpret_cast<const stbi_uc*>(stored.data()), static_cast<int>(stored.size()), &width,
                                   &height, &channels) == 1);
     const Pixels pixels = decoded(stored, width, height);
-    const std::string file = recorder::encode_jpeg(pixels.data(), width, height);
+    const std::string file = common::encode_jpeg(pixels.data(), width, height);
     CHECK(file.size() < stored.size() / 4);
     const Pixels read = decoded(file, width, height);
     CHECK(mean_difference(read, pixels) < 3);
