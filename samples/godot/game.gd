@@ -8,7 +8,7 @@
 ##   --backend=NAME       cpu, vulkan, cuda or auto
 ##   --until=SECONDS      with --script-run: leave at this time of the world
 ##   --view=X,Y,Z,D,YAW,PITCH  the camera: target, distance [m], degrees
-##   --pictures=DIR@T,T   with --script-run and a renderer: DIR/SCENE_T.png at these times of the world
+##   --pictures=DIR@T,T   with --script-run and a renderer: DIR/SCENE_T.jpg at these times of the world
 class_name Game
 extends Node3D
 
@@ -184,8 +184,8 @@ func _take_picture(time: String) -> void:
 	for n in 4:
 		await get_tree().process_frame
 	await RenderingServer.frame_post_draw
-	var file := "%s/%s_%s.png" % [_picture_folder, name.to_lower(), time]
-	if get_viewport().get_texture().get_image().save_png(file) != OK:
+	var file := "%s/%s_%s.jpg" % [_picture_folder, name.to_lower(), time]
+	if get_viewport().get_texture().get_image().save_jpg(file, 0.88) != OK:
 		push_error("cannot write " + file)
 	RenderingServer.render_loop_enabled = false
 	world.running = true

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes the gallery: a picture of every level and variant by wadi-viewer, picture.png and picture_VARIANT.png beside the level,
+"""Makes the gallery: a picture of every level and variant by wadi-viewer, picture.jpg and picture_VARIANT.jpg beside the level,
 and the list of them in samples/levels/README.md. Moment and camera are those of the level's picture.json.
 
 usage: samples/levels/gallery.py VIEWER [LEVEL ...] [--backend auto] [--quality high] [--size 960x540] [--coarse 1] [--moments 1] [--out DIR]
@@ -51,10 +51,10 @@ def read_picture(folder, variant):
 def shots(folder):
     """(variant or None, level as JSON, picture) of a level."""
     level = read_level(folder)
-    yield None, level, folder / "picture.png"
+    yield None, level, folder / "picture.jpg"
     for variant, patch in sorted(level.get("variants", {}).items()):
         if patch:  # {} is the level itself
-            yield variant, merged(level, patch), folder / f"picture_{variant}.png"
+            yield variant, merged(level, patch), folder / f"picture_{variant}.jpg"
 
 
 def take(options, folder, variant, level, picture):
@@ -65,7 +65,7 @@ def take(options, folder, variant, level, picture):
     elif time is None:
         time = duration / 2
     # "--camera=": a value that begins with a minus sign is no option of its own
-    command = [options.viewer, str(folder), "--offscreen", "--start", time, f"--camera={camera}",
+    command = [options.viewer, str(folder), "--offscreen", "--jpeg", "--start", time, f"--camera={camera}",
                "--frames", options.moments, "--every", duration / options.moments, "--backend", options.backend, "--quality", options.quality, "--size", options.size]
     if options.coarse > 1:
         command += ["--grid", f"{max(grid['nx'] // options.coarse, 1)}x{max(grid['ny'] // options.coarse, 1)}"]
@@ -78,7 +78,7 @@ def take(options, folder, variant, level, picture):
         picture.parent.mkdir(parents=True, exist_ok=True)
         for n in range(options.moments):
             to = picture if options.moments == 1 else picture.with_stem(f"{picture.stem}_{n + 1}")
-            to.write_bytes((pathlib.Path(scratch) / f"frame_{n:05}.png").read_bytes())
+            to.write_bytes((pathlib.Path(scratch) / f"frame_{n:05}.jpg").read_bytes())
 
 
 def gallery(folders):

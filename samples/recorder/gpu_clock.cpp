@@ -1,5 +1,5 @@
 #include "gpu_clock.hpp"
-#include "platform.hpp"
+#include "../common/platform.hpp"
 #include <algorithm>
 
 namespace recorder {
@@ -17,7 +17,7 @@ constexpr unsigned NAME_BYTES = 96;
 } // namespace
 
 struct GpuClock::Library {
-    SharedLibrary file;
+    common::SharedLibrary file;
     Start* start = nullptr;
     Start* stop = nullptr;
     GetCount* get_count = nullptr;

@@ -1,5 +1,5 @@
 // wadi-recorder: runs a level without a window and records shaded pictures, fields and figures.
-#include "levels.hpp"
+#include "../common/levels.hpp"
 #include "run.hpp"
 #include <CLI/CLI.hpp>
 #include <charconv>
@@ -122,7 +122,7 @@ int print_table(const std::string& name) {
 }
 
 int print_levels() {
-    for (const LevelEntry& level : list_levels()) {
+    for (const common::LevelEntry& level : common::list_levels()) {
         std::printf("%-18s %s\n", level.name.c_str(), level.description.c_str());
         for (const std::string& variant : level.variants) std::printf("%-18s --variant %s\n", "", variant.c_str());
     }
@@ -158,9 +158,9 @@ int main_checked(int argc, char** argv) {
     app.add_flag("--any-files", options.any_files, "the level may name files outside its folder; for levels that you trust");
     app.add_option("--size", size, "grid NxM instead of the level's; keeps the length in x");
     app.add_option("--dt", options.dt, "water time step [s] instead of the level's")->check(CLI::Range(1e-7, 100.0));
-    app.add_option(
-           "--active-tiles", options.active_tiles,
-           "8, 16, 32 or 64: tiles of so many cells in which nothing changes are left out; -1 = none are, 1 = while that gains (the default in large grids on GPUs)")
+    app.add_option("--active-tiles", options.active_tiles,
+                   "8, 16, 32 or 64: tiles of so many cells in which nothing changes are left out; -1 = none are, 1 = while that "
+                   "gains (the default in large grids on GPUs)")
         ->check(CLI::IsMember({-1, 1, 8, 16, 32, 64}));
     app.add_option("--fused-stages", options.fused_stages,
                    "1: several stages in one pass wherever the effects allow; -1: one by one")
@@ -185,7 +185,8 @@ int main_checked(int argc, char** argv) {
         ->needs("--mp4")
         ->capture_default_str();
     app.add_flag("--profile", options.profile, "time every stage on the device");
-    app.add_flag("--no-frames", no_frames, "no pictures, for benchmarks")->excludes("--mp4");
+    app.add_flag("--jpeg", options.jpeg, "contact_sheet.jpg instead of contact_sheet.png, for pages");
+    app.add_flag("--no-frames", no_frames, "no pictures, for benchmarks")->excludes("--mp4")->excludes("--jpeg");
     app.add_flag("--print-plan", options.print_plan, "print effects, passes and buffers, and exit");
     app.add_option("--print-tables", table, "print settings, effects, fields, stages or schema of the library, and exit");
     app.add_flag("--list-backends", list_backends, "list devices and exit");
@@ -217,7 +218,7 @@ int main_checked(int argc, char** argv) {
         options.level_name = std::filesystem::path(terrain).stem().string();
         options.level_file = terrain;
     } else if (!level.empty()) {
-        const FoundLevel found = find_level(level);
+        const common::FoundLevel found = common::find_level(level);
         if (!found.error.empty()) return fail(found.error);
         options.level_name = found.name;
         options.level_file = found.file.string();

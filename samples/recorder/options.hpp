@@ -55,6 +55,7 @@ struct Options {
     double every = 0;       // between frames [s], 0 = a tenth of the recording
     double water_scale = 0; // depth drawn in deep blue [m], 0 = derived
     bool frames = true;
+    bool jpeg = false; // of the contact sheet
     bool mp4 = false;
     int frames_per_second = 25; // of the MP4
     bool profile = false;

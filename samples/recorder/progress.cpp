@@ -1,5 +1,5 @@
 #include "progress.hpp"
-#include "platform.hpp"
+#include "../common/platform.hpp"
 #include <cstdio>
 #include <system_error>
 
@@ -27,7 +27,7 @@ LoadingNote::~LoadingNote() {
 }
 
 Progress::Progress(double seconds, std::uint64_t steps)
-    : seconds_(seconds), steps_(steps), terminal_(error_stream_is_terminal()) {}
+    : seconds_(seconds), steps_(steps), terminal_(common::error_stream_is_terminal()) {}
 
 void Progress::show(std::uint64_t step, double time, double stepping_seconds) {
     if (steps_ == 0) return;

@@ -1,9 +1,10 @@
 #include "run.hpp"
-#include "files.hpp"
+#include "../common/files.hpp"
+#include "../common/jpeg.hpp"
+#include "../common/platform.hpp"
+#include "../common/png.hpp"
 #include "frame.hpp"
 #include "gpu_clock.hpp"
-#include "platform.hpp"
-#include "png.hpp"
 #include "points.hpp"
 #include "progress.hpp"
 #include "report.hpp"
@@ -50,6 +51,7 @@ class Recording {
     Failure sample_frame(bool last);
     Failure write_dumps();
     Failure finish();
+    const char* sheet_name() const { return options_.jpeg ? "contact_sheet.jpg" : "contact_sheet.png"; }
 
     const Options& options_;
     World world_;
@@ -133,7 +135,7 @@ Failure Recording::prepare_folder() {
 }
 
 Failure Recording::advance(std::uint64_t target) {
-    while (done_ < target && !interrupted()) {
+    while (done_ < target && !common::interrupted()) {
         const std::uint32_t count = static_cast<std::uint32_t>(std::min<std::uint64_t>(chunk_, target - done_));
         const Clock::time_point start = Clock::now();
         const std::clock_t processor_start = std::clock();
@@ -173,7 +175,8 @@ Failure Recording::sample_frame(bool last) {
     const Image frame = compose_frame(map, *look_, caption_, time_, metres_per_pixel_);
     char name[32];
     std::snprintf(name, sizeof name, "frame_%05d.png", report_.frames);
-    if (std::string error = write_file(out_ / name, encode_png(frame.data(), frame.width(), frame.height())); !error.empty())
+    if (std::string error = common::write_file(out_ / name, common::encode_png(frame.data(), frame.width(), frame.height()));
+        !error.empty())
         return {EXIT_BAD_INPUT, error};
     ++report_.frames;
     sheet_->add(map, time_, last);
@@ -187,7 +190,7 @@ Failure Recording::write_dumps() {
         if (step_at(dump.time, world_.info().dt) != done_) continue;
         if (Failure failure = world_.read_field(static_cast<wadi_field>(dump.field), values)) return failure;
         const fs::path path = out_ / (dump.field_name + "_" + dump.time_text + ".npy");
-        const std::string error = write_file(path, encode_npy(values, world_.info().nx, world_.info().ny));
+        const std::string error = common::write_file(path, common::encode_npy(values, world_.info().nx, world_.info().ny));
         if (!error.empty()) return {EXIT_BAD_INPUT, error};
         char text[128];
         std::snprintf(text, sizeof text, "dump %s at t = %.9g s (step %llu, asked for %s s): ", dump.field_name.c_str(), time_,
@@ -225,14 +228,15 @@ Failure Recording::finish() {
     }
     if (sheet_ && !sheet_->empty()) {
         const Image sheet = sheet_->compose(*look_, caption_, metres_per_pixel_);
-        const std::string error = write_file(out_ / "contact_sheet.png", encode_png(sheet.data(), sheet.width(), sheet.height()));
+        const auto encode = options_.jpeg ? common::encode_jpeg : common::encode_png;
+        const std::string error = common::write_file(out_ / sheet_name(), encode(sheet.data(), sheet.width(), sheet.height()));
         if (!error.empty()) return {EXIT_BAD_INPUT, error};
     }
     if (options_.mp4 && report_.frames > 0) {
         if (Failure failure = write_video(out_, options_.frames_per_second, out_ / VIDEO)) return failure;
     }
     if (!options_.summary.empty()) {
-        if (std::string error = write_file(options_.summary, format_summary(report_)); !error.empty())
+        if (std::string error = common::write_file(options_.summary, format_summary(report_)); !error.empty())
             return {EXIT_BAD_INPUT, error};
     }
     return {};
@@ -274,7 +278,7 @@ int Recording::run() {
     if (options_.frames) sheet_.emplace(frame_steps_.size());
     progress_.emplace(seconds_, steps_);
     gpu_clock_.emplace(info.device_name);
-    catch_interrupt();
+    common::catch_interrupt();
     const Clock::time_point start = Clock::now();
     Failure failure = record();
     if (failure && failure.exit_code == EXIT_DEVICE_FAULT) report_.fault = failure.message;
@@ -288,9 +292,8 @@ int Recording::run() {
 
     if (report_.stats.struct_size != 0) std::printf("\n%s", format_table(report_).c_str());
     if (report_.frames > 0) {
-        std::printf("%d frames%s and contact_sheet.png are in %s%s\n", report_.frames,
-                    options_.mp4 && !unwritten ? ", recording.mp4" : "", out_.string().c_str(),
-                    report_.interrupted ? " (interrupted)" : "");
+        std::printf("%d frames%s and %s are in %s%s\n", report_.frames, options_.mp4 && !unwritten ? ", recording.mp4" : "",
+                    sheet_name(), out_.string().c_str(), report_.interrupted ? " (interrupted)" : "");
     }
     if (failure) return complain(failure);
     if (unwritten) return complain(unwritten);

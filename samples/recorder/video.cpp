@@ -1,5 +1,5 @@
 #include "video.hpp"
-#include "platform.hpp"
+#include "../common/platform.hpp"
 
 namespace recorder {
 namespace {
@@ -17,7 +17,7 @@ std::string literal(const std::string& path) {
 } // namespace
 
 Failure check_video_program() {
-    if (!find_program(PROGRAM).empty()) return {};
+    if (!common::find_program(PROGRAM).empty()) return {};
     return {EXIT_BAD_INPUT, "--mp4: no program ffmpeg in PATH; install it (Debian: package ffmpeg) or record without --mp4"};
 }
 
@@ -25,18 +25,18 @@ Failure write_video(const fs::path& folder, int frames_per_second, const fs::pat
     fs::path part = fs::absolute(file);
     part += ".part";
     // Players want 4:2:0 colour, which has even sizes only; the index in front lets browsers start at once.
-    const int code = run_program({PROGRAM,        "-nostdin",
-                                  "-hide_banner", "-loglevel",
-                                  "error",        "-y",
-                                  "-framerate",   std::to_string(frames_per_second),
-                                  "-i",           literal(fs::absolute(folder).string()) + "/frame_%05d.png",
-                                  "-vf",          "pad=ceil(iw/2)*2:ceil(ih/2)*2",
-                                  "-c:v",         "libx264",
-                                  "-crf",         "18",
-                                  "-pix_fmt",     "yuv420p",
-                                  "-movflags",    "+faststart",
-                                  "-f",           "mp4",
-                                  part.string()});
+    const int code = common::run_program({PROGRAM,        "-nostdin",
+                                          "-hide_banner", "-loglevel",
+                                          "error",        "-y",
+                                          "-framerate",   std::to_string(frames_per_second),
+                                          "-i",           literal(fs::absolute(folder).string()) + "/frame_%05d.png",
+                                          "-vf",          "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+                                          "-c:v",         "libx264",
+                                          "-crf",         "18",
+                                          "-pix_fmt",     "yuv420p",
+                                          "-movflags",    "+faststart",
+                                          "-f",           "mp4",
+                                          part.string()});
     std::error_code error;
     if (code == 0) {
         fs::rename(part, file, error);

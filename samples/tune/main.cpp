@@ -1,7 +1,7 @@
 // wadi-tune: settings of a level for a budget of milliseconds per frame, by measuring this machine.
-#include "../recorder/files.hpp"
-#include "../recorder/levels.hpp"
-#include "../recorder/platform.hpp"
+#include "../common/files.hpp"
+#include "../common/levels.hpp"
+#include "../common/platform.hpp"
 #include "print.hpp"
 #include "write_variant.hpp"
 #include <CLI/CLI.hpp>
@@ -20,7 +20,7 @@ struct Output {
 };
 
 void save(const std::filesystem::path& file, const std::string& text) {
-    if (const std::string error = recorder::write_file(file, text); !error.empty()) throw BadInput(error);
+    if (const std::string error = common::write_file(file, text); !error.empty()) throw BadInput(error);
 }
 
 /// What cannot be written should be told before a minute is spent.
@@ -92,14 +92,14 @@ int run(int argc, char** argv) {
     check_number("--budget-ms", request.budget_ms, 1000, "milliseconds");
     check_number("--frames", request.frames, 1000, "frames per second");
     check_number("--minutes", request.minutes, 60, "minutes");
-    const recorder::FoundLevel found = recorder::find_level(name);
+    const common::FoundLevel found = common::find_level(name);
     if (!found.error.empty()) throw BadInput(found.error);
     const Level level(found.file, variant);
     check_output(level, output);
 
     if (!quiet) request.tell = [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); };
-    request.stop = recorder::interrupted;
-    recorder::catch_interrupt();
+    request.stop = common::interrupted;
+    common::catch_interrupt();
     const Outcome outcome = tune(level, request);
     const std::string title = variant.empty() ? found.name : found.name + " (" + variant + ")";
     std::printf("%s\n\n%s", conclusion(title, level, request, outcome).c_str(), report(level, request, outcome).c_str());

@@ -45,7 +45,7 @@ int run_scripted(const Options& options) {
                 app.resize(static_cast<uint32_t>(std::stoul(line.words[0])), static_cast<uint32_t>(std::stoul(line.words[1])));
         }
         const std::filesystem::path file = options.out / "last.png";
-        write_png(file, app.renderer.read_picture(), app.renderer.width(), app.renderer.height());
+        write_picture(file, app.renderer.read_picture(), app.renderer.width(), app.renderer.height());
         std::printf("frames %llu, t = %.3f s, last in %s\n", static_cast<unsigned long long>(app.frames()),
                     app.session.simulation().frame.time, file.string().c_str());
         if (!app.session.message.empty()) std::printf("message %s\n", app.session.message.c_str());

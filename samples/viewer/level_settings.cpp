@@ -1,5 +1,5 @@
 #include "level_settings.hpp"
-#include "../recorder/levels.hpp"
+#include "../common/levels.hpp"
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -15,7 +15,7 @@ Json read_json(const std::filesystem::path& file) {
 }
 
 Json read_schema() {
-    for (const std::filesystem::path& folder : recorder::level_folders()) {
+    for (const std::filesystem::path& folder : common::level_folders()) {
         Json schema = read_json(folder / "level.schema.json");
         if (schema.is_object()) return schema;
     }

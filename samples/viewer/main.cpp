@@ -1,4 +1,4 @@
-#include "../recorder/levels.hpp"
+#include "../common/levels.hpp"
 #include "app.hpp"
 #include <CLI/CLI.hpp>
 #include <cstdio>
@@ -23,7 +23,7 @@ int print_gpus() {
 }
 
 int print_levels() {
-    for (const recorder::LevelEntry& level : recorder::list_levels())
+    for (const common::LevelEntry& level : common::list_levels())
         std::printf("%-18s %s\n", level.name.c_str(), level.description.c_str());
     return 0;
 }
@@ -67,10 +67,11 @@ int main_checked(int argc, char** argv) {
         ->check(CLI::Range(1e-6, 1e3));
     app.add_option("--out", options.out, "folder for pictures; default: out/LEVEL");
     auto* const video = app.add_flag("--video", options.video, "offscreen: also an MP4, where ffmpeg is installed");
+    auto* const jpeg = app.add_flag("--jpeg", options.jpeg, "offscreen: pictures as JPEG, for pages")->excludes(video);
     app.add_flag("--panel", options.panel, "offscreen: draw the panel too, from the level's start on, and keep the last picture")
-        ->excludes(start, video);
+        ->excludes(start, video, jpeg);
     app.add_option("--script", options.script, "input from a file: lines FRAME COMMAND WORDS, see README.md; ends after --frames")
-        ->excludes(start, video);
+        ->excludes(start, video, jpeg);
     app.add_flag("--validate", options.validate, "Vulkan validation layers; any message makes the exit code 3");
     app.add_flag("--list-levels", only_list_levels, "list levels and exit");
     app.add_flag("--list-gpus", only_list_gpus, "list Vulkan devices and exit");
@@ -95,7 +96,7 @@ int main_checked(int argc, char** argv) {
         options.level_name = std::filesystem::path(level).stem().string();
         options.simulation.level_file = level;
     } else {
-        const recorder::FoundLevel found = recorder::find_level(level);
+        const common::FoundLevel found = common::find_level(level);
         if (!found.error.empty()) throw std::runtime_error(found.error);
         options.level_name = found.name;
         options.simulation.level_file = found.file.string();

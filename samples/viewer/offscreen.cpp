@@ -73,7 +73,8 @@ int run_offscreen(const Options& options) {
                 processor += processor_time;
                 device = device + renderer.times();
             }
-            write_png(options.out / numbered("frame", n), renderer.read_picture(), options.width, options.height);
+            write_picture(options.out / numbered("frame", n, options.jpeg ? "jpg" : "png"), renderer.read_picture(),
+                          options.width, options.height);
         }
         const double counted = static_cast<double>(options.frames > 1 ? options.frames - 1 : 1);
         std::printf("time       %.3f s simulated\n", simulation.frame.time);

@@ -25,6 +25,7 @@ struct Options {
     double every = 1.0 / 30; // [s]
     std::filesystem::path out;
     bool video = false;
+    bool jpeg = false;
     bool panel = false;
     std::filesystem::path script;
 };

@@ -1,5 +1,5 @@
 #include "panel.hpp"
-#include "../recorder/levels.hpp"
+#include "../common/levels.hpp"
 #include "controls.hpp"
 #include <algorithm>
 #include <cinttypes>
@@ -64,7 +64,7 @@ void Panel::draw(Session& session, double frame_seconds) {
 }
 
 void Panel::simulation(Session& session) {
-    static const std::vector<recorder::LevelEntry> levels = recorder::list_levels();
+    static const std::vector<common::LevelEntry> levels = common::list_levels();
     int level = -1;
     for (std::size_t n = 0; n < levels.size(); ++n) {
         if (levels[n].name == session.level_name) level = static_cast<int>(n);

@@ -232,12 +232,12 @@ void Session::draw(const Submission& swapchain, const std::function<void(VkComma
         screenshot_due_ = false;
         std::filesystem::create_directories(options_.out);
         const std::filesystem::path file = options_.out / numbered("screenshot", screenshots_++);
-        write_png(file, renderer.read_picture(), renderer.width(), renderer.height());
+        write_picture(file, renderer.read_picture(), renderer.width(), renderer.height());
         message = "wrote " + file.string();
     }
     if (recording_) {
         const std::vector<uint8_t> pixels = renderer.read_picture();
-        write_png(recording_folder_ / numbered("recording", recorded_++), pixels, renderer.width(), renderer.height());
+        write_picture(recording_folder_ / numbered("recording", recorded_++), pixels, renderer.width(), renderer.height());
     }
 }
 

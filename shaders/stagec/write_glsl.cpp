@@ -63,7 +63,7 @@ std::string write_glsl(const Stage& s) {
 std::string write_glsl(const FusedStage& whole, const Effects& effects) {
     FusedStage f = fitted(whole, shared_bytes_everywhere);
     // Vulkan has no word for how many groups are to share a multiprocessor: with two cells at once drivers give step_mixed_water
-    // 96 registers a thread instead of 72, and it takes a third longer (tests/conformance/results/ways_of_running.md).
+    // 96 registers a thread instead of 72, and it takes a third longer (tests/lab/results/ways_of_running.md).
     f.cells_each = 1;
     const Stage& s = f.stage;
     std::ostringstream o;

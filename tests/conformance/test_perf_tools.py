@@ -57,6 +57,6 @@ with tempfile.TemporaryDirectory() as folder:
     assert "| level_64 | 1 | 0.030 |" in alone.stdout and "| `step_water` | 1 | 30.0 |" in alone.stdout, alone
     part = counters(rows[:5])
     assert part.returncode != 0 and "no whole step" in part.stderr, part
-torch = subprocess.run([sys.executable, here / "torch_times.py", "water", "64"], capture_output=True, text=True)
+torch = subprocess.run([sys.executable, here / "torch_times.py", "64"], capture_output=True, text=True)
 assert torch.returncode in (0, 77) and ("| water, 64 x 64 |" if torch.returncode == 0 else "SKIPPED") in torch.stdout, torch
 print("five whole steps measured and compared, three drawn")

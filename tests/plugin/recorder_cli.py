@@ -166,6 +166,8 @@ def test_frames(recorder):
     assert len(frame) == len(later) and changed and changed[-1] < len(frame) - 60, "only caption and map change, not the legend"
     assert "hash" in done.stdout and "ledger" in done.stdout
     assert "100 %" in done.stderr
+    recorder.record("--seconds", "0", "--out", "jpeg", "--jpeg")
+    assert (recorder.folder / "jpeg" / "contact_sheet.jpg").read_bytes()[:3] == b"\xff\xd8\xff"
     recorder.record("--seconds", "0", "--out", "frames")
     names = sorted(path.name for path in folder.iterdir())
     assert names == ["contact_sheet.png", "frame_00000.png"], f"frames of the earlier recording are left: {names}"

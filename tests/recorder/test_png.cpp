@@ -1,7 +1,9 @@
-// samples/recorder/png: files that another decoder reads to the same pixels.
-#include "samples/recorder/png.hpp"
+// samples/common/png and jpeg: files that another decoder reads to the same pixels, or to ones that look the same.
+#include "samples/common/jpeg.hpp"
+#include "samples/common/png.hpp"
 #include <chrono>
 #include <cstddef>
+#include <cstdlib>
 #include <doctest/doctest.h>
 #include <fstream>
 #include <iterator>
@@ -12,6 +14,7 @@
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
 #define STBI_ONLY_PNG
+#define STBI_ONLY_JPEG
 #define STBI_NO_STDIO
 #define STBI_NO_HDR
 #define STBI_NO_LINEAR
@@ -42,6 +45,17 @@ Pixels decoded(const std::string& file, int width, int height) {
     return {pixels.get(), pixels.get() + static_cast<std::size_t>(nx * ny * channels)};
 }
 
+std::string contents(const std::string& path) {
+    std::ifstream stream(WADI_SOURCE_DIR + path, std::ios::binary);
+    return {(std::istreambuf_iterator<char>(stream)), {}};
+}
+
+double mean_difference(const Pixels& one, const Pixels& other) {
+    double sum = 0;
+    for (std::size_t k = 0; k < one.size(); ++k) sum += std::abs(int{one[k]} - int{other[k]});
+    return sum / static_cast<double>(one.size());
+}
+
 } // namespace
 
 TEST_CASE("png: what stb_image reads is what was written") {
@@ -53,16 +67,16 @@ TEST_CASE("png: what stb_image reads is what was written") {
             smooth[k] = static_cast<std::uint8_t>(k / 7 + k % 3 * 40); // wraps: differences to the row above, too
         }
         for (const Pixels& pixels : {noise, smooth, flat}) {
-            const std::string file = recorder::encode_png(pixels.data(), width, height);
+            const std::string file = common::encode_png(pixels.data(), width, height);
             CHECK(decoded(file, width, height) == pixels);
         }
         // Negative control: a pixel of another colour is seen.
         Pixels other = smooth;
         other.back() ^= 1;
-        CHECK(decoded(recorder::encode_png(other.data(), width, height), width, height) != smooth);
+        CHECK(decoded(common::encode_png(other.data(), width, height), width, height) != smooth);
     }
     const Pixels flat(3 * 500 * 500, 7);
-    CHECK(recorder::encode_png(flat.data(), 500, 500).size() < 10000); // and it is compressed
+    CHECK(common::encode_png(flat.data(), 500, 500).size() < 10000); // and it is compressed
 }
 
 TEST_CASE("png: real pictures, smaller than by stb_image_write with the same filter; tells both times") {
@@ -72,15 +86,14 @@ TEST_CASE("png: real pictures, smaller than by stb_image_write with the same fil
         work();
         return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     };
-    for (const std::string name : {"beach/picture.png", "dam_break/preview.png"}) {
-        std::ifstream stream(WADI_SOURCE_DIR "/samples/levels/" + name, std::ios::binary);
-        const std::string stored((std::istreambuf_iterator<char>(stream)), {});
+    for (const std::string name : {"godot/project/picture.png", "viewer/images/beach.png"}) {
+        const std::string stored = contents("/tests/" + name);
         int width = 0, height = 0, channels = 0, length = 0;
         REQUIRE(stbi_info_from_memory(reinterpret_cast<const stbi_uc*>(stored.data()), static_cast<int>(stored.size()), &width,
                                       &height, &channels) == 1);
         const Pixels pixels = decoded(stored, width, height);
         std::string file;
-        const double ours = timed([&] { file = recorder::encode_png(pixels.data(), width, height); });
+        const double ours = timed([&] { file = common::encode_png(pixels.data(), width, height); });
         unsigned char* other = nullptr;
         const double theirs = timed([&] { other = stbi_write_png_to_mem(pixels.data(), 3 * width, width, height, 3, &length); });
         stbi_image_free(other);
@@ -89,4 +102,18 @@ TEST_CASE("png: real pictures, smaller than by stb_image_write with the same fil
         CHECK(decoded(file, width, height) == pixels);
         CHECK(file.size() < static_cast<std::size_t>(length));
     }
+}
+
+TEST_CASE("jpeg: a real picture looks the same in a quarter of a PNG's bytes or less") {
+    const std::string stored = contents("/tests/godot/project/picture.png");
+    int width = 0, height = 0, channels = 0;
+    REQUIRE(stbi_info_from_memory(reinterpret_cast<const stbi_uc*>(stored.data()), static_cast<int>(stored.size()), &width,
+                                  &height, &channels) == 1);
+    const Pixels pixels = decoded(stored, width, height);
+    const std::string file = common::encode_jpeg(pixels.data(), width, height);
+    CHECK(file.size() < stored.size() / 4);
+    const Pixels read = decoded(file, width, height);
+    CHECK(mean_difference(read, pixels) < 3);
+    Pixels turned(pixels.rbegin(), pixels.rend()); // negative control
+    CHECK(mean_difference(read, turned) > 10);
 }

@@ -1,8 +1,10 @@
 #!/usr/bin/env python3
-"""Who may include whom. Usage: include_rules.py SOURCE_DIR. Exit status 1 names every breach."""
+"""Who may use whom: includes of C, C++ and GLSL, imports of Python, calls of the Godot extension's C. Usage: include_rules.py SOURCE_DIR.
+Exit status 1 names every breach."""
 import pathlib
 import re
 import sys
+import tempfile
 
 # folder -> prefixes that its files may include; the longest matching folder decides. "<...>" headers are checked by LIBRARIES.
 RULES = {
@@ -26,18 +28,35 @@ RULES = {
     "engine/frames": ["engine/frames/", "engine/step/", "engine/settings/", "engine/compute/"],
     "engine/reads": ["engine/reads/", "engine/step/", "engine/settings/", "engine/threads/", "engine/compute/"],
     "backends": ["backends/", "engine/compute/"],
-    "plugin": ["plugin/", "engine/", "wadi/", "backends/registry.hpp"],
+    "plugin": ["wadi/"],
+    "plugin/src": ["plugin/src/", "plugin/include/", "engine/", "backends/registry.hpp"],
     "plugin/godot/source": ["engine/", "scene/"],
     "plugin/godot/source/engine": ["engine_methods.h"],
     "plugin/godot/source/scene": ["engine/"],
-    "samples/recorder": ["wadi/", "samples/recorder/", ""],
-    "samples/tune": ["wadi/", "../recorder/files.hpp", "../recorder/levels.hpp", "../recorder/platform.hpp"],
-    "samples/viewer": ["wadi/", "../recorder/files.hpp", "../recorder/levels.hpp", "../recorder/png.hpp", "../tune/print.hpp", "../tune/write_variant.hpp", "shaders/",
-                       "viewer_shaders/"],
+    "samples/common": [],
+    "samples/recorder": ["wadi/", "../common/"],
+    "samples/tune": ["wadi/", "../common/"],
+    "samples/viewer": ["wadi/", "../common/", "../tune/print.hpp", "../tune/write_variant.hpp", "shaders/", "viewer_shaders/"],
     "samples": ["wadi/"],
 }
 # What shaders/ says to the host; engine and backends are built on it.
 FOR_THE_HOST = ["shaders/params.hpp", "shaders/stage_table.hpp"]
+# What a folder of samples/ or tests/ may use of the others; nobody else uses either. Samples never use tests.
+FOR_ALL_TESTS = ("tests/support", "tests/reference")
+LAB = "tests/lab"  # uses all, and is used by nothing
+USES = {
+    "samples/recorder": ("samples/common",),
+    "samples/tune": ("samples/common",),
+    "samples/viewer": ("samples/common", "samples/tune"),
+    "tests/faults": ("tests/unit",),
+    "tests/fuzz": ("tests/conformance",),
+    "tests/latency": ("samples/vulkan_host_minimal",),
+    "tests/plugin": ("samples/vulkan_host_minimal",),
+    "tests/recorder": ("samples/common",),
+    "tests/stability": ("tests/fuzz", "tests/unit"),
+    "tests/tune": ("samples/tune",),
+    "tests/unit": ("tests/fuzz",),
+}
 # A folder of backends/ may include itself, what all backends share, the interface, how the stages compiled for the host's processor
 # are found and run, and this.
 SHARED = ["backends/common/", "engine/compute/", "backends/cpu/stages.hpp", "backends/cpu/active_tiles.hpp"]
@@ -48,8 +67,8 @@ BACKENDS = {
 # Libraries only some folders may use.
 LIBRARIES = {
     "nlohmann/": ["engine/level", "samples", "tests"],
-    "stb/": ["engine/image", "tests"],
-    "libdeflate.h": ["samples/recorder"],
+    "stb/": ["engine/image", "samples/common", "tests"],
+    "libdeflate.h": ["samples/common"],
     "vulkan/": ["backends/vulkan", "plugin/include", "plugin/godot", "samples", "tests"],
     "volk.h": ["backends/vulkan"],
     "cuda": ["backends/cuda"],
@@ -62,6 +81,7 @@ C_SOURCES = "plugin/godot/source"
 NO_CODE = re.compile(r'/\*.*?\*/|"(?:[^"\\\n]|\\.)*"', re.DOTALL)
 DEFINITION = re.compile(r"^(?!static|typedef|extern|else|return)[A-Za-z][\w \t*]*?[\s*](\w+)(?:\([^;{}]*\)\s*\{|(?:\[\w*\])? =)", re.MULTILINE)
 INCLUDE = re.compile(r'^\s*#\s*include\s+(["<])([^">]+)[">]')
+IMPORT = re.compile(r"^\s*(?:from (\w+) import|import (\w+(?:\s*,\s*\w+)*))", re.M)
 
 
 def breaches(root, path):
@@ -118,6 +138,24 @@ def calls(root):
                 yield file, home[name]
 
 
+def imports(root, files):
+    """(importing file, imported file) of the project's own Python. Of modules of one name in several folders, that of the file's own folder, then
+    those of folders that its lines with sys.path name; all of them where no line does."""
+    modules = {}
+    for path in files:
+        modules.setdefault(path.stem, []).append(path)
+    for path in files:
+        text = path.read_text(encoding="utf-8")
+        named = ["/".join(re.findall(r'"([\w/]+)"', line)) for line in text.splitlines() if "sys.path" in line]
+        for found in IMPORT.finditer(text):
+            for name in re.split(r"\s*,\s*", found[1] or found[2]):
+                there = modules.get(name, [])
+                own = [other for other in there if other.parent == path.parent]
+                told = [other for other in there if any(folder and other.parent.as_posix().endswith("/" + folder) for folder in named)]
+                for other in own or told or there:
+                    yield path.relative_to(root).as_posix(), other.relative_to(root).as_posix()
+
+
 def circle(edges):
     """A circle of arrows as a list of names, or nothing."""
     graph = {}
@@ -152,47 +190,96 @@ def room(name):
     return name.rsplit("/", 1)[0]
 
 
+def place(name):
+    """samples/NAME or tests/NAME, "" of a file elsewhere."""
+    return "/".join(name.split("/")[:2]) if name.startswith(("samples/", "tests/")) else ""
+
+
+def misuses(edges):
+    for a, b in edges:
+        user, used = place(a), place(b)
+        if used in ("", user) or user == LAB:
+            continue
+        if used == LAB:
+            yield f"{a}: uses {b}: nothing uses {LAB}"
+        elif used.startswith("tests/") and not user.startswith("tests/"):
+            yield f"{a}: uses {b}: only tests may use tests"
+        elif user == "":
+            yield f"{a}: uses {b}: only samples and tests may use samples"
+        elif used not in USES.get(user, ()) and not (user.startswith("tests/") and used in FOR_ALL_TESTS):
+            yield f"{a}: uses {b}: {user} may use only {', '.join((*USES.get(user, ()), *(FOR_ALL_TESTS if user.startswith('tests/') else ()))) or 'itself'}"
+
+
 def check(root):
-    files = [p for top in ("engine", "backends", "shaders", "plugin", "samples", "tests") for p in sorted((root / top).rglob("*")) if p.suffix in SOURCES]
+    there = [p for top in ("engine", "backends", "shaders", "plugin", "samples", "tests") for p in sorted((root / top).rglob("*"))]
+    files, scripts = [p for p in there if p.suffix in SOURCES], [p for p in there if p.suffix == ".py"]
     found = [b for p in files for b in breaches(root, p)]
     edges = list(arrows(root, files))
+    uses = edges + list(imports(root, scripts))
+    found += dict.fromkeys(misuses(uses))
     product = [(a, b) for a, b in edges if a.startswith(("engine/", "backends/", "plugin/", "shaders/"))]
     called = list(calls(root))
+    around_tests = circle((place(a), place(b)) for a, b in uses if place(a) and place(b))
     for what, around in (
         ("files", circle(edges)),
+        ("scripts", circle(imports(root, scripts))),
         ("rooms", circle((room(a), room(b)) for a, b in product + called)),
         ("calls", circle(called)),
+        ("samples and tests", around_tests),
     ):
         if around:
             found.append(f"a circle of {what}: " + " > ".join(around))
-    return files, found
+    return files + scripts, found
+
+
+CONTROLS = (  # (planted files, what must be said of them)
+    ({
+        "engine/bad.cpp": '#include "backends/cpu/device.hpp"\n#include <vulkan/vulkan.h>\n',
+        "backends/one/bad.cpp": '#include "backends/other/device.hpp"\n',
+        "engine/settings/rules/upward.hpp": '#include "engine/step/below.hpp"\n',
+        "engine/step/below.hpp": '#include "engine/settings/rules/upward.hpp"\n',
+        "engine/settings/data/upward.hpp": '#include "engine/settings/rules/effects.hpp"\n',
+        "engine/step/plan/upward.hpp": '#include "engine/step/run/stepper.hpp"\n',
+    }, ("only backends may name a backend", "only backends/vulkan", "engine/settings/rules may include only", "engine/settings/data may include only",
+        "engine/step/plan may include only", "backends/one may include only", "circle of files", "circle of rooms")),
+    ({
+        "plugin/godot/source/engine/low.c": "int low(int n) { return n > 0 ? high(n - 1) : 0; }\n",
+        "plugin/godot/source/scene/high.c": "int high(int n) { return n > 0 ? low(n - 1) : 0; }\n",
+    }, ("circle of rooms", "circle of calls")),
+    ({
+        "samples/tune/judge.py": "import sys\nimport measures\n",
+        "samples/levels/judge_all.py": "from judge import all\n",
+        "engine/settings/write.py": "import judge\n",
+        "tests/levels/measures.py": "import judge\n",
+        "tests/lab/report/page.py": "import measures\n",
+        "tests/unit/pages.py": 'import sys\nsys.path.insert(0, str(ROOT / "lab" / "report"))\nimport page\n',
+        "tests/unit/other/page.py": "",
+        "tests/golden/bad.cpp": '#include "tests/fuzz/bad.hpp"\n',
+        "tests/fuzz/bad.hpp": "",
+    }, ("samples/tune/judge.py: uses tests/levels/measures.py: only tests", "samples/levels may use only itself", "engine/settings/write.py: uses samples/tune/judge.py: only",
+        "tests/unit/pages.py: uses tests/lab/report/page.py: nothing", "tests/golden may use only tests/support, tests/reference", "circle of scripts",
+        "circle of samples and tests")),
+)
+
+
+def unseen():
+    """Planted breaches that are not said."""
+    for files, signs in CONTROLS:
+        with tempfile.TemporaryDirectory() as folder:
+            planted = pathlib.Path(folder).resolve()
+            for name, text in files.items():
+                (planted / name).parent.mkdir(parents=True, exist_ok=True)
+                (planted / name).write_text(text)
+            seen = "\n".join(check(planted)[1])
+        yield from (sign for sign in signs if sign not in seen)
 
 
 def main():
     root = pathlib.Path(sys.argv[1]).resolve()
     files, found = check(root)
-    # Negative controls: planted breaches must be seen.
-    import tempfile
-
-    with tempfile.TemporaryDirectory() as folder:
-        planted = pathlib.Path(folder).resolve()
-        for name, text in {
-            "engine/bad.cpp": '#include "backends/cpu/device.hpp"\n#include <vulkan/vulkan.h>\n',
-            "backends/one/bad.cpp": '#include "backends/other/device.hpp"\n',
-            "engine/settings/rules/upward.hpp": '#include "engine/step/below.hpp"\n',
-            "engine/step/below.hpp": '#include "engine/settings/rules/upward.hpp"\n',
-            "plugin/godot/source/engine/low.c": "int low(int n) { return n > 0 ? high(n - 1) : 0; }\n",
-            "plugin/godot/source/scene/high.c": "int high(int n) { return n > 0 ? low(n - 1) : 0; }\n",
-            "engine/settings/data/upward.hpp": '#include "engine/settings/rules/effects.hpp"\n',
-            "engine/step/plan/upward.hpp": '#include "engine/step/run/stepper.hpp"\n',
-        }.items():
-            (planted / name).parent.mkdir(parents=True, exist_ok=True)
-            (planted / name).write_text(text)
-        seen = "\n".join(check(planted)[1])
-        for sign in ("only backends may name a backend", "only backends/vulkan", "engine/settings/rules may include only", "engine/settings/data may include only", "engine/step/plan may include only", "backends/one may include only", "circle of files", "circle of rooms", "circle of calls"):
-            if sign not in seen:
-                print(f"the checker does not see a planted breach: {sign}")
-                return 1
+    for text in unseen():
+        print(f"the checker does not see a planted breach: {text}")
+        return 1
     for breach in found:
         print(breach)
     print(f"{len(files)} files, {len(found)} breaches")

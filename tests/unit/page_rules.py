@@ -11,7 +11,7 @@ import tempfile
 WIDTH = 140
 FOLDERS = ("engine", "backends", "shaders", "plugin", "samples", "tests")
 # Tables that a program writes may be wider: pages written as a whole, and the parts of others between these marks.
-WRITTEN = tuple(f"samples/report/{page}/README.md" for page in ("effects", "prices_cpu", "prices_h100", "sweep"))
+WRITTEN = tuple(f"tests/lab/report/{page}/README.md" for page in ("effects", "prices_cpu", "prices_h100"))
 BEGINS, ENDS = re.compile(r"<!-- (table: |\S+ writes from here)"), re.compile(r"<!-- (end|to here)")
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
 CODE = re.compile(r"`([^`]+)`")

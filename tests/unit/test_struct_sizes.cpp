@@ -2,7 +2,7 @@
 // defaults.
 #include "engine/frames/frame_driver.hpp"
 #include "engine/reads/buoyancy.hpp"
-#include "plugin/struct_sizes.hpp"
+#include "plugin/src/struct_sizes.hpp"
 #include <array>
 #include <doctest/doctest.h>
 

@@ -113,6 +113,8 @@ def test_qualities_and_cameras(viewer):
     for quality in ("medium", "high"):
         viewer.run("piles", "--offscreen", "--out", quality, "--backend", "cpu", "--grid", "84x56", "--size", "96x54", "--quality", quality)
         assert black_pixels(read_png(viewer.folder / quality / "frame_00000.png")) == 0, quality
+    viewer.run("piles", "--offscreen", "--out", "jpeg", "--backend", "cpu", "--grid", "84x56", "--size", "96x54", "--quality", "low", "--jpeg")
+    assert (viewer.folder / "jpeg" / "frame_00000.jpg").read_bytes()[:3] == b"\xff\xd8\xff"
     for camera in ("opposite", "top", "close", "low"):
         assert black_pixels(viewer.picture(camera, "canyon", "--backend", "cpu", "--camera", camera, "--grid", "100x128", "--size", "96x54")) == 0, camera
     for grid in ("1x40", "40x1"):

@@ -1,4 +1,4 @@
-// Accuracy presets: draft, balanced, accurate, chosen from the measured frontier of error against time (samples/report);
+// Accuracy presets: draft, balanced, accurate, chosen from the measured frontier of error against time (tests/lab/report);
 // what one costs on a machine, wadi-tune measures there.
 #pragma once
 #include <span>

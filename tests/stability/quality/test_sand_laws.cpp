@@ -94,7 +94,7 @@ TEST_CASE("a dry column of aspect up to 1 runs out as far as in the laboratory" 
     for (const double aspect : {0.5, 1.0}) {
         for (const double friction : {0.35, 0.7}) CHECK_FALSE(as_measured(share(ground(1), aspect, friction)));
         CHECK_FALSE(as_measured(share(level_ground(ground(1)), aspect, 0.5)));
-        // With the slope of sand's heaps as friction it stops short (tests/sand/README.md): 0.87 to 0.94 of the toe's radius.
+        // With the slope of sand's heaps as friction it stops short (tests/lab/sand/README.md): 0.87 to 0.94 of the toe's radius.
         const double toe = (1 + run_out(ground(1), aspect, 0.6)) / (1 + laboratory(aspect));
         CHECK(toe < 0.95);
         CHECK(toe > 0.86);

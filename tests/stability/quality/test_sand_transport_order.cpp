@@ -1,5 +1,5 @@
 // Second order transport of sand (NUMERICS 2.16): exact mass, no negative height, rest, the same bits on every backend. What it
-// does for the errors is measured in tests/sand.
+// does for the errors is measured in tests/lab/sand.
 #include "tests/stability/quality.hpp"
 #include <algorithm>
 #include <cmath>
