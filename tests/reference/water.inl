@@ -90,7 +90,7 @@ template <class Real> void Solver<Real>::integrate_water_height() {
 /// 2.4b: gravity that keeps surface waves stable beside velocities up to `fastest`.
 template <class Real> Real Solver<Real>::water_gravity(Real fastest, Real deepest) const {
     if (P.gravity_cap <= Real(0) || deepest <= Real(0)) return P.gravity;
-    const Real room = std::max(Real(LEAST_GRAVITY_CAP), P.gravity_cap - P.k * fastest);
+    const Real room = std::max(Real(0.15), P.gravity_cap - P.k * fastest);
     return std::min(P.gravity, room * room / (P.k * P.k * deepest));
 }
 
