@@ -15,16 +15,13 @@ log=$build/demo.log
 mkdir -p "$build"
 
 step=0
-task() { # TITLE COMMAND...: runs a task and says how long it took
-    local title="$((++step))/5 $1" start=$SECONDS
-    shift
-    echo "== $title"
-    "$@"
-    echo "== $title: done in $((SECONDS - start)) s"
+task() { # TITLE COMMAND...: runs a task and says when it began
+    echo "== $((++step))/5 $1 ($SECONDS s)"
+    "${@:2}"
 }
-logged() { # COMMAND...: of what it says each fifth of the files that it makes; the rest is for the log, and for the screen if it fails
+logged() { # COMMAND...: of what it says each quarter of the files that it makes; the rest is for the log, and for the screen if it fails
     if ! "$@" 2>&1 | tee "$log" |
-        awk -F'[][/]' '/^\[[0-9]+\/[0-9][0-9]+\]/ && int(5 * $2 / $3) > shown { shown = int(5 * $2 / $3); print "   " $2 " of " $3; fflush() }'; then
+        awk -F'[][/]' '/^\[[0-9]+\/[0-9][0-9]+\]/ && int(4 * $2 / $3) > shown { shown = int(4 * $2 / $3); print "   " $2 " of " $3; fflush() }'; then
         tail -n 20 "$log"
         echo "demo.sh: that failed; all that it said is in $log" >&2
         exit 1
