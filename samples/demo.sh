@@ -24,7 +24,7 @@ task() { # TITLE COMMAND...: runs a task and says how long it took
 }
 logged() { # COMMAND...: of what it says each fifth of the files that it makes; the rest is for the log, and for the screen if it fails
     if ! "$@" 2>&1 | tee "$log" |
-        awk -F'[][/]' '/^\[[0-9]+\/[0-9]+\]/ && int(5 * $2 / $3) > shown { shown = int(5 * $2 / $3); print "   " $2 " of " $3; fflush() }'; then
+        awk -F'[][/]' '/^\[[0-9]+\/[0-9][0-9]+\]/ && int(5 * $2 / $3) > shown { shown = int(5 * $2 / $3); print "   " $2 " of " $3; fflush() }'; then
         tail -n 20 "$log"
         echo "demo.sh: that failed; all that it said is in $log" >&2
         exit 1
