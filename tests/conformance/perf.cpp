@@ -381,7 +381,7 @@ Status run_perf(Session& session, const PerfOptions& options, bool first) {
         constexpr std::pair<const char*, std::uint32_t> steps[] = {
             {"step, all effects", ALL},
             {"step, sand of the paper", ALL & ~SAND_LAWS},
-            {"step, published", ALL_PUBLISHED},
+            {"step, published", (ALL & ~never_published) | EFFECT_PUBLISHED},
             {"step, water only", EFFECT_WATER},
             {"step, dry sand", EFFECT_SAND | EFFECT_ELASTOPLASTIC | EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION}};
         for (const auto& [name, effects] : steps) {

@@ -198,7 +198,8 @@ TEST_CASE("choices of method are passes of their own at their place in the order
           "compute_sand_stress apply_sand_stress update_sand_boundary_types extrapolate_velocity stretch_deformation_gradient "
           "extrapolate_strain measure_layer_exchange give_layer_exchange apply_frictional_force ");
     CHECK(plan.find("rotation") != nullptr);
-    CHECK(make_step_plan(mixed, 3).find("rotation") == nullptr);
+    const auto robust = make_step_plan(mixed, 3);
+    CHECK(robust.find("rotation") == nullptr);
     auto scene = test::flat_scene(8, 8, 1, 0.01);
     scene.fill(scene.fields.water, [](double, double) { return 1; });
     choose_method(scene.settings, "published");

@@ -20,7 +20,7 @@ NO_ORDER = "dry sand"  # where there is no water to move by second order
 BETTER = {"stoker": (200, 1, 0.77), "ritter": (200, 1, 0.77), "thacker": (96, 1, 0.8), "transcritical": (100, 1, 0.8), "jump": (100, 1, 0.8), "mound": (128, 1, 0.7), "drag_pair": (64, 1, 0.9)}
 # On the same cells by second order, less than the share by first, and less than by first on twice the cells.
 SECOND = {"wave": (240, 0.5), "stoker": (200, 0.8), "ritter": (200, 0.6), "transcritical": (50, 0.6), "jump": (50, 0.6), "mound": (64, 0.6), "planar": (100, 0.2)}
-MOST = {"planar": (200, 4), "thacker": (96, 4), "transcritical": (100, 4), "jump": (100, 2.5), "dupuit": (112, 0.5), "mound": (128, 1.5), "drag_pair": (64, 1), "column": (96, 8), "slide": (160, 0.2),
+MOST = {"planar": (200, 4), "thacker": (96, 4), "transcritical": (100, 4), "jump": (100, 2.5), "dupuit": (112, 0.5), "mound": (128, 1.5), "drag_pair": (64, 1), "column": (96, 8), "slide": (160, 0.01),
         "drained_slide": (160, 0.01), "soaked_slide": (160, 0.01)}  # [%] on those cells by first order; a cell of the column's run-out is 3.4
 
 
