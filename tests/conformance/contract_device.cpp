@@ -205,7 +205,7 @@ void group_sizes(Session&, Device& device, Expect& expect) {
     }
 }
 
-void steps_allocate_nothing(Session& session, Device& device, Expect& expect) {
+void steps_allocate_nothing(Session& session, Device&, Expect& expect) {
     auto scene = make_scene("33x17", "slope", "default", stage_masks(compute::find_stage("mark_limits")).back());
     if (!scene) return expect.ok(scene.status(), "a scene");
     auto world = open_world(session, *scene);
