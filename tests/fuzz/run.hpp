@@ -25,11 +25,8 @@ void queue(Run& run, const Case& c, std::uint64_t from = 0);
 void step(Run& run, int count);
 std::uint64_t hash(Run& run);
 
-/// Whether runs must stay finite: the paper's methods may blow up, and so does diffusion beyond its stable step.
-bool stays_finite(const Settings& settings);
-
-/// Whether a run whose method does not keep it from that is lost: NaN, or depths whose products leave the range in which GPUs
-/// divide exactly (a million times the declared largest height). From there on bits say nothing.
+/// Whether a run of the paper's method, which does not keep it from that, is lost: NaN, or depths whose products leave the range
+/// in which GPUs divide exactly (a million times the declared largest height). From there on bits say nothing.
 bool blown_up(const Settings& settings, const WorldStats& stats);
 
 /// What is wrong with the state of a run; empty where nothing is. For every step: what piles up may be gone in the next.

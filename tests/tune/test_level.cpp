@@ -39,7 +39,7 @@ TEST_CASE("a level on another grid keeps its sides and its dt per dx") {
 TEST_CASE("a run has the settings, whole and in parts") {
     const Level level(SMALL, "", "");
     const Runner runner(level, {"cpu", -1, 1, true}, nullptr);
-    Settings settings = level.on_grid(12, {2, 2, 1, false, -1});
+    Settings settings = level.on_grid(12, {2, 2, 1, -1});
     const Run run = runner.run(settings, {0.4, true, 1e9});
     CHECK(run.dt == doctest::Approx(0.04));
     CHECK(run.steps >= 10);
@@ -86,11 +86,11 @@ TEST_CASE("every shipped level takes one") {
         if (!std::filesystem::exists(file)) continue;
         CAPTURE(file.string());
         const Level level(file, "");
-        const Json patch = variant_of(level, level.on_grid(64, {2, 2, 2, false, 1}));
+        const Json patch = variant_of(level, level.on_grid(64, {2, 2, 2, 1}));
         const std::string text = with_variant(level, "budget", patch);
         const Level tuned(text, file.parent_path(), "budget");
         CHECK(tuned.nx() * 1.0 / tuned.ny() == doctest::Approx(level.nx() * 1.0 / level.ny()).epsilon(0.02));
-        CHECK(tuned.own_way() == Way{2, 2, 2, false, -1});
+        CHECK(tuned.own_way() == Way{2, 2, 2, -1});
         CHECK(tuned.json()["active_tiles"] == 1);
         ++count;
     }
@@ -103,7 +103,7 @@ TEST_CASE("a variant on a variant has both") {
             ", \"variants\": { \"deep\": { \"water\": [], \"method\": { \"largest_height\": null, \"dry_threshold\": 1e-4 } }, "
             "\"none\": { \"method\": null } }"),
         "", "deep");
-    const Settings settings = level.on_grid(12, {1, 2, 1, false, -1});
+    const Settings settings = level.on_grid(12, {1, 2, 1, -1});
     const Level tuned(with_variant(level, "budget", variant_of(level, settings)), "", "budget");
     CHECK(tuned.json()["water"].empty());
     CHECK(tuned.json()["method"] == Json::parse(R"({"substeps": 1, "dry_threshold": 1e-4, "water_transport_order": 2})"));

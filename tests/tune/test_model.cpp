@@ -123,7 +123,7 @@ TEST_CASE("the order at which runs come closer to each other, on any three grids
 
 TEST_CASE("the frontier has rising time and falling error; the best within a budget is its last below it") {
     const Level level(R"({"grid": {"nx": 64, "ny": 48, "dx": 1}, "dt": 0.02})", "", "");
-    WayModel first{{2, 1, 1, false, -1}, {1e-5, 1e-8}, {}, ErrorFit{1, 0.5, 0}}, second = first;
+    WayModel first{{2, 1, 1, -1}, {1e-5, 1e-8}, {}, ErrorFit{1, 0.5, 0}}, second = first;
     second.way.water_order = 2;
     second.time.per_cell = 1.5e-8;
     second.water = ErrorFit{0.5, 1, 0};
