@@ -61,5 +61,6 @@ TEST_CASE("first steps of every level's runs have the CPU's bits on every backen
         }
     }
     CHECK(runs > 20);
-    CHECK(moving > 20); // a control: one step less is seen
+    CHECK(moving >= runs - 2); // a control: the last step changes the hash, but of what stands still
+    CHECK(moving > 20);        // a control: one step less is seen
 }

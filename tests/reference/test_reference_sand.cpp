@@ -225,6 +225,7 @@ double strain_after_a_turn(double dt) {
         const double across = (b + 0.5) * dx - 0.5 * n * dx;
         s.sand_velocity.along(ax)[ax.face(a, b)] = (ax.is_y ? omega : -omega) * across;
     });
+    s.extrapolated = s.sand_velocity; // what the paper's stretch takes its gradient from
     const int steps = static_cast<int>(std::lround(2 * PI / (omega * dt)));
     for (int step = 0; step < steps; ++step) s.stretch_deformation_gradient();
     const std::size_t c = s.axis(false).cell(n / 2, n / 2);

@@ -238,7 +238,7 @@ TEST_CASE("choices of method are passes of their own at their place in the order
     CHECK(second_sand.field_buffers() == first_sand.field_buffers());
     CHECK(second_sand.reach > first_sand.reach);
     constexpr std::uint32_t all = all_effects & ~(EFFECT_BED_SHEAR | EFFECT_ROUGHNESS | sand_laws);
-    CHECK(make_step_plan(all, 3).bytes_per_cell() == 124);
+    CHECK(make_step_plan(all, 3).bytes_per_cell() == 132);
     CHECK(!is_legal(EFFECT_SAND | EFFECT_SLOPE_NORMAL | EFFECT_PUBLISHED));
     CHECK(!is_legal(EFFECT_SAND | EFFECT_ELASTOPLASTIC | EFFECT_DIRECT_STRAIN));
     auto dry = test::flat_scene(8, 8, 1, 0.01);

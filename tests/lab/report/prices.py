@@ -24,7 +24,7 @@ CHOICES = {  # what `method` is changed by
 GUARDS = {
     "no_limiter": {"outflow_limiter": False},
     "no_quantum": {"quantum": 0},
-    "no_gravity_caps": {"gravity_cap": 0, "gravity_cap_least": 0, "sand_gravity_cap": 0},
+    "no_gravity_caps": {"gravity_cap": 0, "sand_gravity_cap": 0},
     "no_elastic_cap": {"elastic_cap": 0},
     "no_rest_rule": {"rest_rule": False},
     "no_shock_viscosity": {"shock_viscosity": 0},
