@@ -37,8 +37,8 @@ struct Capabilities {
     GroupLimits groups;
     bool exact_float = false; // measured: + - * / sqrt agree with the CPU in every bit
     bool timestamps = false;
-    bool fused_stages = false;         // groups of fused_group_x x fused_group_y threads that share fused_shared_bytes
-    std::uint32_t queue_depth = 0;     // submissions in flight before submit() waits for the oldest
+    bool fused_stages = false;     // groups of fused_group_x x fused_group_y threads that share fused_shared_bytes
+    std::uint32_t queue_depth = 0; // submissions in flight before submit() waits for the oldest
 };
 
 /// What was measured to be faster on devices of this kind. It changes no bit.

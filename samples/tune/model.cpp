@@ -5,8 +5,8 @@
 namespace tune {
 namespace {
 
-// Twice the cells leave 0.47 to 0.77 of the error (tests/lab/report/sweep at tag ablation-2026-11). Points say more than this where
-// they fit, but they scatter, and an order from noise would be carried on to other sizes.
+// Twice the cells leave 0.47 to 0.77 of the error (tests/lab/report/sweep at tag ablation-2026-11). Points say more than this
+// where they fit, but they scatter, and an order from noise would be carried on to other sizes.
 constexpr double USUAL_ORDER = 0.8, ORDER_SPREAD = 0.4, POINT_SPREAD = 0.06;
 // Two runs err in part alike: seen as vectors, the cosine of the angle between their errors. 1 is Richardson's extrapolation,
 // where a reference's error is all missing in a difference, 0 errors that have nothing in common. Of 0, 0.5, 0.75 and 1 this

@@ -1,7 +1,7 @@
 #include "tests/conformance/pass_runner.hpp"
-#include "engine/step/run/field_store.hpp"
 #include "engine/step/plan/source_shapes.hpp"
 #include "engine/step/plan/world_params.hpp"
+#include "engine/step/run/field_store.hpp"
 #include <algorithm>
 #include <cmath>
 

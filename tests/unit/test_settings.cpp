@@ -1,8 +1,8 @@
 // validate() and TimeSeries of engine/settings/data/settings.hpp.
-#include "engine/settings/rules/messages.hpp"
 #include "engine/settings/data/method_presets.hpp"
 #include "engine/settings/data/setting_table.hpp"
 #include "engine/settings/rules/checks.hpp"
+#include "engine/settings/rules/messages.hpp"
 #include "tests/unit/level_text.hpp"
 #include <algorithm>
 #include <cmath>

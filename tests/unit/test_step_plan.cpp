@@ -1,6 +1,6 @@
 // Effects decide which passes and buffers exist: checked for every legal mask.
-#include "engine/settings/rules/effects.hpp"
 #include "engine/settings/data/method_presets.hpp"
+#include "engine/settings/rules/effects.hpp"
 #include "engine/step/plan/step_plan.hpp"
 #include "tests/support/worlds.hpp"
 #include <algorithm>

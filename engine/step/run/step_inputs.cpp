@@ -1,8 +1,8 @@
 #include "engine/step/run/step_inputs.hpp"
 #include "engine/settings/data/setting_table.hpp"
 #include "engine/step/plan/source_shapes.hpp"
-#include "engine/step/run/step_number.hpp"
 #include "engine/step/plan/world_params.hpp"
+#include "engine/step/run/step_number.hpp"
 #include <algorithm>
 #include <cmath>
 #include <cstddef>

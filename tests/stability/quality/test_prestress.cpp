@@ -1,6 +1,6 @@
 // Prestress: sand that its cohesion can hold starts in balance, however it came there (NUMERICS 2.20).
-#include "engine/settings/rules/material_keys.hpp"
 #include "engine/settings/data/method_presets.hpp"
+#include "engine/settings/rules/material_keys.hpp"
 #include "tests/stability/quality.hpp"
 
 using namespace wadi;
