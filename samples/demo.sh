@@ -59,4 +59,4 @@ echo
 echo "Ready in $SECONDS s. Look at"
 echo "  $root/$out/contact_sheet.png"
 echo "  $root/$out/frame_*.png"
-[[ -z $pictures ]] || echo "  $root/$pictures/*.png ($build/bin/wadi-viewer $level is a window)"
+[[ -z $pictures ]] || echo "  $root/$pictures/*.jpg ($build/bin/wadi-viewer $level is a window)"
