@@ -107,6 +107,12 @@ struct WorldParams {
     float wedge_slope;          // s*: slope of the face behind which Coulomb's wedge pushes most
     float wedge_slope2;         // its square
     float wedge_weight;         // C there: 1/(1 + chi s*^2)
+    float plane_slope2;         // square of the slope s_p of the plane on which a wedge of sand gains most
+    float plane_rise;           // s_p dx [m]
+    float inv_plane_rise;       // its inverse
+    float plane_fall;           // what friction leaves of the push on it, (s_p - mu)/(1 + chi s_p^2), times dx [m]
+    float friction_fall;        // mu dx [m]
+    float inv_dts;              // 1/dts [1/s]
     float cliff_share;          // 4/(c_f rho_s g): share of the cohesion that a cliff needs, per cohesion over depth [m/Pa]
     float internal_friction;    // b: friction within spreading sand, a share of mu
     float viscosity_number;     // nu dts/dx^2 of sand in its plane, at most what the explicit step bears beside bulk_viscosity

@@ -40,18 +40,20 @@ FN float of_deeper(float height_low, float height_high, float low, float high) {
 struct SlopeShares {
     float weight; // C = 1/(1 + chi s^2), s no steeper than the wedge's plane
     float push;   // r: less than 1 where it is steeper
+    float slope2; // s^2
 };
 
 FN SlopeShares level_shares() {
     SlopeShares s;
     s.weight = 1.0f;
     s.push = 1.0f;
+    s.slope2 = 0.0f;
     return s;
 }
 
-// rise: along the face's axis; rise_across: cross_rise; depth: the sand's on the higher side [m]; held: cohesive share.
-FN SlopeShares slope_shares(float rise, float rise_across, float depth, float inv_dx, float chi, float wedge_slope, float wedge_slope2,
-                            float wedge_weight, float held) {
+// rise: along the face's axis; rise_across: cross_rise; held: cohesive share.
+FN SlopeShares slope_shares(float rise, float rise_across, float inv_dx, float chi, float wedge_slope, float wedge_slope2, float wedge_weight,
+                            float held) {
     float along = rise * inv_dx;
     float across = rise_across * inv_dx;
     float slope2 = along * along + across * across; // counts beside 1 alone
@@ -60,14 +62,12 @@ FN SlopeShares slope_shares(float rise, float rise_across, float depth, float in
     float root = 1.0f;
     if (UNIFORM(steep)) root = lean_root(slope2);
     float quotient = lean_reciprocal(steep ? root : 1.0f + chi * slope2);
-    float plane = wedge_slope * quotient;
-    float cliff = wmin(depth * inv_dx * quotient, 1.0f); // a step in the ground counts no more than the sand upon it
     float weight = steep ? wedge_weight : quotient;
-    // Without a part of the push that grows with the slope the thrust of a cliff within one cell would go to 0 on finer grids.
-    float push = steep ? plane + 0.1f * wmax(cliff - plane, 0.0f) : 1.0f;
+    float push = steep ? wedge_slope * quotient : 1.0f;
     SlopeShares s;
     s.weight = weight + held * (1.0f - weight);
     s.push = push + held * (1.0f - push);
+    s.slope2 = slope2;
     return s;
 }
 
@@ -76,6 +76,27 @@ FN SlopeShares slope_shares(float rise, float rise_across, float depth, float in
 FN float slope_push(SlopeShares s, float rise, float pure_rise, float density_ratio) {
     float borne = minmod(-pure_rise, rise);
     return s.weight * (s.push * (rise - density_ratio * borne) + density_ratio * (pure_rise + borne));
+}
+
+// Highest plane through a cell that is no steeper than the failing one from any neighbour, nor above the sand nor below the ground: sides and
+// corners are the lowest of the planes there, rises what the plane gains on the way.
+FN float failing_plane(float ground, float top, float sides, float corners, float rise) {
+    return wmax(ground, wmin(top, wmin(sides + rise, corners + 1.41421356f * rise)));
+}
+
+// Fall [m] that a face's push lacks so that the wedge above the failing plane slides as a whole: what friction takes and, of the share of the
+// column that lies above the plane, what the plane's slope leaves; times the plane's own fall, up to all of it. low, high: depths above the
+// plane; wet: h_m/h_s; friction_fall: mu dx; wedge_fall: what is left of the push on the plane, times dx.
+FN float wedge_push(SlopeShares s, float rise, float low, float high, float inv_sum, float pure_rise, float wet, float density_ratio,
+                    float friction_fall, float wedge_fall, float inv_plane_rise, float plane_slope2) {
+    float share = wmin((low + high) * inv_sum, 1.0f);
+    float towards = wclamp((rise - (high - low)) * inv_plane_rise, -1.0f, 1.0f);
+    float light = wmax(0.0f, 1.0f - density_ratio * wet);
+    float due = light * (friction_fall * s.weight + share * wedge_fall) * towards;
+    float own = s.weight * (s.push * (rise - density_ratio * minmod(-pure_rise, rise)));
+    float lacks = due > 0.0f ? wmax(due - own, 0.0f) : wmin(due - own, 0.0f);
+    bool loose = both(share > 0.0f, s.slope2 < plane_slope2);
+    return both(loose, due != 0.0f) ? lacks : 0.0f;
 }
 
 // Rankine's coefficient of passive earth pressure, tan^2(45 deg + phi/2): how many times its own push sand can bear before it is

@@ -32,6 +32,7 @@ constexpr FieldRow rows[] = {
     {"mixed_velocity_y", state, south_face, in_hash, 11, "vm", "m/s", EFFECT_MIXTURE, ""},
     {"rotation", state, cell, in_hash, no_host, "", "rad or 1", EFFECT_ELASTOPLASTIC | EFFECT_PUBLISHED,
      "angle of R, or antisymmetric part of F (NUMERICS 2.13)"},
+    {"wedge_depth", state, cell, in_hash, no_host, "hz", "m", EFFECT_SLOPE_NORMAL, "sand above the plane on which it can slide"},
     {"roughness", fixed, cell, no_hash, no_host, "", "s/m^(1/3)", EFFECT_ROUGHNESS, "Manning's n beyond that of the material"},
     {"water_scale", scratch, cell, no_hash, no_host, "", "1", EFFECT_WATER, "outflow limiter of pure water"},
     {"mixed_scale", scratch, cell, no_hash, no_host, "", "1", EFFECT_MIXTURE, "outflow limiter of mixed water"},

@@ -98,7 +98,8 @@ void plan_sand(PlanBuilder b) {
 void plan_sand_forces(PlanBuilder b) {
     if (!b.has(EFFECT_SAND)) return;
     if (b.has(EFFECT_ELASTOPLASTIC) && !b.can_fuse("transport_sand")) b.run("project_deformation_gradient");
-    const std::vector<std::string> sand = {"sand_velocity_x", "sand_velocity_y"};
+    std::vector<std::string> sand = {"sand_velocity_x", "sand_velocity_y"};
+    if (b.has(EFFECT_SLOPE_NORMAL)) sand.emplace_back("wedge_depth");
     std::vector<std::string> moved = sand;
     if (b.fuses_momentum_exchange()) {
         moved.insert(moved.end(), {"water_velocity_x", "water_velocity_y", "mixed_velocity_x", "mixed_velocity_y"});
@@ -106,10 +107,14 @@ void plan_sand_forces(PlanBuilder b) {
         return;
     }
     const Names drag = drag_names(b);
-    for (const auto& [binding, field] : drag) moved.push_back(field);
+    std::vector<std::string> rubbed = {"sand_velocity_x", "sand_velocity_y"};
+    for (const auto& [binding, field] : drag) {
+        moved.push_back(field);
+        rubbed.push_back(field);
+    }
     if (b.fuse("accelerate_sand", moved, drag)) return;
     b.run("integrate_sand_velocity", sand);
-    b.run("apply_friction", moved, drag);
+    b.run("apply_friction", rubbed, drag);
 }
 
 // One list of tiles, or one for the water's passes, one for the sand's and one for those of both.
