@@ -58,7 +58,7 @@ template <class Real> void Solver<Real>::add_stress(const Axis& ax, int a, int b
 }
 
 /// 2.7 and 2.18: gravity and the wet/dry rule with S = H + hs + (rho_w/rho_s) h_w.
-template <class Real> void Solver<Real>::add_gravity(const Axis& ax, int a, int b) {
+template <class Real> void Solver<Real>::add_gravity(const Faces<Real>& old, const Axis& ax, int a, int b) {
     const std::size_t L = ax.cell(a - 1, b);
     const std::size_t R = ax.cell(a, b);
     const std::size_t f = ax.face(a, b);
@@ -70,12 +70,13 @@ template <class Real> void Solver<Real>::add_gravity(const Axis& ax, int a, int 
     const Real g_f = sand_gravity(std::max(sand[L], sand[R]));
     Real& u = sand_velocity.along(ax)[f];
     const bool pushed = sand[L] + sand[R] > Real(0);
-    const Slope slope = has(EFFECT_SLOPE_NORMAL) ? slope_at(ax, a, b) : Slope{Real(0), Real(1), Real(1)};
-    friction_limit.along(ax)[f] = pushed ? slope.C * level_friction(L, R) : Real(0);
+    const Slope slope = has(EFFECT_SLOPE_NORMAL) ? slope_at(ax, a, b) : Slope{Real(0), Real(1), Real(1), Real(0)};
+    friction_limit.along(ax)[f] = pushed ? slope.C * level_friction(ax, a, b) : Real(0);
     if (has(EFFECT_SLOPE_NORMAL)) {
         const Real D = open_water(R) - open_water(L);
         const Real m = minmod(-D, slope.d); // where the water's surface is level the sand feels its buoyant weight
-        u -= P.k_sand * g_f * slope.C * (slope.r * (slope.d - buoyancy * m) + buoyancy * (D + m));
+        const Real own = slope.r * (slope.d - buoyancy * m);
+        u -= P.k_sand * g_f * (slope.C * (own + buoyancy * (D + m)) + wedge_push(ax, a, b, slope, slope.C * own));
         // Rankine's passive pressure, (1 + sin phi)/(1 - sin phi) times the sand's own, where no stress bears it.
         const Real sine = P.friction / std::sqrt(Real(1) + P.friction * P.friction);
         const Real borne = has(EFFECT_ELASTOPLASTIC) ? Real(1) : (Real(1) + sine) / (Real(1) - sine);
@@ -83,20 +84,23 @@ template <class Real> void Solver<Real>::add_gravity(const Axis& ax, int a, int 
     } else {
         u -= P.k_sand * g_f * (S_R - S_L);
     }
-    if (blocked(sand[L], sand[R], S_L, S_R, P.eps)) u = Real(0);
+    const bool stands = has(EFFECT_SLOPE_NORMAL) ? beyond_head(old, ax, a, b, u) : blocked(sand[L], sand[R], S_L, S_R, P.eps);
+    if (stands || mean(sand[L], sand[R]) < P.eps / Real(2)) u = Real(0);
 }
 
 template <class Real> void Solver<Real>::integrate_sand_velocity() {
     const Faces<Real> old = sand_velocity;
     advect(EFFECT_SECOND_ORDER_SAND, sand, sand_flux, old, P.k_sand, sand_velocity);
+    if (has(EFFECT_SLOPE_NORMAL)) follow_bends(old);
     for_inner_faces([&](const Axis& ax, int a, int b) {
         if (has(EFFECT_INTERNAL_FRICTION)) {
             slow_from_within(old, ax, a, b);
             shear_in_plane(old, ax, a, b);
         }
         if (has(EFFECT_ELASTOPLASTIC)) add_stress(ax, a, b);
-        add_gravity(ax, a, b);
+        add_gravity(old, ax, a, b);
     });
+    if (has(EFFECT_SLOPE_NORMAL)) raise_planes();
 }
 
 /// 2.4a: momentum follows the water that changes between the pure and the mixed layer.

@@ -1,6 +1,6 @@
 // Sand on its slope: factors of weight and friction, friction and viscosity within it (2.18), water that pores hold back (2.19).
 #pragma once
-#include "tests/reference/transport.inl"
+#include "tests/reference/bends.inl"
 #include <array>
 
 namespace wadi::reference {
@@ -16,7 +16,7 @@ template <class Real> Real Solver<Real>::open_rise(const Axis& ax, int a, int b)
 }
 
 template <class Real> auto Solver<Real>::slope_at(const Axis& ax, int a, int b) const -> Slope {
-    if (!has(EFFECT_SLOPE_NORMAL)) return {Real(0), Real(1), Real(1)};
+    if (!has(EFFECT_SLOPE_NORMAL)) return {Real(0), Real(1), Real(1), Real(0)};
     const std::size_t L = ax.cell(a - 1, b);
     const std::size_t R = ax.cell(a, b);
     const Real d = (terrain[R] + sand[R]) - (terrain[L] + sand[L]);
@@ -26,12 +26,8 @@ template <class Real> auto Solver<Real>::slope_at(const Axis& ax, int a, int b) 
         Real(4);
     const Real q = (d * d + e * e) / (P.dx * P.dx);
     const Real limit = P.wedge * P.wedge;
-    Slope slope{d, Real(1) / (Real(1) + P.chi * std::min(q, limit)), Real(1)};
-    if (q > limit) {
-        const Real depth = d > Real(0) ? sand[R] : sand[L];
-        const Real own = std::min(depth / P.dx, std::sqrt(q));
-        slope.r = (P.wedge + Real(0.1) * std::max(own - P.wedge, Real(0))) / std::sqrt(q);
-    }
+    Slope slope{d, Real(1) / (Real(1) + P.chi * std::min(q, limit)), Real(1), q};
+    if (q > limit) slope.r = P.wedge / std::sqrt(q);
     // Cohesion that could hold a cliff of this depth pushes as it pulls; of equal depths the larger share counts.
     Real share = sand[L] > sand[R] ? cohesive_share[L] : cohesive_share[R];
     if (sand[L] == sand[R]) share = std::max(cohesive_share[L], cohesive_share[R]);
@@ -41,11 +37,14 @@ template <class Real> auto Solver<Real>::slope_at(const Axis& ax, int a, int b) 
 }
 
 /// 2.8: what Coulomb friction of a substep takes from a velocity on level ground.
-template <class Real> Real Solver<Real>::level_friction(std::size_t L, std::size_t R) const {
+template <class Real> Real Solver<Real>::level_friction(const Axis& ax, int a, int b) const {
+    const std::size_t L = ax.cell(a - 1, b);
+    const std::size_t R = ax.cell(a, b);
     const Real hs_bar = mean(sand[L], sand[R]);
     const Real wet = hs_bar > Real(0) ? mean(mixed[L], mixed[R]) / hs_bar : Real(0);
     const Real weight = std::max(Real(1) - P.rho_w / P.rho_s * wet, Real(0));
-    return P.friction * sand_gravity(std::max(sand[L], sand[R])) * P.substep * weight;
+    const Real g = sand_gravity(std::max(sand[L], sand[R])) + (has(EFFECT_SLOPE_NORMAL) ? bed_lift.along(ax)[ax.face(a, b)] : Real(0));
+    return P.friction * std::max(g, Real(0)) * P.substep * weight;
 }
 
 /// 2.18: friction within sand that gets thinner while it slides, from the velocities before this stage.
@@ -66,7 +65,7 @@ template <class Real> void Solver<Real>::slow_from_within(const Faces<Real>& old
     const Real v = ((v_sw + v_nw) + (v_se + v_ne)) / Real(4);
     const Real p = std::sqrt(u * u + v * v + P.gravity * mean(sand[L], sand[R]) / Real(400));
     if (p <= Real(0)) return;
-    const Real N = P.spread_friction * slope_at(ax, a, b).C * level_friction(L, R);
+    const Real N = P.spread_friction * slope_at(ax, a, b).C * level_friction(ax, a, b);
     sand_velocity.along(ax)[ax.face(a, b)] *= std::max(Real(1) - N * y / ((p + y) * p), Real(0));
 }
 

@@ -23,6 +23,14 @@ double sample(const TimeSeries& series, double time) {
     return points.back().second;
 }
 
+/// 2.18: the largest root of 2 chi s^3 - 3 mu chi s^2 - mu, from beyond it, where the cubic is convex.
+double failing_slope(double mu, double chi) {
+    if (chi <= 0) return 1e9;
+    double s = 1.5 * mu + std::cbrt(mu / (2 * chi));
+    for (int n = 0; n < 60 && s > 0; ++n) s -= (chi * s * s * (2 * s - 3 * mu) - mu) / (6 * chi * s * (s - mu));
+    return std::clamp(s, 0.1, 1e9);
+}
+
 template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t mask) : settings(world), effects(mask) {
     const Material& material = world.material;
     const Method& method = world.method;
@@ -68,6 +76,7 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
     P.cohesion_cap = static_cast<Real>(method.cohesion_cap);
     P.chi = static_cast<Real>(material.slope_normal);
     P.wedge = static_cast<Real>(material.friction + std::sqrt(material.friction * material.friction + 1 / material.slope_normal));
+    P.plane = static_cast<Real>(failing_slope(material.friction, material.slope_normal));
     P.spread_friction = static_cast<Real>(material.internal_friction);
     P.retained = static_cast<Real>(material.retention);
     P.substeps = method.substeps;
@@ -79,13 +88,13 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
     const std::size_t ny = static_cast<std::size_t>(world.grid.ny);
     for (Field<Real>* field :
          {&terrain, &sand, &water, &Vxy, &pure, &mixed, &pure_predicted, &mixed_predicted, &pure_scale, &mixed_scale, &sand_scale,
-          &saturation, &sand_before, &mixed_before, &sxx, &sxy, &syy, &rotation, &cohesive_share})
+          &saturation, &sand_before, &mixed_before, &sxx, &sxy, &syy, &rotation, &cohesive_share, &wedge_depth})
         field->assign(nx * ny, Real(0));
     Vxx.assign(nx * ny, Real(1));
     Vyy.assign(nx * ny, Real(1));
     for (Faces<Real>* faces : {&sand_velocity, &pure_velocity, &mixed_velocity, &diffusion_flux, &pure_flux, &mixed_flux,
                                &sand_flux, &bed_load, &centered_velocity, &mixed_push, &layer_exchange, &ghost_water, &pure_type,
-                               &mixed_type, &sand_type, &extrapolated, &friction_limit, &withheld_push}) {
+                               &mixed_type, &sand_type, &extrapolated, &friction_limit, &withheld_push, &bed_lift}) {
         faces->x.assign((nx + 1) * ny, Real(0));
         faces->y.assign(nx * (ny + 1), Real(0));
     }
@@ -202,6 +211,8 @@ template <class Real> template <class Other> void Solver<Real>::copy_from(const 
     faces(&A::extrapolated, &B::extrapolated);
     faces(&A::friction_limit, &B::friction_limit);
     faces(&A::withheld_push, &B::withheld_push);
+    faces(&A::bed_lift, &B::bed_lift);
+    field(&A::wedge_depth, &B::wedge_depth);
     water_added = other.water_added;
     sand_added = other.sand_added;
     refused = other.refused;

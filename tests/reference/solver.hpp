@@ -37,6 +37,7 @@ template <class Real> struct Constants {
     Real shock_viscosity{}; // c1 of 2.3
     Real viscosity{};       // bulk viscosity of sand [Pa s], bounded for stability (2.7)
     Real chi{}, wedge{};    // 2.18: slope-normal factor, slope s* of Coulomb's wedge (infinite without chi)
+    Real plane{};           // 2.18: slope s_p of the failing plane
     Real spread_friction{}; // 2.18: b, share of mu
     Real shear_number{};    // 2.18: nu substep/dx^2 of the in-plane viscosity, bounded for stability
     Real retained{};        // 2.19: W/hs that pores hold back
@@ -88,7 +89,7 @@ template <class Real> class Solver {
     void project_deformation_gradient();         // 2.7 -> Vxx, Vxy, Vyy, sxx, sxy, syy, cohesive_share
     void extrapolate_sand_velocity();            // 2.12 -> extrapolated
     void backtrace_sand_velocity();              // 2.12 -> sand_velocity
-    void integrate_sand_velocity();              // 2.3, 2.7, rule 2.4c, 2.18 -> sand_velocity, friction_limit, withheld_push
+    void integrate_sand_velocity();              // 2.3, 2.7, 2.4c, 2.18 -> sand_velocity, friction_limit, withheld_push, wedge_depth
     void advect_deformation_gradient();          // 2.13 -> Vxx, Vxy, Vyy, rotation
     void stretch_deformation_gradient();         // 2.13, after the velocity -> Vxx, Vxy, Vyy, rotation
     void compute_momentum_exchange();            // 2.4a after the sand height, then mixed_push on mixed_velocity
@@ -121,6 +122,7 @@ template <class Real> class Solver {
     Field<Real> terrain, sand, water; // H, hs, W [m]
     Field<Real> Vxx, Vxy, Vyy;        // left stretch of the sand; 2.13: right stretch, or F's symmetric part
     Field<Real> rotation;             // 2.13: angle, or (Fyx - Fxy)/2
+    Field<Real> wedge_depth;          // 2.18: sand above the failing plane [m]
     Faces<Real> sand_velocity, pure_velocity, mixed_velocity; // us, uw, um [m/s]
 
     // Intermediate fields. Fluxes are depths per step, k q [m].
@@ -140,6 +142,7 @@ template <class Real> class Solver {
     Field<Real> sxx, sxy, syy;                    // Cauchy stress [Pa]
     Field<Real> cohesive_share;                   // w of 2.18, 0 without elastoplastic
     Faces<Real> friction_limit, withheld_push;    // 2.18: N, k_sand g_f (1 - C r) d [m/s]
+    Faces<Real> bed_lift;                         // 2.3: A of bends [m/s2]
     Field<Real> roughness;                        // of each cell beyond P.manning [s/m^(1/3)]
     Faces<Real> ghost_water;                      // depth outside the open sides [m], on boundary faces
 
@@ -190,17 +193,25 @@ template <class Real> class Solver {
     void change_strain(std::size_t cell, Real added);
     /// 2.18: C and r of a face, 1 and 1 without slope_normal; d is the rise of the bed of sand across it.
     struct Slope {
-        Real d, C, r;
+        Real d, C, r, q;
     };
+    struct Course {
+        Real u, w, a, e; // velocity along and across a face [m/s], slope of the ground along and across
+    };
+    Course course_at(const Faces<Real>& velocity, const Axis& axis, int a, int b) const;
+    void follow_bends(const Faces<Real>& old);
+    bool beyond_head(const Faces<Real>& old, const Axis& axis, int a, int b, Real u) const;
+    Real wedge_push(const Axis& axis, int a, int b, const Slope& slope, Real own) const;
+    void raise_planes();
     Slope slope_at(const Axis& axis, int a, int b) const;
     Real open_rise(const Axis& axis, int a, int b) const;
-    Real level_friction(std::size_t left, std::size_t right) const;
+    Real level_friction(const Axis& axis, int a, int b) const;
     Real relative_permeability(std::size_t cell) const;
     Real diffusion(const Axis& axis, int a, int b) const; // 2.1 through an inner face [m2/s]
     void slow_from_within(const Faces<Real>& old, const Axis& axis, int a, int b);
     void shear_in_plane(const Faces<Real>& old, const Axis& axis, int a, int b);
     void add_stress(const Axis& axis, int a, int b);
-    void add_gravity(const Axis& axis, int a, int b);
+    void add_gravity(const Faces<Real>& old, const Axis& axis, int a, int b);
     Real sand_load(std::size_t cell) const;
     struct Stretch {
         Real xx, xy, yy;

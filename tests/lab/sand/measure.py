@@ -21,12 +21,14 @@ import scene
 import table
 
 import columns  # noqa: F401, registers its cases, as do:
+import brinks  # noqa: F401
 import cuts  # noqa: F401
 import damp  # noqa: F401
 import dams  # noqa: F401
 import orders  # noqa: F401
 import piles  # noqa: F401
 import slopes  # noqa: F401
+import slopes_energy  # noqa: F401
 import streams  # noqa: F401
 
 

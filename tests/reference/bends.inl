@@ -1,0 +1,122 @@
+// Sand that flows round bends of the ground (2.3) and up to where its head takes it (2.4c), wedges that slide as a whole (2.18).
+#pragma once
+#include "tests/reference/transport.inl"
+#include <algorithm>
+
+namespace wadi::reference {
+
+/// Velocity and ground at a face, outer ones included: beyond the grid the ground goes on level and nothing moves.
+template <class Real> auto Solver<Real>::course_at(const Faces<Real>& velocity, const Axis& ax, int a, int b) const -> Course {
+    const auto ground = [&](int along, int across) {
+        return terrain[ax.cell(std::clamp(along, 0, ax.along() - 1), std::clamp(across, 0, ax.across() - 1))];
+    };
+    const auto beside = [&](int along, int row) {
+        return along < 0 || along >= ax.along() ? Real(0) : velocity.across(ax)[ax.cross(along, row)];
+    };
+    Course c;
+    c.u = velocity.along(ax)[ax.face(a, b)];
+    c.w = ((beside(a - 1, b) + beside(a - 1, b + 1)) + (beside(a, b) + beside(a, b + 1))) / Real(4);
+    c.a = (ground(a, b) - ground(a - 1, b)) / P.dx;
+    Real rises(0);
+    int count = 0;
+    for (const int row : {b, b + 1}) // rises from row - 1 to row
+        if (row > 0 && row < ax.across()) {
+            rises += (ground(a - 1, row) - ground(a - 1, row - 1)) + (ground(a, row) - ground(a, row - 1));
+            count += 2;
+        }
+    c.e = count > 0 ? rises / (Real(count) * P.dx) : Real(0);
+    return c;
+}
+
+/// 2.3: what flows in keeps its speed along the bed -> sand_velocity, bed_lift.
+template <class Real> void Solver<Real>::follow_bends(const Faces<Real>& old) {
+    for_inner_faces([&](const Axis& ax, int a, int b) {
+        const std::size_t f = ax.face(a, b);
+        bed_lift.along(ax)[f] = Real(0);
+        const Real hb = mean(sand[ax.cell(a - 1, b)], sand[ax.cell(a, b)]);
+        if (hb <= P.eps) return;
+        const Course own = course_at(old, ax, a, b);
+        const Real n = Real(1) + own.a * own.a + own.e * own.e;
+        Real turned(0), asked(0), pressed(0);
+        const auto side = [&](Real Q, const Course& from) {
+            if (Q <= Real(0)) return;
+            const Real d = (from.a - own.a) * from.u + (from.e - own.e) * from.w;
+            const Real climb = from.a * from.u + from.e * from.w;
+            const Real V2 = from.u * from.u + from.w * from.w + climb * climb;
+            if (n * V2 > Real(1e-12)) {
+                const Real x = std::min(Real(1), d * d / (n * V2));
+                turned += Q * ((from.u + own.a * d / n) / std::sqrt(std::max(x, Real(1) - x)) - from.u);
+            }
+            const Real most = std::abs(from.u) + std::abs(from.w);
+            asked -= Q * d;
+            pressed -= Q * std::clamp(d, -most, most);
+        };
+        const Field<Real>& along = sand_flux.along(ax);
+        const Field<Real>& across = sand_flux.across(ax);
+        side(mean(along[ax.face(a - 1, b)], along[f]), course_at(old, ax, a - 1, b));
+        side(-mean(along[f], along[ax.face(a + 1, b)]), course_at(old, ax, a + 1, b));
+        if (b > 0) side(mean(across[ax.cross(a - 1, b)], across[ax.cross(a, b)]), course_at(old, ax, a, b - 1));
+        if (b + 1 < ax.across())
+            side(-mean(across[ax.cross(a - 1, b + 1)], across[ax.cross(a, b + 1)]), course_at(old, ax, a, b + 1));
+        const Real acceleration = asked / (hb * P.substep);
+        const Real follows = acceleration < -P.gravity ? P.gravity / -acceleration : Real(1);
+        sand_velocity.along(ax)[f] += follows * turned / hb;
+        bed_lift.along(ax)[f] = pressed / (hb * P.substep);
+    });
+}
+
+/// 2.4c for sand with a head: whether a face with the velocity u so far must stand.
+template <class Real> bool Solver<Real>::beyond_head(const Faces<Real>& old, const Axis& ax, int a, int b, Real u) const {
+    const std::size_t L = ax.cell(a - 1, b);
+    const std::size_t R = ax.cell(a, b);
+    const std::size_t donor = u > Real(0) ? L : R;
+    const std::size_t other = u > Real(0) ? R : L;
+    if (sand[donor] <= P.eps) return true;
+    if (sand[other] > P.eps) return false;
+    const Course at = course_at(old, ax, a, b);
+    const Real climb = at.a * u + at.e * at.w;
+    const Real head = u * u + at.w * at.w + climb * climb; // times 2 g
+    return head <= Real(2) * P.gravity * ((terrain[other] + sand[other]) - (terrain[donor] + sand[donor]));
+}
+
+/// 2.18: what the push of a face lacks so that the wedge above the failing plane slides, as a fall [m].
+template <class Real> Real Solver<Real>::wedge_push(const Axis& ax, int a, int b, const Slope& slope, Real own) const {
+    const std::size_t L = ax.cell(a - 1, b);
+    const std::size_t R = ax.cell(a, b);
+    const Real hb = mean(sand[L], sand[R]);
+    const Real loose = mean(wedge_depth[L], wedge_depth[R]);
+    if (loose <= Real(0) || hb <= Real(0) || slope.q >= P.plane * P.plane) return Real(0);
+    const Real omega = std::min(Real(1), loose / hb);
+    const Real fall = slope.d - (wedge_depth[R] - wedge_depth[L]); // of the plane
+    const Real part = std::clamp(fall / (P.plane * P.dx), Real(-1), Real(1));
+    const Real light = std::max(Real(0), Real(1) - P.rho_w / P.rho_s * mean(mixed[L], mixed[R]) / hb);
+    const Real plane = (P.plane - P.friction) / (Real(1) + P.chi * P.plane * P.plane);
+    const Real due = light * (P.friction * slope.C + omega * plane) * P.dx * part;
+    if (due > Real(0)) return std::max(due - own, Real(0));
+    if (due < Real(0)) return std::min(due - own, Real(0));
+    return Real(0);
+}
+
+/// 2.18: the failing plane, from that of the neighbours before -> wedge_depth.
+template <class Real> void Solver<Real>::raise_planes() {
+    const Field<Real> before = wedge_depth;
+    const Axis x = axis(false);
+    for (int j = 0; j < x.ny; ++j)
+        for (int i = 0; i < x.nx; ++i) {
+            const std::size_t c = x.cell(i, j);
+            const Real top = terrain[c] + sand[c];
+            Real z = top;
+            for (int dj = -1; dj <= 1; ++dj)
+                for (int di = -1; di <= 1; ++di) {
+                    if ((di == 0 && dj == 0) || i + di < 0 || i + di >= x.nx || j + dj < 0 || j + dj >= x.ny) continue;
+                    const std::size_t n = x.cell(i + di, j + dj);
+                    const Real distance = di != 0 && dj != 0 ? std::sqrt(Real(2)) * P.dx : P.dx;
+                    z = std::min(z, terrain[n] + sand[n] - before[n] + P.plane * distance);
+                }
+            z = std::max(z, terrain[c]);
+            const Real held = has(EFFECT_ELASTOPLASTIC) ? cohesive_share[c] : Real(0);
+            wedge_depth[c] = (Real(1) - held) * (top - z);
+        }
+}
+
+} // namespace wadi::reference
