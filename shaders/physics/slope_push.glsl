@@ -3,17 +3,21 @@
 #define PHYSICS_SLOPE_PUSH
 #include "../physics/scalar.glsl"
 
-// The sand's surface in a cell, and how far it may rise from there or to there: a dry cell lets it rise not at all.
+// The sand's surface in a cell and the ground under it, and how far they may rise from there or to there: from a dry cell not at all.
 struct SandTop {
-    float height, room;
+    float height, ground, room;
 };
 
 FN SandTop sand_top(float ground, float sand, float dry) {
     SandTop top;
     top.height = ground + sand;
+    top.ground = ground;
     top.room = sand > dry ? 1.0e15f : 0.0f;
     return top;
 }
+
+// Depth through which the sand of two cells touches: beside a brink not that of the pile below it.
+FN float shared_depth(SandTop low, SandTop high) { return wmax(wmin(low.height, high.height) - wmax(low.ground, high.ground), 0.0f); }
 
 // Rise of the sand's surface between two cells; 0 where the wet/dry rule blocks the face between them, so that sand along a steep
 // dry wall is not lightened by the wall's slope.
