@@ -9,7 +9,7 @@ FN float coulomb_slip(float mu, float gravity, float dts, float weight) { return
 // The weight that buoyancy leaves, as a share. wet: h_m/h_s.
 FN float buoyant_weight(float wet, float density_ratio) { return wmax(0.0f, 1.0f - density_ratio * wet); }
 
-// What cohesion on the ground takes besides, however heavy the sand is (infinite slope: Taylor 1948; Skempton and DeLory 1957).
+// What cohesion on the ground takes besides, however heavy the sand is, as on the infinite slope of soil mechanics.
 // strength: sum over both cells of cohesive share times depth; base: how much of it clings to the ground.
 FN float adhesion_slip(float per_share, float base, float strength, float inv_sum) { return per_share * base * (strength * inv_sum); }
 

@@ -23,7 +23,7 @@ FN PoreShares pore_shares(float full, float mixed, float inv_sum) {
 }
 
 // What presses sand onto its ground, as a share of its own weight: effective stress, the weight of grains and held water less the
-// pressure in full pores (Terzaghi).
+// pressure in full pores (Terzaghi 1923). Above suction no grain floats (chi of Bishop 1959 is 0 there).
 FN float effective_weight(PoreShares pores, float density_ratio) { return wmax(0.0f, 1.0f - density_ratio * (pores.full - pores.held)); }
 
 // What of the sand's own weight pushes it down a slope: the rest is borne by pressure or brought by held water.
