@@ -63,7 +63,7 @@ template <class Real> void Solver<Real>::bound_balance() {
     };
     const auto clings = [&](std::size_t c) {
         const Real whole = cohesion(water[c] / (water[c] + sand[c]), std::numeric_limits<Real>::infinity());
-        return P.adhesion * whole / (Real(4) * P.yield_friction * P.rankine);
+        return P.adhesion * whole / P.yield_cohesion;
     };
     Field<Real> pull(cells());
     for (std::size_t c = 0; c < cells(); ++c)

@@ -97,7 +97,7 @@ template <class Real> Real Solver<Real>::stressed(Real cohesive) const {
 /// 2.8: what cohesion on level ground takes from a velocity in a substep.
 template <class Real> Real Solver<Real>::adhesion(std::size_t L, std::size_t R) const {
     const auto of_material = [&](std::size_t c) { // c_m/rho_s
-        return cohesive_share[c] * sand[c] * P.gravity / (Real(16) * P.rankine);
+        return cohesive_share[c] * sand[c] * P.gravity * P.yield_friction / (Real(4) * P.yield_cohesion);
     };
     return P.adhesion * P.substep * (of_material(L) + of_material(R)) / (sand[L] + sand[R]);
 }

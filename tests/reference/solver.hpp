@@ -21,6 +21,7 @@ template <class Real> struct Constants {
     Real rankine{};                   // s_f of 2.7
     Real adhesion{};                  // a of 2.8
     Real c0{}, c1{}, c2{};            // cohesion of the yield surface [Pa]
+    Real yield_cohesion{};            // its share of the material's
     Real phi1{}, phi2{}, phi3{};      // saturation
     Real exchange{};                  // c_e [kg/(m3 s)], 0 without the drag effect
     Real diffusion{};                 // min(c_d, 0.2 dx2/dt) [m2/s]

@@ -34,8 +34,13 @@ void set_sources(const Settings& s, WorldParams& p) {
 // tan(45 deg + phi/2) of the sand's inner friction.
 double rankine(const Material& m) { return m.yield_friction + std::sqrt(1 + m.yield_friction * m.yield_friction); }
 
-// Cohesion of the yield surface per cohesion of the material: its tip then holds cuts up to Rankine's height (NUMERICS 2.7).
-double yield_cohesion(const Material& m) { return 4 * m.yield_friction * rankine(m); }
+// Cohesion of the yield surface per cohesion of the material: its tip then holds cuts up to Rankine's height (NUMERICS 2.7). The paper's
+// is the material's.
+double yield_cohesion(const Material& m, std::uint32_t effects) {
+    if ((effects & EFFECT_PUBLISHED) != 0) return 1;
+    const double measured = (effects & EFFECT_SLOPE_NORMAL) != 0 ? 0.9 : 1.0; // what falls is held by friction on its ground, too
+    return measured * 4 * m.yield_friction * rankine(m);
+}
 
 } // namespace
 
@@ -122,7 +127,7 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     p.inner_friction = f(m.yield_friction);
     p.rankine = f(rankine(m));
     p.bed_adhesion = f(m.bed_adhesion);
-    p.adhesion_slip = f(m.bed_adhesion * dts * gravity / (16 * rankine(m)));
+    p.adhesion_slip = f(m.bed_adhesion * dts * gravity * m.yield_friction / (4 * yield_cohesion(m, effects)));
     p.internal_friction = f(m.internal_friction);
     const bool retains = (effects & EFFECT_RETENTION) != 0;
     p.retained = retains ? f(m.retention) : -1.0F; // all water is free
@@ -163,7 +168,7 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     p.gradient_clamp = w.gradient_clamp > 0 ? f(w.gradient_clamp) : off;
     p.cohesion_cap = w.cohesion_cap > 0 ? f(2 * m.yield_friction * w.cohesion_cap * weight) : off;
     const auto [phi1, phi2, phi3] = m.saturation;
-    const double apex = (effects & EFFECT_PUBLISHED) != 0 ? 1 : yield_cohesion(m);
+    const double apex = yield_cohesion(m, effects);
     p.cohesion0 = f(apex * m.cohesion_dry);
     p.cohesion1 = f(apex * m.cohesion_wet);
     p.phi1 = f(phi1);

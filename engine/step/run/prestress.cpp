@@ -35,7 +35,7 @@ Column column_of(const WorldParams& p, double ground, double sand, double water,
               : phi < p.phi2 ? p.cohesion1 + (phi - p.phi1) * p.slope12
                              : (p.phi3 - phi) * p.slope23;
     if (phi > p.phi3) c = 0;
-    column.clings = static_cast<double>(p.bed_adhesion * c / (4 * p.inner_friction * p.rankine));
+    column.clings = static_cast<double>(p.adhesion_slip * (c * p.cliff_share) * p.sand_density / p.dts);
     return column;
 }
 
