@@ -153,13 +153,12 @@ template <class Real> void Solver<Real>::stretch_deformation_gradient() {
     }
 }
 
-/// 2.7: how far a cell is pressed together at most [Pa]; with 2.18 its weight's share k of that, and of cohesion what a free
-/// block bears.
+/// 2.7: how far a cell is pressed together at most [Pa], with 2.18 the share k of it.
 template <class Real> Real Solver<Real>::least_stress(Real depth, Real coh, Real k) const {
     const Real weight =
         P.passive_pressure > Real(0) ? P.passive_pressure * P.rho_s * P.gravity * depth : std::numeric_limits<Real>::infinity();
     if (!has(EFFECT_SLOPE_NORMAL)) return weight + coh / P.yield_friction;
-    return (k > Real(0) ? k * weight : Real(0)) + coh / P.yield_friction * (Real(1) + k) / Real(2);
+    return k > Real(0) ? k * (weight + coh / P.yield_friction) : Real(0);
 }
 
 template <class Real> void Solver<Real>::project_deformation_gradient() {
