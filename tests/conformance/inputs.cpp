@@ -286,6 +286,7 @@ Result<Scene> make_scene(const std::string& grid, const std::string& name, const
     s.material.internal_friction = 0.4;
     s.material.sand_viscosity = 0.05;
     s.material.retention = 0.3;
+    s.material.bed_adhesion = 0.7;
     s.method.shock_viscosity = 0; // a choice, on by default
     for (const auto& choice : choice_table())
         if ((effects & choice.bit) != 0) choice.choose(s.method);

@@ -34,7 +34,7 @@ template <class Real> void Solver<Real>::follow_bends(const Faces<Real>& old) {
         const std::size_t f = ax.face(a, b);
         bed_lift.along(ax)[f] = Real(0);
         const Real hb = mean(sand[ax.cell(a - 1, b)], sand[ax.cell(a, b)]);
-        if (hb <= P.eps) return;
+        if (hb <= P.film / Real(2)) return;
         const Course own = course_at(old, ax, a, b);
         const Real n = Real(1) + own.a * own.a + own.e * own.e;
         Real turned(0), asked(0), pressed(0);
@@ -71,15 +71,15 @@ template <class Real> bool Solver<Real>::beyond_head(const Faces<Real>& old, con
     const std::size_t R = ax.cell(a, b);
     const std::size_t donor = u > Real(0) ? L : R;
     const std::size_t other = u > Real(0) ? R : L;
-    if (sand[donor] <= P.eps) return true;
-    if (sand[other] > P.eps) return false;
+    if (sand[donor] <= P.film) return true;
+    if (sand[other] > P.film) return false;
     const Course at = course_at(old, ax, a, b);
     const Real climb = at.a * u + at.e * at.w;
     const Real head = u * u + at.w * at.w + climb * climb; // times 2 g
     return head <= Real(2) * P.gravity * ((terrain[other] + sand[other]) - (terrain[donor] + sand[donor]));
 }
 
-/// 2.18: what the push of a face lacks so that the wedge above the failing plane slides, as a fall [m].
+/// 2.18: what the push of a face lacks so that the wedge above the failing plane slides, as a fall [m], of sand that weighs 1.
 template <class Real> Real Solver<Real>::wedge_push(const Axis& ax, int a, int b, const Slope& slope, Real own) const {
     const std::size_t L = ax.cell(a - 1, b);
     const std::size_t R = ax.cell(a, b);
@@ -89,9 +89,8 @@ template <class Real> Real Solver<Real>::wedge_push(const Axis& ax, int a, int b
     const Real omega = std::min(Real(1), loose / hb);
     const Real fall = slope.d - (wedge_depth[R] - wedge_depth[L]); // of the plane
     const Real part = std::clamp(fall / (P.plane * P.dx), Real(-1), Real(1));
-    const Real light = std::max(Real(0), Real(1) - P.rho_w / P.rho_s * mean(mixed[L], mixed[R]) / hb);
     const Real plane = (P.plane - P.friction) / (Real(1) + P.chi * P.plane * P.plane);
-    const Real due = light * (P.friction * slope.C + omega * plane) * P.dx * part;
+    const Real due = (P.friction * slope.C + omega * plane) * P.dx * part;
     if (due > Real(0)) return std::max(due - own, Real(0));
     if (due < Real(0)) return std::min(due - own, Real(0));
     return Real(0);
@@ -114,7 +113,7 @@ template <class Real> void Solver<Real>::raise_planes() {
                     z = std::min(z, terrain[n] + sand[n] - before[n] + P.plane * distance);
                 }
             z = std::max(z, terrain[c]);
-            const Real held = has(EFFECT_ELASTOPLASTIC) ? cohesive_share[c] : Real(0);
+            const Real held = has(EFFECT_ELASTOPLASTIC) ? std::min(cohesive_share[c], Real(1)) : Real(0);
             wedge_depth[c] = (Real(1) - held) * (top - z);
         }
 }
