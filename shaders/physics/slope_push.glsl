@@ -182,12 +182,15 @@ FN float failing_plane(float ground, float top, float sides, float corners, floa
     return wmax(ground, wmin(top, wmin(sides + rise, corners + 1.41421356f * rise)));
 }
 
+// Share of a face's sand that lies above the failing plane. low, high: depths above it in both cells.
+FN float wedge_share(float low, float high, float inv_sum) { return wmin((low + high) * inv_sum, 1.0f); }
+
 // Fall [m] that a face's push lacks so that the wedge above the failing plane slides as a whole: what friction takes and, of the share of the
 // column that lies above the plane, what the plane's slope leaves; times the plane's own fall, up to all of it. low, high: depths above the
 // plane; friction_fall: mu dx; wedge_fall: what is left of the push on the plane, times dx. Of sand that weighs 1.
 FN float wedge_push(SlopeShares s, float rise, float low, float high, float inv_sum, float friction_fall, float wedge_fall,
                     float inv_plane_rise, float plane_slope2) {
-    float share = wmin((low + high) * inv_sum, 1.0f);
+    float share = wedge_share(low, high, inv_sum);
     float towards = wclamp((rise - (high - low)) * inv_plane_rise, -1.0f, 1.0f);
     float due = (friction_fall * s.weight + share * wedge_fall) * towards;
     float own = s.weight * s.push * rise;

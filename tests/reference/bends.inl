@@ -79,14 +79,18 @@ template <class Real> bool Solver<Real>::beyond_head(const Faces<Real>& old, con
     return head <= Real(2) * P.gravity * ((terrain[other] + sand[other]) - (terrain[donor] + sand[donor]));
 }
 
+/// 2.18: omega, the share of a face's sand above the failing plane.
+template <class Real> Real Solver<Real>::wedge_share(std::size_t L, std::size_t R) const {
+    const Real hb = mean(sand[L], sand[R]);
+    return hb > Real(0) ? std::min(Real(1), mean(wedge_depth[L], wedge_depth[R]) / hb) : Real(0);
+}
+
 /// 2.18: what the push of a face lacks so that the wedge above the failing plane slides, as a fall [m], of sand that weighs 1.
 template <class Real> Real Solver<Real>::wedge_push(const Axis& ax, int a, int b, const Slope& slope, Real own) const {
     const std::size_t L = ax.cell(a - 1, b);
     const std::size_t R = ax.cell(a, b);
-    const Real hb = mean(sand[L], sand[R]);
-    const Real loose = mean(wedge_depth[L], wedge_depth[R]);
-    if (loose <= Real(0) || hb <= Real(0) || slope.q >= P.plane * P.plane) return Real(0);
-    const Real omega = std::min(Real(1), loose / hb);
+    const Real omega = wedge_share(L, R);
+    if (omega <= Real(0) || slope.q >= P.plane * P.plane) return Real(0);
     const Real fall = slope.d - (wedge_depth[R] - wedge_depth[L]); // of the plane
     const Real part = std::clamp(fall / (P.plane * P.dx), Real(-1), Real(1));
     const Real plane = (P.plane - P.friction) / (Real(1) + P.chi * P.plane * P.plane);

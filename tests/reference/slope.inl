@@ -138,7 +138,9 @@ template <class Real> void Solver<Real>::slow_from_within(const Faces<Real>& old
     const Real v = ((v_sw + v_nw) + (v_se + v_ne)) / Real(4);
     const Real p = std::sqrt(u * u + v * v + P.gravity * mean(sand[L], sand[R]) / Real(400));
     if (p <= Real(0)) return;
-    const Real N = P.spread_friction * slope_at(ax, a, b).C * level_friction(ax, a, b);
+    // A wedge slides as a whole: it does not rub within.
+    const Real sheared = has(EFFECT_SLOPE_NORMAL) ? Real(1) - wedge_share(L, R) : Real(1);
+    const Real N = P.spread_friction * sheared * slope_at(ax, a, b).C * level_friction(ax, a, b);
     sand_velocity.along(ax)[ax.face(a, b)] *= std::max(Real(1) - N * y / ((p + y) * p), Real(0));
 }
 

@@ -207,6 +207,7 @@ template <class Real> class Solver {
     Course course_at(const Faces<Real>& velocity, const Axis& axis, int a, int b) const;
     void follow_bends(const Faces<Real>& old);
     bool beyond_head(const Faces<Real>& old, const Axis& axis, int a, int b, Real u) const;
+    Real wedge_share(std::size_t left, std::size_t right) const;
     Real wedge_push(const Axis& axis, int a, int b, const Slope& slope, Real own) const;
     void raise_planes();
     Slope slope_at(const Axis& axis, int a, int b) const;

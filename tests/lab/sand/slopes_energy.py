@@ -1,5 +1,5 @@
 """Dry sand that changes slope: a slab runs up a slope, another runs out on the flat. The law is a block's with Coulomb friction, which also
-presses on the ground with what bends its way (Savage and Hutter 1991); without that the energy line (Heim 1932)."""
+presses on the ground with what bends its way (Savage and Hutter 1991); without that the energy line."""
 import math
 
 import numpy as np
