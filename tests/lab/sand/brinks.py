@@ -12,7 +12,6 @@ LENGTH, DEPTH, DROP, BEYOND, ROWS = 5.0, 1.0, 3.0, 6.0, 4
 FALLEN = {0.4: (0.166, 0.197), 1: (0.382, 0.454), 2: (0.547, 0.684), 3.8: (0.638, 0.846)}
 EVERY = 0.1
 CONTROL = {"material.slope_normal": 0}
-SOFT = {"young_modulus": 0}
 
 
 def fall(lab, dx):
@@ -21,7 +20,7 @@ def fall(lab, dx):
     x = shapes.centres(cells)[0] + (LENGTH + BEYOND) / 2
     upon = x < LENGTH
     times = [round(EVERY * n, 3) for n in range(1, 39)]
-    run = lab.run(level(cells, terrain=[{"file": np.where(upon, DROP, 0.0)}], sand=[{"file": np.where(upon, DEPTH, 0.0)}], material=SOFT), times)
+    run = lab.run(level(cells, terrain=[{"file": np.where(upon, DROP, 0.0)}], sand=[{"file": np.where(upon, DEPTH, 0.0)}]), times)
     return {time: float((run.field("hs", time) * ~upon).sum()) * dx / ROWS for time in times}
 
 
