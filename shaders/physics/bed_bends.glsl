@@ -28,14 +28,6 @@ struct BedBend {
     float pressed; // the same, of steep bends no more than what comes
 };
 
-FN BedBend no_bend() {
-    BedBend b;
-    b.gain = 0.0f;
-    b.asked = 0.0f;
-    b.pressed = 0.0f;
-    return b;
-}
-
 // inflow: depth that comes from the neighbour `from`, negative: nothing does. normal2: 1 + the square of the face's own slope.
 FN BedBend bed_bend(float inflow, BedCourse from, BedCourse own, float normal2, float inv_normal2) {
     float brought = wmax(inflow, 0.0f);
@@ -63,22 +55,9 @@ FN BedBend both_bends(BedBend a, BedBend b) {
 
 // What all that flows in does to a face.
 struct BedRide {
-    float gain;         // of its velocity [m/s]
-    float lift;         // what the bed adds to gravity [m/s2]
-    float slope_along;  // the ground's at the face
-    float climb_across; // how fast the velocity across the face climbs [m/s]
-    float across2;      // its square [m2/s2]
+    float gain; // of its velocity [m/s]
+    float lift; // what the bed adds to gravity [m/s2]
 };
-
-FN BedRide level_ride() {
-    BedRide ride;
-    ride.gain = 0.0f;
-    ride.lift = 0.0f;
-    ride.slope_along = 0.0f;
-    ride.climb_across = 0.0f;
-    ride.across2 = 0.0f;
-    return ride;
-}
 
 // Sand that is asked to fall faster than gravity makes it flies: of the bend it follows the share that gravity can. inv_sum: 1 over the
 // depth of both cells, to which the fluxes of all bends, of two faces each, belong.
@@ -86,16 +65,10 @@ FN BedRide bed_ride(BedBend bends, float inv_sum, float gravity_dts, float inv_d
     float asked = bends.asked * inv_sum;
     bool flies = asked < wmin(-gravity_dts, -1.0e-20f);
     float share = lean_quotient(flies ? gravity_dts : 1.0f, flies ? -asked : 1.0f);
-    BedRide ride = level_ride();
+    BedRide ride;
     ride.gain = bends.gain * inv_sum * share;
     ride.lift = bends.pressed * inv_sum * inv_dts;
     return ride;
-}
-
-// 2 g times the head of a velocity u at the face [m2/s2].
-FN float head2(BedRide ride, float u) {
-    float climb = ride.slope_along * u + ride.climb_across;
-    return u * u + ride.across2 + climb * climb;
 }
 
 // Wet/dry rule of sand with a head (NUMERICS 2.4c): a face stands where it would draw from a dry cell, or climb onto a dry one that is higher

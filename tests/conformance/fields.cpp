@@ -1,5 +1,5 @@
 #include "tests/conformance/fields.hpp"
-#include "engine/step/plan/step_plan.hpp"
+#include "engine/step/plan/field_table.hpp"
 #include <algorithm>
 #include <map>
 
@@ -36,6 +36,7 @@ template <class Real> const Faces<Real>* face_field(const Solver<Real>& s, const
         {"pressure", &s.mixed_push},           {"bed_load", &s.bed_load},
         {"water_face_type", &s.pure_type},     {"mixed_face_type", &s.mixed_type},
         {"sand_face_type", &s.sand_type},      {"extrapolated_velocity", &s.extrapolated},
+        {"bend_gain", &s.bend_gain},           {"bed_lift", &s.bed_lift},
         {"friction_limit", &s.friction_limit}, {"withheld_push", &s.withheld_push},
         {"layer_exchange", &s.layer_exchange}, {"centered_water_velocity", &s.centered_velocity},
     };
@@ -93,9 +94,8 @@ FieldName field_of(const std::string& stage, const std::string& binding, std::ui
 bool on_faces(const std::string& base) { return ends_with_axis(base) && !base.starts_with("centre_"); }
 
 bool is_state(const std::string& base) {
-    static const StepPlan plan = [] { return make_step_plan(~0u, 1); }();
-    const auto* field = plan.find(base);
-    return field != nullptr && field->role == FieldRole::state;
+    const FieldRow* row = find_field(base);
+    return row != nullptr && row->role == FieldRole::state;
 }
 
 compute::Range2 values_of(const std::string& base, const WorldParams& params) {

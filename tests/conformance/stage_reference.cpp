@@ -50,6 +50,7 @@ constexpr Step<Real> steps[] = {
     {"evolve_deformation_gradient", &Solver<Real>::evolve_deformation_gradient, EFFECT_ELASTOPLASTIC, EFFECT_PUBLISHED},
     {"compute_momentum_exchange", &Solver<Real>::compute_momentum_exchange, EFFECT_MIXTURE, EFFECT_PUBLISHED},
     {"project_deformation_gradient", &Solver<Real>::project_deformation_gradient, EFFECT_ELASTOPLASTIC, EFFECT_PUBLISHED},
+    {"bend_sand_velocity", &Solver<Real>::bend_sand_velocity, EFFECT_SAND | EFFECT_SLOPE_NORMAL, EFFECT_PUBLISHED},
     {"integrate_sand_velocity", &Solver<Real>::integrate_sand_velocity, EFFECT_SAND, EFFECT_PUBLISHED},
     {"apply_friction", &Solver<Real>::apply_friction, EFFECT_SAND, EFFECT_PUBLISHED},
     {"extrapolate_sand_velocity", &Solver<Real>::extrapolate_sand_velocity, EFFECT_PUBLISHED | EFFECT_SAND},

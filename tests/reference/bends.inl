@@ -28,11 +28,12 @@ template <class Real> auto Solver<Real>::course_at(const Faces<Real>& velocity, 
     return c;
 }
 
-/// 2.3: what flows in keeps its speed along the bed -> sand_velocity, bed_lift.
-template <class Real> void Solver<Real>::follow_bends(const Faces<Real>& old) {
+/// 2.3: what flows in keeps its speed along the bed.
+template <class Real> void Solver<Real>::bend_sand_velocity() {
+    const Faces<Real>& old = sand_velocity;
     for_inner_faces([&](const Axis& ax, int a, int b) {
         const std::size_t f = ax.face(a, b);
-        bed_lift.along(ax)[f] = Real(0);
+        bend_gain.along(ax)[f] = bed_lift.along(ax)[f] = Real(0);
         const Real hb = mean(sand[ax.cell(a - 1, b)], sand[ax.cell(a, b)]);
         if (hb <= P.film / Real(2)) return;
         const Course own = course_at(old, ax, a, b);
@@ -60,7 +61,7 @@ template <class Real> void Solver<Real>::follow_bends(const Faces<Real>& old) {
             side(-mean(across[ax.cross(a - 1, b + 1)], across[ax.cross(a, b + 1)]), course_at(old, ax, a, b + 1));
         const Real acceleration = asked / (hb * P.substep);
         const Real follows = acceleration < -P.gravity ? P.gravity / -acceleration : Real(1);
-        sand_velocity.along(ax)[f] += follows * turned / hb;
+        bend_gain.along(ax)[f] = follows * turned / hb;
         bed_lift.along(ax)[f] = pressed / (hb * P.substep);
     });
 }

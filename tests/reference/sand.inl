@@ -98,8 +98,8 @@ template <class Real> void Solver<Real>::add_gravity(const Faces<Real>& old, con
 template <class Real> void Solver<Real>::integrate_sand_velocity() {
     const Faces<Real> old = sand_velocity;
     advect(EFFECT_SECOND_ORDER_SAND, sand, sand_flux, old, P.k_sand, sand_velocity);
-    if (has(EFFECT_SLOPE_NORMAL)) follow_bends(old);
     for_inner_faces([&](const Axis& ax, int a, int b) {
+        if (has(EFFECT_SLOPE_NORMAL)) sand_velocity.along(ax)[ax.face(a, b)] += bend_gain.along(ax)[ax.face(a, b)];
         if (has(EFFECT_INTERNAL_FRICTION)) {
             slow_from_within(old, ax, a, b);
             shear_in_plane(old, ax, a, b);

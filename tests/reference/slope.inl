@@ -116,7 +116,8 @@ template <class Real> Real Solver<Real>::level_friction(const Axis& ax, int a, i
         wet = pores.full - pores.held;
     }
     const Real weight = std::max(Real(1) - P.rho_w / P.rho_s * wet, Real(0));
-    const Real g = sand_gravity(std::max(sand[L], sand[R])) + (has(EFFECT_SLOPE_NORMAL) ? bed_lift.along(ax)[ax.face(a, b)] : Real(0));
+    const Real g =
+        sand_gravity(std::max(sand[L], sand[R])) + (has(EFFECT_SLOPE_NORMAL) ? bed_lift.along(ax)[ax.face(a, b)] : Real(0));
     return P.friction * std::max(g, Real(0)) * P.substep * weight;
 }
 

@@ -91,15 +91,33 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
 
     const std::size_t nx = static_cast<std::size_t>(world.grid.nx);
     const std::size_t ny = static_cast<std::size_t>(world.grid.ny);
-    for (Field<Real>* field :
-         {&terrain, &sand, &water, &Vxy, &pure, &mixed, &pure_predicted, &mixed_predicted, &pure_scale, &mixed_scale, &sand_scale,
-          &saturation, &sand_before, &mixed_before, &sxx, &sxy, &syy, &rotation, &cohesive_share, &wedge_depth})
+    for (Field<Real>* field : {&terrain,
+                               &sand,
+                               &water,
+                               &Vxy,
+                               &pure,
+                               &mixed,
+                               &pure_predicted,
+                               &mixed_predicted,
+                               &pure_scale,
+                               &mixed_scale,
+                               &sand_scale,
+                               &saturation,
+                               &sand_before,
+                               &mixed_before,
+                               &sxx,
+                               &sxy,
+                               &syy,
+                               &rotation,
+                               &cohesive_share,
+                               &wedge_depth})
         field->assign(nx * ny, Real(0));
     Vxx.assign(nx * ny, Real(1));
     Vyy.assign(nx * ny, Real(1));
-    for (Faces<Real>* faces : {&sand_velocity, &pure_velocity, &mixed_velocity, &diffusion_flux, &pure_flux, &mixed_flux,
-                               &sand_flux, &bed_load, &centered_velocity, &mixed_push, &layer_exchange, &ghost_water, &pure_type,
-                               &mixed_type, &sand_type, &extrapolated, &friction_limit, &withheld_push, &bed_lift}) {
+    for (Faces<Real>* faces :
+         {&sand_velocity, &pure_velocity,     &mixed_velocity, &diffusion_flux, &pure_flux,   &mixed_flux, &sand_flux,
+          &bed_load,      &centered_velocity, &mixed_push,     &layer_exchange, &ghost_water, &pure_type,  &mixed_type,
+          &sand_type,     &extrapolated,      &friction_limit, &withheld_push,  &bend_gain,   &bed_lift}) {
         faces->x.assign((nx + 1) * ny, Real(0));
         faces->y.assign(nx * (ny + 1), Real(0));
     }
@@ -217,6 +235,7 @@ template <class Real> template <class Other> void Solver<Real>::copy_from(const 
     faces(&A::extrapolated, &B::extrapolated);
     faces(&A::friction_limit, &B::friction_limit);
     faces(&A::withheld_push, &B::withheld_push);
+    faces(&A::bend_gain, &B::bend_gain);
     faces(&A::bed_lift, &B::bed_lift);
     field(&A::wedge_depth, &B::wedge_depth);
     water_added = other.water_added;
@@ -260,6 +279,7 @@ template <class Real> void Solver<Real>::step_robust() {
             evolve_deformation_gradient();
             project_deformation_gradient();
         }
+        if (has(EFFECT_SLOPE_NORMAL)) bend_sand_velocity();
         integrate_sand_velocity();
         if (has(EFFECT_MIXTURE)) compute_momentum_exchange();
         apply_friction();

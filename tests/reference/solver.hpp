@@ -92,11 +92,12 @@ template <class Real> class Solver {
     void project_deformation_gradient();         // 2.7 -> Vxx, Vxy, Vyy, sxx, sxy, syy, cohesive_share
     void extrapolate_sand_velocity();            // 2.12 -> extrapolated
     void backtrace_sand_velocity();              // 2.12 -> sand_velocity
-    void integrate_sand_velocity();              // 2.3, 2.7, 2.4c, 2.18 -> sand_velocity, friction_limit, withheld_push, wedge_depth
-    void advect_deformation_gradient();          // 2.13 -> Vxx, Vxy, Vyy, rotation
-    void stretch_deformation_gradient();         // 2.13, after the velocity -> Vxx, Vxy, Vyy, rotation
-    void compute_momentum_exchange();            // 2.4a after the sand height, then mixed_push on mixed_velocity
-    void apply_friction();                       // 2.8 -> sand_velocity, mixed_velocity (pure_velocity in the single-layer mask)
+    void bend_sand_velocity();                   // 2.3 -> bend_gain, bed_lift
+    void integrate_sand_velocity();      // 2.3, 2.7, 2.4c, 2.18 -> sand_velocity, friction_limit, withheld_push, wedge_depth
+    void advect_deformation_gradient();  // 2.13 -> Vxx, Vxy, Vyy, rotation
+    void stretch_deformation_gradient(); // 2.13, after the velocity -> Vxx, Vxy, Vyy, rotation
+    void compute_momentum_exchange();    // 2.4a after the sand height, then mixed_push on mixed_velocity
+    void apply_friction();               // 2.8 -> sand_velocity, mixed_velocity (pure_velocity in the single-layer mask)
     // 2.21, water as the paper has it
     void diffuse_mixed_height();   // -> mixed
     void spread_mixed_water();     // -> water
@@ -145,7 +146,7 @@ template <class Real> class Solver {
     Field<Real> sxx, sxy, syy;                    // Cauchy stress [Pa]
     Field<Real> cohesive_share;                   // R of 2.18, 0 without elastoplastic
     Faces<Real> friction_limit, withheld_push;    // 2.18: N, k_sand g_f (K - C r) d (1 - r^ f) [m/s]
-    Faces<Real> bed_lift;                         // 2.3: A of bends [m/s2]
+    Faces<Real> bend_gain, bed_lift;              // 2.3: of bends: what they add to us [m/s], g_b [m/s2]
     Field<Real> roughness;                        // of each cell beyond P.manning [s/m^(1/3)]
     Faces<Real> ghost_water;                      // depth outside the open sides [m], on boundary faces
 
@@ -205,7 +206,6 @@ template <class Real> class Solver {
         Real u, w, a, e; // velocity along and across a face [m/s], slope of the ground along and across
     };
     Course course_at(const Faces<Real>& velocity, const Axis& axis, int a, int b) const;
-    void follow_bends(const Faces<Real>& old);
     bool beyond_head(const Faces<Real>& old, const Axis& axis, int a, int b, Real u) const;
     Real wedge_share(std::size_t left, std::size_t right) const;
     Real wedge_push(const Axis& axis, int a, int b, const Slope& slope, Real own) const;

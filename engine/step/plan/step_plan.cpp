@@ -113,6 +113,7 @@ void plan_sand_forces(PlanBuilder b) {
         rubbed.push_back(field);
     }
     if (b.fuse("accelerate_sand", moved, drag)) return;
+    if (b.has(EFFECT_SLOPE_NORMAL)) b.run("bend_sand_velocity");
     b.run("integrate_sand_velocity", sand);
     b.run("apply_friction", rubbed, drag);
 }

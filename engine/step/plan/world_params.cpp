@@ -34,16 +34,17 @@ void set_sources(const Settings& s, WorldParams& p) {
 // tan(45 deg + phi/2) of the sand's inner friction.
 double rankine(const Material& m) { return m.yield_friction + std::sqrt(1 + m.yield_friction * m.yield_friction); }
 
-// Cohesion of the yield surface per cohesion of the material: its tip then holds cuts up to Rankine's height (NUMERICS 2.7). The paper's
-// is the material's.
+// Cohesion of the yield surface per cohesion of the material: its tip then holds cuts up to Rankine's height (NUMERICS 2.7). The
+// paper's is the material's.
 double yield_cohesion(const Material& m, std::uint32_t effects) {
     if ((effects & EFFECT_PUBLISHED) != 0) return 1;
     const double measured = (effects & EFFECT_SLOPE_NORMAL) != 0 ? 0.9 : 1.0; // what falls is held by friction on its ground, too
     return measured * 4 * m.yield_friction * rankine(m);
 }
 
-// Slope of the plane on which a wedge of sand behind a cliff gains most momentum: of all s that of the largest (s - mu)/(s (1 + chi s^2)),
-// mass times acceleration; a root of 2 chi s^3 - 3 mu chi s^2 - mu. Not below a tenth, where wedges would be longer than what they explain.
+// Slope of the plane on which a wedge of sand behind a cliff gains most momentum: of all s that of the largest (s - mu)/(s (1 +
+// chi s^2)), mass times acceleration; a root of 2 chi s^3 - 3 mu chi s^2 - mu. Not below a tenth, where wedges would be longer
+// than what they explain.
 double failing_slope(double mu, double chi) {
     if (chi <= 0) return steep;
     double low = mu, high = mu + 1;
