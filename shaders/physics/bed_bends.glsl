@@ -33,6 +33,7 @@ FN BedBend bed_bend(float inflow, BedCourse from, BedCourse own, float normal2, 
     float brought = wmax(inflow, 0.0f);
     float leaves = (from.slope_along - own.slope_along) * from.along + (from.slope_across - own.slope_across) * from.across;
     float whole = normal2 * bed_speed2(from);
+    leaves = square(leaves) > 1.0e-9f * whole ? leaves : 0.0f; // less is rounding of heights
     float off = square(leaves); // over the whole: square of the sine of the bend
     bool follows = both(whole > 1.0e-12f, whole < 1.0e30f);
     float longer = lean_root(lean_quotient(follows ? whole : 1.0f, follows ? wmax(off, whole - off) : 1.0f));

@@ -41,9 +41,10 @@ template <class Real> void Solver<Real>::bend_sand_velocity() {
         Real turned(0), asked(0), pressed(0);
         const auto side = [&](Real Q, const Course& from) {
             if (Q <= Real(0)) return;
-            const Real d = (from.a - own.a) * from.u + (from.e - own.e) * from.w;
+            Real d = (from.a - own.a) * from.u + (from.e - own.e) * from.w;
             const Real climb = from.a * from.u + from.e * from.w;
             const Real V2 = from.u * from.u + from.w * from.w + climb * climb;
+            if (d * d <= Real(1e-9) * n * V2) d = Real(0);
             if (n * V2 > Real(1e-12)) {
                 const Real x = std::min(Real(1), d * d / (n * V2));
                 turned += Q * ((from.u + own.a * d / n) / std::sqrt(std::max(x, Real(1) - x)) - from.u);
