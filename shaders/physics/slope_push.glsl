@@ -128,11 +128,13 @@ FN float culmann_drive(float slope, SlopeLaw by) {
 // within_cell: share of a wall that one cell holds, which is upright however coarse the grid.
 FN float culmann_push(float slope, float bed, float weight, float within_cell, SlopeLaw by) {
     float base = wmax(by.friction, bed);
-    float net = weight * wmin(base, wmax(by.friction, by.wedge_slope)) + (culmann_drive(slope, by) - culmann_drive(base, by));
-    float upright = weight * base + (slope - base); // what a column's own tension bears beside nothing
+    float wedge = wmax(by.friction, by.wedge_slope);
+    float slides = weight * wmin(base, wedge);
+    float upright = slides + (slope - base); // what a column's own tension bears beside nothing
+    float net = slides + (culmann_drive(slope, by) - culmann_drive(base, by));
     net = wmin(wmax(net, slope - bed - by.friction * weight), upright); // and friction what is more of that tension
     net = net + within_cell * (upright - net);
-    return slope > base ? lean_quotient(net, weight * slope) : 1.0f;
+    return lean_quotient(slope > base ? net : weight * wmin(slope, wedge), weight * slope);
 }
 
 // Of sand whose cohesion holds a cliff of its depth: its weight follows the ground, not the cliff, and its push Culmann's plane.

@@ -66,11 +66,11 @@ template <class Real> Real Solver<Real>::culmann_excess(Real S) const {
 
 /// 2.18: r_h, the share of its push that a face of slope S on ground of slope S_b has by Culmann.
 template <class Real> Real Solver<Real>::culmann_share(Real S, Real S_b, Real C_b, Real in_one_cell) const {
-    const Real m = std::max(P.friction, S_b);
-    if (S <= std::max(m, Real(1e-10))) return Real(1);
-    const Real upright = C_b * m + S - m;
-    const Real from = std::max(m, Real(1e-10));
-    Real push = C_b * std::min(m, std::max(P.friction, P.wedge)) + (culmann_excess(S) - culmann_excess(from));
+    const Real m = std::max({P.friction, S_b, Real(1e-10)});
+    const Real wedge = std::max(P.friction, P.wedge);
+    if (S <= m) return S > wedge ? wedge / S : Real(1);
+    const Real upright = C_b * std::min(m, wedge) + S - m;
+    Real push = C_b * std::min(m, wedge) + (culmann_excess(S) - culmann_excess(m));
     push = std::min(std::max(push, S - S_b - P.friction * C_b), upright);
     push += in_one_cell * (upright - push);
     return push / (C_b * S);
