@@ -97,6 +97,13 @@ FN SlopeShares level_shares() {
     return s;
 }
 
+// Square of a slope whose rises along the face's axis and across it are these. Counts beside 1 alone.
+FN float slope_squared(float along, float across, float inv_dx) {
+    float a = along * inv_dx;
+    float b = across * inv_dx;
+    return a * a + b * b;
+}
+
 // Of sand without cohesion. slope2: square of its surface's slope; depth: the sand's on the higher side [m].
 FN SlopeShares slope_shares(float slope2, float depth, SlopeLaw by) {
     bool steep = slope2 > by.wedge_slope2;
@@ -124,36 +131,37 @@ FN float culmann_drive(float slope, SlopeLaw by) {
     return (by.rankine + ground) * plane;
 }
 
-// r of such a face as Culmann's plane has it, level and upright ones as they are. bed: the ground's slope; weight: C of that;
-// within_cell: share of a wall that one cell holds, which is upright however coarse the grid.
-FN float culmann_push(float slope, float bed, float weight, float within_cell, SlopeLaw by) {
+// r of such a face as Culmann's plane has it, level and upright ones as they are. bed: the ground's slope; weight: C of that; at_rest: the
+// least push that balances the column's own tension (NUMERICS 2.20) within its friction; within_cell: share of a wall that one cell
+// holds, which is upright however coarse the grid.
+FN float culmann_push(float slope, float bed, float weight, float at_rest, float within_cell, SlopeLaw by) {
     float base = wmax(by.friction, bed);
     float wedge = wmax(by.friction, by.wedge_slope);
     float slides = weight * wmin(base, wedge);
-    float upright = slides + (slope - base); // what a column's own tension bears beside nothing
+    float upright = wmax(slides + (slope - base), at_rest); // what a column's own tension bears beside nothing
     float net = slides + (culmann_drive(slope, by) - culmann_drive(base, by));
-    net = wmin(wmax(net, slope - bed - by.friction * weight), upright); // and friction what is more of that tension
+    net = wmin(wmax(net, at_rest), upright);
     net = net + within_cell * (upright - net);
     return lean_quotient(slope > base ? net : weight * wmin(slope, wedge), weight * slope);
 }
 
 // Of sand whose cohesion holds a cliff of its depth: its weight follows the ground, not the cliff, and its push Culmann's plane.
-FN SlopeShares cohesive_shares(SlopeShares dry, float slope2, float bed2, float depth, SlopeLaw by) {
+FN SlopeShares cohesive_shares(SlopeShares dry, Rise along, Rise across, float slope2, float depth, SlopeLaw by) {
+    float ground2 = slope_squared(along.ground, across.ground, by.inv_dx);
+    float bed2 = wmin(ground2, slope2); // as far as the surface falls with it
     float slope = lean_root(wmax(slope2, 1.0e-20f));
     float bed = lean_root(wmax(bed2, 1.0e-20f));
     SlopeShares s;
     s.weight = lean_reciprocal(1.0f + by.chi * wmin(bed2, by.wedge_slope2));
+    // Tension pulls by the rise of the depth: the surface's less the ground's, of which friction takes what lies askew.
+    float follows = lean_quotient((along.surface * along.ground + across.surface * across.ground) * square(by.inv_dx), slope);
+    float askew2 = wmax(ground2 - square(follows), 0.0f);
+    float grip = lean_root(wmax(square(by.friction * s.weight) - askew2, 1.0e-20f));
+    float at_rest = slope - wmax(follows + grip, 0.0f);
     float per_cell = slope * lean_reciprocal_or_zero(depth * by.inv_dx);
-    s.push = culmann_push(slope, bed, s.weight, wmin(1.0f, square(per_cell)), by);
+    s.push = culmann_push(slope, bed, s.weight, at_rest, wmin(1.0f, square(per_cell)), by);
     s.base = lean_quotient(dry.weight, s.weight);
     return s;
-}
-
-// Square of a slope whose rises along the face's axis and across it are these. Counts beside 1 alone.
-FN float slope_squared(float along, float across, float inv_dx) {
-    float a = along * inv_dx;
-    float b = across * inv_dx;
-    return a * a + b * b;
 }
 
 // Of sand on any slope. held: its cohesive share, 1 at most; strength: above 0 where there is any cohesion.
@@ -161,8 +169,7 @@ FN SlopeShares shares_on_slope(Rise along, Rise across, float depth, float held,
     float slope2 = slope_squared(along.surface, across.surface, by.inv_dx);
     SlopeShares s = slope_shares(slope2, depth, by);
     if (UNIFORM(strength > 0.0f)) {
-        float bed2 = wmin(slope_squared(along.ground, across.ground, by.inv_dx), slope2); // as far as the surface falls with it
-        SlopeShares whole = cohesive_shares(s, slope2, bed2, depth, by);
+        SlopeShares whole = cohesive_shares(s, along, across, slope2, depth, by);
         s.weight = s.weight + held * (whole.weight - s.weight);
         s.push = s.push + held * (whole.push - s.push);
         s.base = strength > 0.0f ? whole.base : 1.0f;
