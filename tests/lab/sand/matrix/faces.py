@@ -9,7 +9,7 @@ import shapes
 from beds import strip
 from cases import Case
 from scene import level
-from table import near
+from table import Row
 
 HIGH, TOP, SECONDS = 2.0, 3.0, 2  # of the face, and how far its top reaches [m]
 FALLEN = 0.1  # share of the wedge that may go
@@ -33,16 +33,13 @@ def needed(lab, dx, slope, friction):
 def inclined(degrees, friction):
     def measure(lab, dx):
         slope = math.inf if degrees == 90 else math.tan(math.radians(degrees))
-        return [near("cohesion it needs / law's", needed(lab, dx, slope, friction), 1, 0.25, "Culmann", "")]
+        return [Row("cohesion it needs / law's", needed(lab, dx, slope, friction), 0.8, 1.25, reference="Culmann")]
     return measure
 
 
 def upright(friction):
     def measure(lab, dx):
-        height = 1 / needed(lab, dx, math.inf, friction)
-        row = near("height it stands to / law's", height, 1, 0.15, "Rankine", "")
-        row.least = 0.9
-        return [row]
+        return [Row("height it stands to / law's", 1 / needed(lab, dx, math.inf, friction), 0.9, 1.15, reference="Rankine")]
     return measure
 
 

@@ -97,6 +97,6 @@ def critical(true_at, low, high, steps, middle=lambda a, b: (a + b) / 2):
     return middle(low, high)
 
 
-def critical_share(stands, low=0.25, high=8.0, steps=6):
+def critical_share(stands, low=0.5, high=8.0, steps=7):
     """The least share of a law's cohesion with which something stands, by bisection of its logarithm."""
     return critical(stands, low, high, steps, lambda a, b: math.sqrt(a * b))

@@ -9,7 +9,7 @@ import shapes
 from beds import strip
 from cases import Case
 from scene import grid, level
-from table import at_most, near
+from table import Row, at_most, near
 
 FRICTION, SECONDS, SLIDES = 0.5, 0.5, 0.01  # [m/s]
 LAYER = 0.3  # depth [m]
@@ -59,7 +59,7 @@ def slab(kind, slope, depth):
                 def stands(share):
                     cohesion = dict.fromkeys(("cohesion_dry", "cohesion_wet", "cohesion_capillary"), share * law)
                     return moves(lab, dx, slope, turn, sand, wet, {"friction": FRICTION, **cohesion}) <= SLIDES
-                rows.append(near(f"cohesion it needs / law's, W/hs {wet:g}, turned {turn:g}", gauges.critical_share(stands), 1, 0.15, "Mohr-Coulomb", ""))
+                rows.append(Row(f"cohesion it needs / law's, W/hs {wet:g}, turned {turn:g}", gauges.critical_share(stands), 0.85, 1.15, reference="Mohr-Coulomb"))
         return rows
     return measure
 

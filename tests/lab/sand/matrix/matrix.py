@@ -110,7 +110,7 @@ def main():
     for result in tame:
         print(f"  {result.title}: its control misses no limit")
     if wanted.page:
-        page.write(HERE, done)
+        page.write(HERE, done, lab)
     return 1 if wanted.check and (wrong or tame or not done) else 0
 
 
