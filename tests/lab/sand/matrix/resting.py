@@ -102,7 +102,7 @@ BRUSHES = {"heap": {"radius": 0.6, "amount": 0.08}, "hole": {"radius": 1.0, "amo
 def brushed(what):
     def measure(lab, dx):
         beach = override(shipped("beach", dx), {"edits": []})
-        whole = lab.run({key: value for key, value in beach.items() if key != "variants"}, [0], ("H", "hs", "W"))
+        whole = lab.run(beach, [0], ("H", "hs", "W"))
         west, south, count = (round(length / dx) for length in (*CORNER, PIECE))
         terrain, sand, water = (whole.field(name, 0)[south : south + count, west : west + count] for name in ("H", "hs", "W"))
         edit = {"time": 0, "until": BRUSHED, "every": 0.1, "layer": "sand", "shape": "disc", "center": [PIECE / 2, PIECE / 2], **BRUSHES[what]}
