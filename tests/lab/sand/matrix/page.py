@@ -33,9 +33,9 @@ def summary(results):
 
 
 def cell_of(result):
-    """The first value that is wrong besides the slope, if any, behind the slope."""
+    """Its slope over the friction, or that it rests as it was drawn; behind it what else is wrong."""
     first, *others = result.rows
-    texts = [number(first)]
+    texts = [number(first) if first.name.startswith("steepest") else "rests" if first.ok else f"{first.name} {number(first)} {first.unit}".rstrip()]
     texts += [f"{row.name} {number(row)}{' ' + row.unit if row.unit else ''}" for row in others if not row.ok]
     return "; ".join(texts)
 
@@ -91,8 +91,9 @@ def write(here, results, lab):
             lines += [f"## {title}", ""]
             if group == "rest":
                 named = [result for result in own if result.name.count("/") == 4]
-                lines += resting(named) + listed([result for result in own if result not in named])
-            else:
+                lines += resting(named)
+                own = [result for result in own if result not in named]
+            if own:
                 lines += listed(own)
     lines += ["![Profiles of a column on a bed](column_on_bed.svg)", "", stamps.stamp("matrix"), ""]
     chart(here, lab)
