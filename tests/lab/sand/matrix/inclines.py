@@ -1,5 +1,4 @@
 """From which slope layers slide, and how much cohesion holds slabs on steeper ones, at any direction to the grid."""
-import math
 
 import numpy as np
 
@@ -49,10 +48,11 @@ def layer(wet, share):
 
 
 def slab(kind, slope, depth):
-    """A slab across the ground or a disc, of dry and of damp sand of one cohesion: it slides with 0.85 and stands with 1.15 of what the law
-    wants."""
+    """A slab across the ground or a disc 12 m wide, of dry and of damp sand of one cohesion: it slides with 0.85 and stands with 1.15 of what
+    the law wants."""
     def measure(lab, dx):
-        sand = shapes.disc(5 * depth / 0.5 if depth < 0.5 else 5, depth) if kind == "disc" else depth
+        # The disc's edge is a slope, since an upright one needs as much cohesion as the slab itself.
+        sand = (lambda x, y: np.minimum(shapes.cone(0.5, 3)(x, y), depth)) if kind == "disc" else depth
         rows = []
         for wet in (0, 0.25):
             law = laws.slab_cohesion(slope, depth, FRICTION, wet)

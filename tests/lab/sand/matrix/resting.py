@@ -11,7 +11,7 @@ from table import Row, at_least, at_most, exactly, shown
 
 FIELDS = ("H", "hs", "W", "us", "vs")
 SECONDS = 8
-STEEP, FLAT = 1.03, 0.85  # of the friction, at rest
+STEEP, FLAT = 1.03, 0.8  # of the friction, at rest
 ROUND = ("cylinder", "cone_0.48", "cone_0.7", "cone_1.0", "hole", "pit_0.6", "pit_1.0", "pit_1.5")  # turned they are the same
 LONG = tuple(name for name in SHAPES if name not in ROUND)
 SOME = ("cylinder", "cone_0.48", "cone_1.0", "dune", "step", "pit_1.0")
