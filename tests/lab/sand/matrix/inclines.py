@@ -1,5 +1,4 @@
 """From which slope layers slide, and how much cohesion holds slabs on steeper ones, at any direction to the grid."""
-
 import numpy as np
 
 import gauges

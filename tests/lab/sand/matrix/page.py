@@ -13,7 +13,7 @@ GROUPS = {"rest": "At rest", "incline": "Inclines", "face": "Faces", "bank": "St
 def number(row):
     """Its value, bold where it is wrong; the ends of what a bisection tries are bounds."""
     text = f"{row.measured:.3g}" if abs(row.measured) < 1e4 else "far off"
-    if row.reference in ("Culmann", "Mohr-Coulomb") and row.measured >= 8:
+    if row.name.startswith("cohesion it needs") and row.measured >= 8:
         text = "8 or more"
     return text if row.ok or not row.limit else f"**{text}**"
 
@@ -60,10 +60,10 @@ def listed(results):
     """A line for each run of rows that share a limit."""
     rows = []
     for result in results:
-        for (what, limit, unit, reference), same in itertools.groupby(result.rows, lambda row: (row.name.split(", ")[0], row.limit, row.unit, row.reference)):
+        for (what, limit, unit, reference), same in itertools.groupby(result.rows, lambda row: (row.name.rpartition(", ")[0], row.limit, row.unit, row.reference)):
             same = list(same)
-            labels = [", ".join(row.name.split(", ")[1:]) for row in same]
-            of = f"{what} ({'; '.join(labels)})" if labels[0] else what
+            labels = "; ".join(row.name.rpartition(", ")[2] for row in same)
+            of = f"{what}, {labels}" if what else labels
             name = result.name.split("/", 1)[1].replace("_", " ").replace("/", ", ")
             rows.append([name, f"{result.dx:g}", of, "; ".join(number(row) for row in same) + (f" {unit}" if unit else ""), limit, reference])
     return marked(["", "dx", "what", "measured", "limit", "law"], rows)
