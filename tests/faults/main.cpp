@@ -316,8 +316,13 @@ int main(int argc, char** argv) {
         std::fprintf(stderr, "wadi-test-faults memory [STRIDE] | load [STRIDE] | save | disk\n");
         return 2;
     }
-    const int failures = what == "memory" ? memory(argc > 2 ? std::atol(argv[2]) : 1)
-                         : what == "load" ? load(argc > 2 ? std::atol(argv[2]) : 13)
+    const long stride = argc > 2 ? std::atol(argv[2]) : what == "load" ? 13 : 1;
+    if (stride < 1) {
+        std::fprintf(stderr, "wadi-test-faults: STRIDE is \"%s\"; it is a whole number from 1 on\n", argv[2]);
+        return 2;
+    }
+    const int failures = what == "memory" ? memory(stride)
+                         : what == "load" ? load(stride)
                          : what == "save" ? save(argv[0])
                                           : disk();
     std::puts(failures == 0 ? "passed" : "FAILED");
