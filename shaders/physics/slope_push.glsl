@@ -6,19 +6,32 @@
 
 // The sand's surface in a cell and the ground under it, and how far they may rise from there or to there: from a dry cell not at all.
 struct SandTop {
-    float height, ground, room;
+    float height, ground, sand, room;
 };
 
 FN SandTop sand_top(float ground, float sand, float dry) {
     SandTop top;
     top.height = ground + sand;
     top.ground = ground;
+    top.sand = sand;
     top.room = sand > dry ? 1.0e15f : 0.0f;
     return top;
 }
 
 // Depth through which the sand of two cells touches: beside a brink not that of the pile below it.
 FN float shared_depth(SandTop low, SandTop high) { return wmax(wmin(low.height, high.height) - wmax(low.ground, high.ground), 0.0f); }
+
+// The same in all four cells around a corner.
+FN float touching(SandTop low_left, SandTop low_right, SandTop high_left, SandTop high_right) {
+    float surface = wmin(wmin(low_left.height, high_right.height), wmin(low_right.height, high_left.height));
+    float ground = wmax(wmax(low_left.ground, high_right.ground), wmax(low_right.ground, high_left.ground));
+    return wmax(surface - ground, 0.0f);
+}
+
+// The least depth of the four.
+FN float least_of(SandTop low_left, SandTop low_right, SandTop high_left, SandTop high_right) {
+    return wmin(wmin(low_left.sand, high_right.sand), wmin(low_right.sand, high_left.sand));
+}
 
 // Rises between two cells, of the sand's surface and of the ground under it.
 struct Rise {
@@ -145,22 +158,30 @@ FN float culmann_push(float slope, float bed, float weight, float at_rest, float
     return lean_quotient(slope > base ? net : weight * wmin(slope, wedge), weight * slope);
 }
 
-// Of sand whose cohesion holds a cliff of its depth: its weight follows the ground, not the cliff, and its push Culmann's plane.
-FN SlopeShares cohesive_shares(SlopeShares dry, Rise along, Rise across, float slope2, float depth, SlopeLaw by) {
-    float ground2 = slope_squared(along.ground, across.ground, by.inv_dx);
-    float bed2 = wmin(ground2, slope2); // as far as the surface falls with it
+// r of sand whose cohesion holds a cliff of its depth, steeper than its friction and its bed: Culmann's plane.
+FN float cohesive_push(Rise along, Rise across, float slope2, float ground2, float bed2, float weight, float depth, SlopeLaw by) {
     float slope = lean_root(wmax(slope2, 1.0e-20f));
     float bed = lean_root(wmax(bed2, 1.0e-20f));
-    SlopeShares s;
-    s.weight = lean_reciprocal(1.0f + by.chi * wmin(bed2, by.wedge_slope2));
     // Tension pulls by the rise of the depth: the surface's less the ground's, of which friction takes what lies askew.
     float follows = lean_quotient((along.surface * along.ground + across.surface * across.ground) * square(by.inv_dx), slope);
     float askew2 = wmax(ground2 - square(follows), 0.0f);
-    float grip = lean_root(wmax(square(by.friction * s.weight) - askew2, 1.0e-20f));
+    float grip = lean_root(wmax(square(by.friction * weight) - askew2, 1.0e-20f));
     float at_rest = slope - wmax(follows + grip, 0.0f);
     float per_cell = slope * lean_reciprocal_or_zero(depth * by.inv_dx);
-    s.push = culmann_push(slope, bed, s.weight, at_rest, wmin(1.0f, square(per_cell)), by);
-    s.base = lean_quotient(dry.weight, s.weight);
+    return culmann_push(slope, bed, weight, at_rest, wmin(1.0f, square(per_cell)), by);
+}
+
+// Of such sand: its weight follows the ground, not the cliff.
+FN SlopeShares cohesive_shares(SlopeShares dry, Rise along, Rise across, float slope2, float depth, SlopeLaw by) {
+    float ground2 = slope_squared(along.ground, across.ground, by.inv_dx);
+    float bed2 = wmin(ground2, slope2); // as far as the surface falls with it
+    float tilt = 1.0f + by.chi * wmin(bed2, by.wedge_slope2);
+    SlopeShares s;
+    s.weight = lean_reciprocal(tilt);
+    s.base = dry.weight * tilt;
+    bool steep = slope2 > wmax(square(by.friction), wmin(bed2, by.wedge_slope2)); // else it pushes whole
+    s.push = 1.0f;
+    if (UNIFORM(steep)) s.push = steep ? cohesive_push(along, across, slope2, ground2, bed2, s.weight, depth, by) : 1.0f;
     return s;
 }
 
