@@ -36,7 +36,7 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
     const double rankine = material.yield_friction + std::sqrt(1 + material.yield_friction * material.yield_friction);
     P.rankine = static_cast<Real>(rankine);
     P.adhesion = static_cast<Real>(material.bed_adhesion);
-    const double measured = has(EFFECT_SLOPE_NORMAL) ? 0.9 : 1;
+    const double measured = has(EFFECT_SLOPE_NORMAL) ? 0.78 : 1;
     const double apex = has(EFFECT_PUBLISHED) ? 1 : measured * 4 * material.yield_friction * rankine;
     P.yield_cohesion = static_cast<Real>(apex);
     P.c0 = static_cast<Real>(apex * material.cohesion_dry);
