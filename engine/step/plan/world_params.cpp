@@ -45,7 +45,8 @@ double rankine(const Material& m) { return m.yield_friction + std::sqrt(1 + m.yi
 // paper's is the material's.
 double yield_cohesion(const Material& m, std::uint32_t effects) {
     if ((effects & EFFECT_PUBLISHED) != 0) return 1;
-    const double measured = (effects & EFFECT_SLOPE_NORMAL) != 0 ? 0.78 : 1.0; // what falls is held by friction on its ground, too
+    const double measured =
+        (effects & EFFECT_SLOPE_NORMAL) != 0 ? 0.78 : 1.0; // what falls is held by friction on its ground, too
     return measured * 4 * m.yield_friction * rankine(m);
 }
 
