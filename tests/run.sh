@@ -41,7 +41,7 @@ lane_o3() { # engine, backends and plugin compiled, not linked: g++ warns of mor
     cmake --preset o3 && say "build o3" &&
         ninja -C build/o3 -t targets all | sed -nE 's/^((engine|backends|plugin)\/.*\.o): .*/\1/p' | xargs ninja -C build/o3 -j "$jobs"
 }
-lane_asan() { preset asan -DWADI_BASE_STAGES_OF=; }
+lane_asan() { build asan -DWADI_BASE_STAGES_OF= && cmake --build --preset asan --target wadi-test-stability -j "$jobs" && tests asan; }
 lane_tsan() { preset tsan; }
 lane_release() { preset release; }
 lane_reports() { build ci && tests ci -L long; }

@@ -22,6 +22,14 @@ Operands hard_quotient(std::uint64_t random) {
     }
 }
 
+// Radicands whose roots come as near to that: of 1 + k 2^-23 and 4 (1 - k 2^-24), k odd, they miss it by k^2 2^-26 of the last
+// place. What strains a little roots them all the time.
+float hard_root(std::uint64_t random) {
+    const float k = static_cast<float>(2 * (random & 15u) + 1);
+    const float mantissa = (random >> 4 & 1u) != 0 ? 1.0f + k * 0x1p-23f : 4.0f * (1.0f - k * 0x1p-24f);
+    return std::ldexp(mantissa, 2 * (static_cast<int>(random >> 5 & 31u) - 16));
+}
+
 // One of them of the size of 2^exponent, up to the ends of what stages divide and root, and the other so that neither product nor
 // quotient leaves the range of the functions.
 Operands far_out(float a, float b, int exponent, bool root) {
@@ -54,6 +62,7 @@ std::vector<Operands> exact_float_operands() {
         operands[n].a = n % 64 == 0 ? 0.0f : n % 64 == 2 ? -0.0f : draw(exponents);
         operands[n].b = std::fabs(draw(exponents));
         if (n % 16 == 8) operands[n] = far_out(draw(6), draw(6), static_cast<int>(random() % 173) - 74, (random() & 1u) != 0);
+        if (n % 16 == 4) operands[n].b = hard_root(random());
         if (n % 2 == 1) operands[n] = hard_quotient(random());
     }
     return operands;

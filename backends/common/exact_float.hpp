@@ -15,7 +15,7 @@ inline constexpr unsigned exact_float_tries = 16384;
 /// b and sqrt(b).
 inline constexpr unsigned exact_float_results_per_try = 8;
 
-/// Random pairs, half of them quotients that are hard to round; the same on every machine.
+/// Random pairs, half of them quotients and a sixteenth roots that are hard to round; the same on every machine.
 std::vector<Operands> exact_float_operands();
 std::vector<float> exact_float_results(const std::vector<Operands>& operands);
 

@@ -19,15 +19,6 @@ float wdiv(float a, float b) {
     }
     return q;
 }
-float wsqrt(float x) {
-    float s = sqrt(x);
-    if (CORRECTED_DIVISION != 0) {
-        float residual = fma(-s, s, x);
-        float corrected = fma(residual, 0.5f / s, s);
-        s = correctable(residual) ? corrected : s;
-    }
-    return s;
-}
 // The same bits in half of the instructions where no residual can underflow (shaders/README: ranges).
 float lean_quotient(float a, float b) {
     if (CORRECTED_DIVISION == 0) return a / b;
@@ -38,10 +29,23 @@ float lean_quotient(float a, float b) {
     return fma(fma(-b, q, a), reciprocal, q);
 }
 float lean_reciprocal(float b) { return lean_quotient(1.0f, b); }
+// The half reciprocal is corrected before the root is: with the native one the roots of 1 + 2^-23 and of a few more mantissas, which lie
+// nearest to the middle between two floats, rounded wrong.
 float lean_root(float x) {
     if (CORRECTED_DIVISION == 0) return sqrt(x);
     float inverse = inversesqrt(x);
     float s = x * inverse;
-    s = fma(fma(-s, s, x), 0.5f * inverse, s);
-    return fma(fma(-s, s, x), 0.5f * inverse, s);
+    float half_inverse = 0.5f * inverse;
+    float off = fma(-s, half_inverse, 0.5f);
+    s = fma(s, off, s);
+    half_inverse = fma(half_inverse, off, half_inverse);
+    return fma(fma(-s, s, x), half_inverse, s);
+}
+// Scaled by powers of 4, so that the residual neither underflows nor overflows.
+float wsqrt(float x) {
+    bool small = x < 1.0e-12f;
+    bool large = x > 1.0e20f;
+    float s = lean_root(small ? x * 1.09951163e12f : large ? x * 9.09494702e-13f : x);
+    s = small ? s * 9.53674316e-7f : large ? s * 1048576.0f : s;
+    return x > 0.0f && x < 3.4e38f ? s : sqrt(x);
 }

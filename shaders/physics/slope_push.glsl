@@ -6,19 +6,32 @@
 
 // The sand's surface in a cell and the ground under it, and how far they may rise from there or to there: from a dry cell not at all.
 struct SandTop {
-    float height, ground, room;
+    float height, ground, sand, room;
 };
 
 FN SandTop sand_top(float ground, float sand, float dry) {
     SandTop top;
     top.height = ground + sand;
     top.ground = ground;
+    top.sand = sand;
     top.room = sand > dry ? 1.0e15f : 0.0f;
     return top;
 }
 
 // Depth through which the sand of two cells touches: beside a brink not that of the pile below it.
 FN float shared_depth(SandTop low, SandTop high) { return wmax(wmin(low.height, high.height) - wmax(low.ground, high.ground), 0.0f); }
+
+// The same in all four cells around a corner.
+FN float touching(SandTop low_left, SandTop low_right, SandTop high_left, SandTop high_right) {
+    float surface = wmin(wmin(low_left.height, high_right.height), wmin(low_right.height, high_left.height));
+    float ground = wmax(wmax(low_left.ground, high_right.ground), wmax(low_right.ground, high_left.ground));
+    return wmax(surface - ground, 0.0f);
+}
+
+// The least depth of the four.
+FN float least_of(SandTop low_left, SandTop low_right, SandTop high_left, SandTop high_right) {
+    return wmin(wmin(low_left.sand, high_right.sand), wmin(low_right.sand, high_left.sand));
+}
 
 // Rises between two cells, of the sand's surface and of the ground under it.
 struct Rise {
@@ -99,6 +112,13 @@ FN SlopeShares level_shares() {
     return s;
 }
 
+// Square of a slope whose rises along the face's axis and across it are these. Counts beside 1 alone.
+FN float slope_squared(float along, float across, float inv_dx) {
+    float a = along * inv_dx;
+    float b = across * inv_dx;
+    return a * a + b * b;
+}
+
 // Of sand without cohesion. slope2: square of its surface's slope.
 FN SlopeShares slope_shares(float slope2, SlopeLaw by) {
     bool steep = slope2 > by.wedge_slope2;
@@ -124,35 +144,46 @@ FN float culmann_drive(float slope, SlopeLaw by) {
     return (by.rankine + ground) * plane;
 }
 
-// r of such a face as Culmann's plane has it, level and upright ones as they are. bed: the ground's slope; weight: C of that;
-// within_cell: share of a wall that one cell holds, which is upright however coarse the grid.
-FN float culmann_push(float slope, float bed, float weight, float within_cell, SlopeLaw by) {
+// r of such a face as Culmann's plane has it, level and upright ones as they are. bed: the ground's slope; weight: C of that; at_rest: the
+// least push that balances the column's own tension (NUMERICS 2.20) within its friction; within_cell: share of a wall that one cell
+// holds, which is upright however coarse the grid.
+FN float culmann_push(float slope, float bed, float weight, float at_rest, float within_cell, SlopeLaw by) {
     float base = wmax(by.friction, bed);
-    float net = weight * wmin(base, wmax(by.friction, by.wedge_slope)) + (culmann_drive(slope, by) - culmann_drive(base, by));
-    float upright = weight * base + (slope - base); // what a column's own tension bears beside nothing
-    net = wmin(wmax(net, slope - bed - by.friction * weight), upright); // and friction what is more of that tension
+    float wedge = wmax(by.friction, by.wedge_slope);
+    float slides = weight * wmin(base, wedge);
+    float upright = wmax(slides + (slope - base), at_rest); // what a column's own tension bears beside nothing
+    float net = slides + (culmann_drive(slope, by) - culmann_drive(base, by));
+    net = wmin(wmax(net, at_rest), upright);
     net = net + within_cell * (upright - net);
-    return slope > base ? lean_quotient(net, weight * slope) : 1.0f;
+    return lean_quotient(slope > base ? net : weight * wmin(slope, wedge), weight * slope);
 }
 
-// Of sand whose cohesion holds a cliff of its depth: its weight follows the ground, not the cliff, and its push Culmann's plane.
-FN SlopeShares cohesive_shares(SlopeShares dry, float slope2, float bed2, float depth, SlopeLaw by) {
+// r of sand whose cohesion holds a cliff of its depth, steeper than its friction and its bed: Culmann's plane.
+FN float cohesive_push(Rise along, Rise across, float slope2, float ground2, float bed2, float weight, float depth, SlopeLaw by) {
     float slope = lean_root(wmax(slope2, 1.0e-20f));
     float bed = lean_root(wmax(bed2, 1.0e-20f));
-    SlopeShares s;
-    s.weight = lean_reciprocal(1.0f + by.chi * wmin(bed2, by.wedge_slope2));
+    // Tension pulls by the rise of the depth: the surface's less the ground's, of which friction takes what lies askew.
+    float follows = lean_quotient((along.surface * along.ground + across.surface * across.ground) * square(by.inv_dx), slope);
+    float askew2 = wmax(ground2 - square(follows), 0.0f);
+    float grip = lean_root(wmax(square(by.friction * weight) - askew2, 1.0e-20f));
+    float at_rest = slope - wmax(follows + grip, 0.0f);
     float per_cell = slope * lean_reciprocal_or_zero(depth * by.inv_dx);
-    s.push = culmann_push(slope, bed, s.weight, wmin(1.0f, square(per_cell)), by);
-    s.base = lean_quotient(dry.weight, s.weight);
-    s.slope2 = slope2;
-    return s;
+    return culmann_push(slope, bed, weight, at_rest, wmin(1.0f, square(per_cell)), by);
 }
 
-// Square of a slope whose rises along the face's axis and across it are these. Counts beside 1 alone.
-FN float slope_squared(float along, float across, float inv_dx) {
-    float a = along * inv_dx;
-    float b = across * inv_dx;
-    return a * a + b * b;
+// Of such sand: its weight follows the ground, not the cliff.
+FN SlopeShares cohesive_shares(SlopeShares dry, Rise along, Rise across, float slope2, float depth, SlopeLaw by) {
+    float ground2 = slope_squared(along.ground, across.ground, by.inv_dx);
+    float bed2 = wmin(ground2, slope2); // as far as the surface falls with it
+    float tilt = 1.0f + by.chi * wmin(bed2, by.wedge_slope2);
+    SlopeShares s;
+    s.weight = lean_reciprocal(tilt);
+    s.base = dry.weight * tilt;
+    s.slope2 = slope2;
+    bool steep = slope2 > wmax(square(by.friction), wmin(bed2, by.wedge_slope2)); // else it pushes whole
+    s.push = 1.0f;
+    if (UNIFORM(steep)) s.push = steep ? cohesive_push(along, across, slope2, ground2, bed2, s.weight, depth, by) : 1.0f;
+    return s;
 }
 
 // Of sand on any slope. held: its cohesive share, 1 at most; strength: above 0 where there is any cohesion.
@@ -160,8 +191,7 @@ FN SlopeShares shares_on_slope(Rise along, Rise across, float depth, float held,
     float slope2 = slope_squared(along.surface, across.surface, by.inv_dx);
     SlopeShares s = slope_shares(slope2, by);
     if (UNIFORM(strength > 0.0f)) {
-        float bed2 = wmin(slope_squared(along.ground, across.ground, by.inv_dx), slope2); // as far as the surface falls with it
-        SlopeShares whole = cohesive_shares(s, slope2, bed2, depth, by);
+        SlopeShares whole = cohesive_shares(s, along, across, slope2, depth, by);
         s.weight = s.weight + held * (whole.weight - s.weight);
         s.push = s.push + held * (whole.push - s.push);
         s.base = strength > 0.0f ? whole.base : 1.0f;

@@ -60,7 +60,7 @@ void make_deep(Scene& scene) {
     s.dt = 0.4;
     s.method.largest_height = 1024;
     s.material.young_modulus = 1e8;
-    s.material.cohesion_wet = s.material.cohesion_capillary = 1e5;
+    s.material.cohesion_dry = s.material.cohesion_wet = s.material.cohesion_capillary = 1e5;
     s.material.sand_viscosity = 10;
     fill_heights(scene, [](const Place& p) {
         return Fields{20 + 15 * noise(1, p), std::max(0.0, 40 + 30 * noise(2, p)),

@@ -1,13 +1,17 @@
 // The conformance tests. Quick start for a new backend: register it, run `conformance --backend NAME`, read README.md here.
+#include "engine/level/level.hpp"
 #include "tests/conformance/coverage.hpp"
+#include "tests/conformance/locate.hpp"
 #include "tests/conformance/perf.hpp"
 #include "tests/conformance/perf_tiles.hpp"
 #include "tests/conformance/report.hpp"
 #include "tests/conformance/self_check.hpp"
 #include "tests/conformance/target.hpp"
+#include "tests/conformance/worlds.hpp"
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <map>
@@ -19,7 +23,7 @@ constexpr int exit_failed = 1, exit_usage = 2, exit_skipped = 77;
 
 struct Options {
     std::vector<std::string> backends, required, suites;
-    std::string stage, chosen_case, output = "console";
+    std::string stage, chosen_case, level, output = "console";
     bool validate = false;
     int max_cells = 0; // of a case's grid; 0 = no limit
     int max_steps = 0; // of a case; 0 = no limit
@@ -210,6 +214,39 @@ int run_perf_mode(const Options& options, bool of_tiles) {
     return targets->empty() ? exit_skipped : 0;
 }
 
+// Where a level first runs otherwise on a device than on the plain CPU: what to do with the level that a fuzzer's failure left.
+Result<std::string> locate_in_level(Session& session, const Level& level, int max_steps) {
+    auto device = session.device();
+    if (!device) return device.status();
+    auto plain = open_plain_cpu(), other = open_plain_cpu();
+    if (!plain) return plain.status();
+    if (!other) return other.status();
+    auto world = World::create(level.settings, level.fields, std::move(*plain)); // which effects it has
+    if (!world) return world.status();
+    const Scene scene{level.name, level.settings, level.fields, (*world)->plan().effects};
+    int steps = std::max(1, static_cast<int>(std::lround(level.duration / level.settings.dt)));
+    if (max_steps > 0) steps = std::min(steps, max_steps);
+    return locate_against_device(**device, **other, scene, steps);
+}
+
+int run_locate(const Options& options) {
+    auto level = load_level(options.level, {});
+    if (!level) return usage(level.status());
+    if (!level->settings.edits.empty())
+        std::fprintf(stderr, "conformance: %zu edits of the level are left out\n", level->settings.edits.size());
+    std::vector<std::pair<std::string, std::string>> absent;
+    auto targets = choose_targets(options, absent);
+    if (!targets) return usage(targets.status());
+    for (const auto& [name, why] : absent) std::fprintf(stderr, "%s: no device: %s\n", name.c_str(), why.c_str());
+    for (const Target& target : *targets) {
+        Session session(target, {});
+        auto found = locate_in_level(session, *level, options.max_steps);
+        if (!found) return usage(found.status());
+        std::printf("%s  %s\n", target.label().c_str(), found->c_str());
+    }
+    return targets->empty() ? exit_skipped : 0;
+}
+
 int run(int argc, char** argv) {
     Options options;
     CLI::App app{"Tests every backend of this build against the compute interface's contract, the reference solver and the CPU.",
@@ -251,10 +288,14 @@ int run(int argc, char** argv) {
     tiles->add_option("--repeats", options.perf_tiles.repeats, "times per row")->check(CLI::Range(1, 1000));
     const CLI::App* list = app.add_subcommand("list", "print the cases and devices");
     const CLI::App* coverage = app.add_subcommand("coverage", "print which masks, grids, scenes and methods each stage meets");
+    CLI::App* locate =
+        app.add_subcommand("locate", "say in which pass and cell a level first runs otherwise than on the plain CPU");
+    locate->add_option("level", options.level, "its level.json, as wadi-fuzz leaves it")->required();
     const CLI::App* self_check = app.add_subcommand("self-check", "tamper with results; the tests must notice");
     CLI11_PARSE(app, argc, argv);
     if (perf->parsed() || tiles->parsed()) return run_perf_mode(options, tiles->parsed());
     if (list->parsed()) return run_list(options);
+    if (locate->parsed()) return run_locate(options);
     if (coverage->parsed()) return print_coverage();
     if (self_check->parsed()) {
         Report report(options.output == "csv");

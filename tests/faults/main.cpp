@@ -1,5 +1,5 @@
 // wadi-test-faults: a library whose host runs out of memory at every allocation in turn, is killed while it saves, or has a full
-// disk. Usage: wadi-test-faults memory | load [STRIDE] | save | disk; "saver PATH" is the child that is killed.
+// disk. Usage: wadi-test-faults memory [STRIDE] | load [STRIDE] | save | disk; "saver PATH" is the child that is killed.
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -129,8 +129,8 @@ bool session(long fail = 0) {
     return good;
 }
 
-/// One allocation fails, or all from one on; each in turn until a session needs no more.
-int memory() {
+/// One allocation fails, or all from one on; each `stride`-th in turn until a session needs no more.
+int memory(long stride) {
     session();
     const long before = live + 4; // what is made once and stays: the thread's last error, the table of worlds
     expect(session(), "a session without faults");
@@ -139,7 +139,7 @@ int memory() {
     std::printf("%ld allocations in a session\n", needed);
     for (const bool lasting : {false, true}) {
         int failed = 0;
-        for (long n = 1; n <= needed && wrong < 10; ++n) {
+        for (long n = 1; n <= needed && wrong < 10; n += stride) {
             for_ever = lasting;
             if (!session(n)) ++failed;
             fail_at = 0;
@@ -148,7 +148,7 @@ int memory() {
                                        " too many are left"); // leaks add up from session to session
         }
         std::printf("%s: %d sessions ended with an error\n", lasting ? "all from one on" : "one alone", failed);
-        expect(failed > needed / 2, "most failures are told");
+        expect(failed > needed / stride / 2, "most failures are told");
     }
     expect(session(), "a session afterwards");
     return wrong;
@@ -313,11 +313,16 @@ int main(int argc, char** argv) {
     const std::string what = argc > 1 ? argv[1] : "";
     if (what == "saver" && argc > 2) return saver(argv[2]);
     if (what != "memory" && what != "load" && what != "save" && what != "disk") {
-        std::fprintf(stderr, "wadi-test-faults memory | load [STRIDE] | save | disk\n");
+        std::fprintf(stderr, "wadi-test-faults memory [STRIDE] | load [STRIDE] | save | disk\n");
         return 2;
     }
-    const int failures = what == "memory" ? memory()
-                         : what == "load" ? load(argc > 2 ? std::atol(argv[2]) : 13)
+    const long stride = argc > 2 ? std::atol(argv[2]) : what == "load" ? 13 : 1;
+    if (stride < 1) {
+        std::fprintf(stderr, "wadi-test-faults: STRIDE is \"%s\"; it is a whole number from 1 on\n", argv[2]);
+        return 2;
+    }
+    const int failures = what == "memory" ? memory(stride)
+                         : what == "load" ? load(stride)
                          : what == "save" ? save(argv[0])
                                           : disk();
     std::puts(failures == 0 ? "passed" : "FAILED");

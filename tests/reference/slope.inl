@@ -43,7 +43,13 @@ template <class Real> auto Solver<Real>::slope_at(const Axis& ax, int a, int b) 
     const Real in_one_cell = depth > Real(0) ? std::min((d * d + e * e) / (depth * depth), Real(1)) : Real(0);
     slope.clings = slope.C / C_bed;
     slope.C += share * (C_bed - slope.C);
-    slope.r += share * (culmann_share(std::sqrt(q), std::sqrt(q_bed), C_bed, in_one_cell) - slope.r);
+    // What balances the tension of 2.20, which follows the depth, within friction: of that the ground's fall askew takes a part.
+    const Real S = std::sqrt(q);
+    const Real follows = S > Real(0) ? (d * bed_d + e * bed_e) / (P.dx * P.dx) / S : Real(0);
+    const Real askew = (bed_d * bed_d + bed_e * bed_e) / (P.dx * P.dx) - follows * follows;
+    const Real grip = std::sqrt(std::max(P.friction * C_bed * P.friction * C_bed - std::max(askew, Real(0)), Real(0)));
+    const Real at_rest = S - std::max(follows + grip, Real(0));
+    slope.r += share * (culmann_share(S, std::sqrt(q_bed), C_bed, at_rest, in_one_cell) - slope.r);
     return slope;
 }
 
@@ -62,13 +68,13 @@ template <class Real> Real Solver<Real>::culmann_excess(Real S) const {
 }
 
 /// 2.18: r_h, the share of its push that a face of slope S on ground of slope S_b has by Culmann.
-template <class Real> Real Solver<Real>::culmann_share(Real S, Real S_b, Real C_b, Real in_one_cell) const {
-    const Real m = std::max(P.friction, S_b);
-    if (S <= std::max(m, Real(1e-10))) return Real(1);
-    const Real upright = C_b * m + S - m;
-    const Real from = std::max(m, Real(1e-10));
-    Real push = C_b * std::min(m, std::max(P.friction, P.wedge)) + (culmann_excess(S) - culmann_excess(from));
-    push = std::min(std::max(push, S - S_b - P.friction * C_b), upright);
+template <class Real> Real Solver<Real>::culmann_share(Real S, Real S_b, Real C_b, Real at_rest, Real in_one_cell) const {
+    const Real m = std::max({P.friction, S_b, Real(1e-10)});
+    const Real wedge = std::max(P.friction, P.wedge);
+    if (S <= m) return S > wedge ? wedge / S : Real(1);
+    const Real upright = std::max(C_b * std::min(m, wedge) + S - m, at_rest);
+    Real push = C_b * std::min(m, wedge) + (culmann_excess(S) - culmann_excess(m));
+    push = std::min(std::max(push, at_rest), upright);
     push += in_one_cell * (upright - push);
     return push / (C_b * S);
 }

@@ -44,7 +44,7 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
     const double rankine = material.yield_friction + std::sqrt(1 + material.yield_friction * material.yield_friction);
     P.rankine = static_cast<Real>(rankine);
     P.adhesion = static_cast<Real>(material.bed_adhesion);
-    const double measured = has(EFFECT_SLOPE_NORMAL) ? 0.9 : 1;
+    const double measured = has(EFFECT_SLOPE_NORMAL) ? 0.78 : 1;
     const double apex = has(EFFECT_PUBLISHED) ? 1 : measured * 4 * material.yield_friction * rankine;
     P.yield_cohesion = static_cast<Real>(apex);
     P.c0 = static_cast<Real>(apex * material.cohesion_dry);
@@ -63,17 +63,18 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
     P.largest_height = static_cast<Real>(method.largest_height);
     const double quantum = method.quantum < 0 ? std::exp2(std::ceil(std::log2(method.largest_height)) - 24) : method.quantum;
     P.quantum = static_cast<Real>(quantum);
+    const double grain = std::exp2(std::ceil(std::log2(method.largest_height)) - 24); // of heights as floats
     P.eps = P.film = static_cast<Real>(method.dry_threshold);
-    if (quantum > 0 && !has(EFFECT_PUBLISHED)) P.film = std::min(P.eps, P.quantum / Real(2));
+    if (!has(EFFECT_PUBLISHED)) P.film = std::min(P.eps, static_cast<Real>(2 * grain));
     P.alpha = static_cast<Real>(method.velocity_clamp);
     P.gravity_cap = static_cast<Real>(method.gravity_cap);
     P.sand_gravity_cap = static_cast<Real>(method.sand_gravity_cap);
     P.rest_surface = P.rest_velocity = Real(-1);
     if (method.rest_rule) { // two quanta, and the speed that one step's push of three gives; without a quantum those of the float
                             // grid
-        const double grain = quantum > 0 ? quantum : std::exp2(std::ceil(std::log2(method.largest_height)) - 24);
-        P.rest_surface = static_cast<Real>(2 * grain);
-        P.rest_velocity = static_cast<Real>(world.dt / world.grid.dx * world.gravity * 3 * grain);
+        const double least = quantum > 0 ? quantum : grain;
+        P.rest_surface = static_cast<Real>(2 * least);
+        P.rest_velocity = static_cast<Real>(world.dt / world.grid.dx * world.gravity * 3 * least);
     }
     P.passive_pressure = static_cast<Real>(method.passive_pressure);
     P.gradient_clamp = static_cast<Real>(method.gradient_clamp);

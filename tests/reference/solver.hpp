@@ -213,7 +213,7 @@ template <class Real> class Solver {
     Slope slope_at(const Axis& axis, int a, int b) const;
     Real open_rise(const Axis& axis, int a, int b, bool of_ground) const;
     Real culmann_excess(Real slope) const;
-    Real culmann_share(Real slope, Real bed, Real C_bed, Real in_one_cell) const;
+    Real culmann_share(Real slope, Real bed, Real C_bed, Real at_rest, Real in_one_cell) const;
     Real deeper_cohesion(std::size_t left, std::size_t right) const;
     /// 2.19 and 2.8: of a face's sand the depth with full pores and that of water held above, as shares.
     struct Pores {

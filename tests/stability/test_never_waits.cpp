@@ -2,6 +2,9 @@
 // programs are recorded anew.
 #include "engine/settings/rules/material_keys.hpp"
 #include "tests/support/worlds.hpp"
+#include <algorithm>
+#include <chrono>
+#include <cmath>
 #include <doctest/doctest.h>
 
 using namespace wadi;
@@ -9,15 +12,25 @@ using namespace wadi::test;
 
 namespace {
 
-/// Work for some tens of milliseconds, and its last ticket.
-compute::Ticket queue_steps(World& world) {
-    step(world, 24);
-    return world.stepper().ticket();
-}
-
 void wait_until_done(World& world) {
     std::byte byte[1];
     REQUIRE(world.device().read(world.state().device().memory().front().buffer, 0, byte));
+}
+
+/// How many steps are work for 100 milliseconds, 24 at most: a software device takes that long for one.
+int steps_of_some_work(World& world) {
+    wait_until_done(world);
+    const auto begin = std::chrono::steady_clock::now();
+    step(world, 2);
+    wait_until_done(world);
+    const auto seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count() / 2;
+    return static_cast<int>(std::clamp(std::ceil(0.1 / seconds), 2.0, 24.0));
+}
+
+/// Its last ticket.
+compute::Ticket queue_steps(World& world, int steps) {
+    step(world, steps);
+    return world.stepper().ticket();
 }
 
 void ask_points(World& world, int times) {
@@ -47,12 +60,13 @@ TEST_CASE("queries, saves, changes of the material and promotions do not wait fo
         ask_points(*world, 8);
         fetch_save(*world, *world->snapshots().begin_save());
         edit_world(*world, {brush(EditLayer::sand, 3, 3, 2, 0.1)});
-        step(*world, 16);
+        step(*world, 2);
+        const int work = steps_of_some_work(*world);
         for (const std::string moment : {"at rest", "material", "promotion"}) {
             CAPTURE(backend);
             CAPTURE(moment);
             wait_until_done(*world);
-            auto last = queue_steps(*world);
+            auto last = queue_steps(*world, work);
             if (moment == "material") {
                 const int key = find_material_key("cohesion_dry");
                 REQUIRE(world->commands().set_material(key, 0.5 * material_value(world->settings().material, key) + 1));
@@ -66,7 +80,7 @@ TEST_CASE("queries, saves, changes of the material and promotions do not wait fo
             // Where a stage meets new effects its first query has it compiled.
             ask_points(*world, 1);
             wait_until_done(*world);
-            last = queue_steps(*world);
+            last = queue_steps(*world, work);
             ask_points(*world, 7);
             const auto save = world->snapshots().begin_save();
             REQUIRE(save);

@@ -177,7 +177,8 @@ std::pair<double, double> swing(double dx, double sand, double exchange, int ord
 
 } // namespace
 
-TEST_CASE("waves come in through a level side as high over sand as over solid ground, on coarse and on fine grids") {
+TEST_CASE("waves come in through a level side as high over sand as over solid ground, on coarse and on fine grids" *
+          doctest::test_suite("long")) {
     for (const int order : {1, 2}) {
         for (const double dx : {1.0, 0.25}) {
             const auto [low, high] = swing(dx, 2, 1e5, order);
@@ -370,7 +371,8 @@ std::pair<double, double> off_dupuit(double exchange, double slope) {
 
 } // namespace
 
-TEST_CASE("level sides hold the ground water of the sand beside them: Dupuit's surface and flow, over level and sloping ground") {
+TEST_CASE("level sides hold the ground water of the sand beside them: Dupuit's surface and flow, over level and sloping ground" *
+          doctest::test_suite("long")) {
     const Seepage level([](double) { return 0.0; }, 10.2, 0.981, 1.2, 0.6); // whose surface is a parabola
     CHECK(std::abs(level.flow() / (0.981 * (1.2 * 1.2 - 0.6 * 0.6) / (2 * 10.2)) - 1) < 1e-5);
     CHECK(std::abs(level.surface(5.1) / std::sqrt((1.2 * 1.2 + 0.6 * 0.6) / 2) - 1) < 1e-5);

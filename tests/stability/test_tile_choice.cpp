@@ -103,7 +103,9 @@ TEST_CASE("tile choice: going back and forth changes no bit") {
             if (backend != "cpu" && !fused) continue; // nothing is chosen there
             CAPTURE(backend);
             CAPTURE(fused);
-            auto scene = backend == "cpu" ? drying(200, 160) : drying(66, 50);
+            const bool large =
+                backend == "cpu" && !fused; // enough tiles for a second trial; the others are slow where indices are checked
+            auto scene = large ? drying(200, 160) : drying(66, 50);
             const auto plain = make_world(scene);
             scene.settings.active_tiles = tiles_where_they_gain;
             scene.settings.fused_stages = fused ? FusedStages::always : FusedStages::never;
@@ -123,9 +125,9 @@ TEST_CASE("tile choice: going back and forth changes no bit") {
             CHECK(!chosen->plan().active_tiles); // all was awake
             CHECK(chosen->reader().stats()->active_tiles == chosen->reader().stats()->tiles);
             for (World* world : {plain.get(), chosen.get()}) REQUIRE(world->roll_back().set(2, 16));
-            for (const int steps : {30, 7, 130, 71, 16}) go(steps);   // the next trial
-            if (backend == "cpu") CHECK(chosen->plan().active_tiles); // on the others the grid has few tiles
-            CHECK(changes >= (backend == "cpu" ? 2 : 1));
+            for (const int steps : {30, 7, 130, 71, 16}) go(steps); // the next trial
+            if (large) CHECK(chosen->plan().active_tiles);
+            CHECK(changes >= (large ? 2 : 1));
             auto edit = brush(EditLayer::sand, 4, 4, 1, 0.3);
             for (World* world : {plain.get(), chosen.get()}) edit_world(*world, {edit});
             go(5);

@@ -31,6 +31,13 @@ void set_sources(const Settings& s, WorldParams& p) {
     p.source_rows = pieces.rows;
 }
 
+// That of which heights are multiples unless a level says otherwise: what floats tell apart.
+double finest_quantum(const Method& method) {
+    Method chosen = method;
+    chosen.quantum = -1;
+    return height_quantum(chosen);
+}
+
 // tan(45 deg + phi/2) of the sand's inner friction.
 double rankine(const Material& m) { return m.yield_friction + std::sqrt(1 + m.yield_friction * m.yield_friction); }
 
@@ -38,7 +45,8 @@ double rankine(const Material& m) { return m.yield_friction + std::sqrt(1 + m.yi
 // paper's is the material's.
 double yield_cohesion(const Material& m, std::uint32_t effects) {
     if ((effects & EFFECT_PUBLISHED) != 0) return 1;
-    const double measured = (effects & EFFECT_SLOPE_NORMAL) != 0 ? 0.9 : 1.0; // what falls is held by friction on its ground, too
+    const double measured =
+        (effects & EFFECT_SLOPE_NORMAL) != 0 ? 0.78 : 1.0; // what falls is held by friction on its ground, too
     return measured * 4 * m.yield_friction * rankine(m);
 }
 
@@ -57,9 +65,7 @@ double failing_slope(double mu, double chi) {
 } // namespace
 
 double ledger_quantum(const Method& method) {
-    Method chosen = method;
-    chosen.quantum = -1;
-    return height_quantum(method) > 0 ? height_quantum(method) : height_quantum(chosen);
+    return height_quantum(method) > 0 ? height_quantum(method) : finest_quantum(method);
 }
 
 float velocity_limit(const Method& method, double k) { return static_cast<float>(method.velocity_clamp / k); }
@@ -94,7 +100,7 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     p.inv_ledger_quantum = f(1 / ledger_quantum(w));
     p.largest_height = f(w.largest_height);
     p.dry_threshold = f(w.dry_threshold);
-    p.film = quantum > 0 ? f(std::min(w.dry_threshold, quantum / 2)) : p.dry_threshold; // less is none
+    p.film = f(std::min(w.dry_threshold, 2 * finest_quantum(w))); // so much or less is none
 
     p.k = f(k);
     p.water_velocity_clamp = velocity_limit(w, k);

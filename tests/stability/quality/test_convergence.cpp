@@ -97,7 +97,7 @@ double hump_error(const Truth& truth, int dimensions, int n, int order, double s
 
 } // namespace
 
-TEST_CASE("convergence: a hump on still water, along a line and around a point") {
+TEST_CASE("convergence: a hump on still water, along a line and around a point" * doctest::test_suite("long")) {
     for (const auto& [dimensions, least] : {std::pair{1, 1.9}, std::pair{2, 1.9}}) {
         const Truth truth(dimensions);
         std::array<double, 4> errors{};
@@ -114,7 +114,8 @@ TEST_CASE("convergence: a hump on still water, along a line and around a point")
     }
 }
 
-TEST_CASE("convergence: a hump on 1 m of water as on 4 m, where the largest height says how shallow it is; else quanta stop it") {
+TEST_CASE("convergence: a hump on 1 m of water as on 4 m, where the largest height says how shallow it is; else quanta stop it" *
+          doctest::test_suite("long")) {
     const Truth truth(2);
     const double coarse = hump_error(truth, 2, 128, 2, 0.25, 2), fine = hump_error(truth, 2, 512, 2, 0.25, 2);
     const double of_16_m = hump_error(truth, 2, 512, 2, 0.25);
