@@ -69,6 +69,7 @@ struct WorldParams {
     float inv_ledger_quantum;   // quanta per metre in the ledger [1/m]
     float largest_height;       // declared largest column H + hs + W [m]
     float dry_threshold;        // eps [m]
+    float film;                 // sand no deeper than this has no velocity [m]
 
     // water step
     float k;                    // dt/dx [s/m]
@@ -107,6 +108,10 @@ struct WorldParams {
     float wedge_slope;          // s*: slope of the face behind which Coulomb's wedge pushes most
     float wedge_slope2;         // its square
     float wedge_weight;         // C there: 1/(1 + chi s*^2)
+    float inner_friction;       // c_f within the sand
+    float rankine;              // s_f = tan(45 deg + phi_f/2)
+    float bed_adhesion;         // a: share of the cohesion with which sand clings to its ground
+    float adhesion_slip;        // what it takes from a velocity in a substep, per cohesive share [m/s], NUMERICS 2.8
     float cliff_share;          // 4/(c_f rho_s g): share of the cohesion that a cliff needs, per cohesion over depth [m/Pa]
     float internal_friction;    // b: friction within spreading sand, a share of mu
     float viscosity_number;     // nu dts/dx^2 of sand in its plane, at most what the explicit step bears beside bulk_viscosity

@@ -3,6 +3,11 @@
 #define PHYSICS_ELASTIC_FORCE
 #include "../physics/scalar.glsl"
 
+// Compression that the stress of a cell bears beyond what its cohesion alone gives, c/c_f: passive pressure and all where its cohesion holds
+// it upright, nothing where it holds no half of that. Such sand pushes and is rubbed by its slope alone. stressed: stress_share;
+// yield_pressure: c/c_f.
+FN float own_pressure(float passive, float stressed, float yield_pressure) { return passive * stressed - (1.0f - stressed) * yield_pressure; }
+
 // Four times the shear at a corner of four cells: their least height times the sum of their stresses, so that a thick cell's shear does
 // not act on a film beside it (NUMERICS section 0, row 12). Cells outside the grid have no stress, not even 0.
 FN float corner_shear(float least, float s_sw, float s_se, float s_nw, float s_ne) {

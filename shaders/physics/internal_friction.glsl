@@ -16,8 +16,8 @@ FN float internal_friction(float growth, float least_height, float speed2, float
     return left;
 }
 
-// What viscosity adds to the velocity of a face per viscosity number: differences to the faces around, each times the depth between; left and
-// right: that of the corners, the least of their four cells.
+// What viscosity adds to the velocity of a face per viscosity number: differences to the faces around, each times the depth of sand that
+// touches there.
 FN float in_plane_viscosity(float own, Around at, float height_low, float height_high, float height_left, float height_right, float inv_mean) {
     float along = height_high * (at.high - own) - height_low * (own - at.low);
     float across = height_right * (at.right - own) - height_left * (own - at.left);

@@ -2,6 +2,7 @@
 #ifndef PHYSICS_PRESTRESS
 #define PHYSICS_PRESTRESS
 #include "../physics/drag.glsl"
+#include "../physics/pore_pressure.glsl"
 #include "../physics/slope_push.glsl"
 #include "../physics/strain.glsl"
 #include "../physics/velocity.glsl"
@@ -9,12 +10,16 @@
 // Least share of its whole push that slope and wedge leave to a cliff of this cohesive share; level_least: C behind the steepest face.
 FN float least_cliff_push(float held, float level_least) { return held * (level_least + held * (1.0f - level_least)); }
 
-// Mean tension in a column of sand at which depth times tension takes up, face by face, what gravity pushes with. wet: h_m/h_s. Water
-// that is free to move stands level and carries its share of the sand, water that pores hold back leans on it. No tension holds down
-// what is lighter than the water around it.
-FN float balancing_tension(float height, float wet, float free, bool dragged, float gravity, float sand_density, float density_ratio) {
+// Mean tension in a column of sand at which depth times tension takes up, face by face, what gravity pushes with. weight: what pushes, as a
+// share of the sand's own. No tension holds down what is lighter than the water around it.
+FN float balancing_tension(float height, float weight, float gravity, float sand_density) {
+    return 0.5f * sand_density * gravity * height * wmax(0.0f, weight);
+}
+
+// What pushes by 2.7: water that is free to move stands level and carries its share of the sand, water that pores hold back leans on it.
+FN float level_weight(float wet, float free, bool dragged, float density_ratio) {
     float leans = dragged ? 1.0f - free : 0.0f;
-    return 0.5f * sand_density * gravity * height * wmax(0.0f, 1.0f + density_ratio * square(wet) * (leans - free));
+    return 1.0f + density_ratio * square(wet) * (leans - free);
 }
 
 // V - I of equal tension all around: tr of (lambda + mu) tr/J = tension with J = exp(tr), by Newton's method, which from below closes
@@ -37,10 +42,16 @@ FN float in_balance(WorldParams world, float height, float water, bool cohesive)
     float c = cohesion(saturation, world.cohesion0, world.cohesion1, world.phi1, world.phi2, world.phi3, world.slope01, world.slope12,
                        world.slope23);
     c = wmin(c, world.cohesion_cap * height);
-    float pushed = balancing_tension(height, divide_or_zero(wmin(water, height), height),
-                                     relative_permeability(water, height, world.retained, world.inv_drainable), world.drag_kd > 0.0f,
-                                     sand_gravity(world.gravity, height, world.sand_gravity_cap), world.sand_density, world.density_ratio);
-    float least = least_cliff_push(cohesive_share_of(c, lean_reciprocal_or_zero(height), world.cliff_share), world.wedge_weight);
+    float inv_height = divide_or_zero(1.0f, height);
+    float mixed = wmin(water, height);
+    PoreShares pores = pore_shares(full_depth(water, height, world.retained, world.inv_drainable), mixed, inv_height);
+    float weight = effective_weight(pores, world.density_ratio);
+    if (world.slope_normal == 0.0f) {
+        weight = level_weight(divide_or_zero(mixed, height), relative_permeability(water, height, world.retained, world.inv_drainable),
+                              world.drag_kd > 0.0f, world.density_ratio);
+    }
+    float pushed = balancing_tension(height, weight, sand_gravity(world.gravity, height, world.sand_gravity_cap), world.sand_density);
+    float least = least_cliff_push(wmin(1.0f, cohesive_share_of(c, lean_reciprocal_or_zero(height), world.cliff_share)), world.wedge_weight);
     return stretch_under(wmin(pushed * least, c * world.tip_pressure), world.inv_bulk, c * world.inv_yield_slope);
 }
 

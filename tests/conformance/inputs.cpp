@@ -60,7 +60,7 @@ void make_deep(Scene& scene) {
     s.dt = 0.4;
     s.method.largest_height = 1024;
     s.material.young_modulus = 1e8;
-    s.material.cohesion_wet = s.material.cohesion_capillary = 1e5;
+    s.material.cohesion_dry = s.material.cohesion_wet = s.material.cohesion_capillary = 1e5;
     s.material.sand_viscosity = 10;
     fill_heights(scene, [](const Place& p) {
         return Fields{20 + 15 * noise(1, p), std::max(0.0, 40 + 30 * noise(2, p)),
@@ -286,6 +286,7 @@ Result<Scene> make_scene(const std::string& grid, const std::string& name, const
     s.material.internal_friction = 0.4;
     s.material.sand_viscosity = 0.05;
     s.material.retention = 0.3;
+    s.material.bed_adhesion = 0.7;
     s.method.shock_viscosity = 0; // a choice, on by default
     for (const auto& choice : choice_table())
         if ((effects & choice.bit) != 0) choice.choose(s.method);

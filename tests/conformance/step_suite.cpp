@@ -41,7 +41,7 @@ constexpr Row against_reference[] = {
     {"33x17", EFFECT_WATER | EFFECT_SAND | EFFECT_DRAG, "slope", "default", 3},
     {"33x17", EFFECT_WATER | EFFECT_SAND | EFFECT_MIXTURE, "slope", "default", 3},
     {"33x17", WET, "slope", "default", 3},
-    {"65x3", WET, "dam_break", "coarse", 3},
+    {"65x3", WET, "dam_break", "coarse", 2},
     {"33x17", WET | ELASTIC | EFFECT_COHESION, "slope", "default", 2},
     {"33x17", WET | EFFECT_BED_SHEAR, "dam_break", "default", 2},
     {"33x17", EFFECT_SAND | SLOPES, "slope", "default", 3},

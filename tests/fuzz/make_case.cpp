@@ -242,6 +242,7 @@ Case make_case(std::uint64_t seed) {
         s.method.strain_transport = random.pick({StrainTransport::polar, StrainTransport::direct});
     }
     if (random.chance(0.2)) c.at_ends = draw_ends(random, c);
+    if (random.chance(0.5)) s.material.bed_adhesion = random.pick({0.0, random.log(1e-12, 1e-3), random.real(0, 1)});
     return c;
 }
 

@@ -75,7 +75,7 @@ const std::map<std::string, double> showing = {
     {"bed_shear", 0.5},      {"grain_size", 0.1}, // needs bed_shear to show
     {"slope_normal", 0.5},   {"internal_friction", 0}, {"sand_viscosity", 0},
     {"retention", 0.1},      {"manning", 0.2},         {"saturation[0]", 0.02},
-    {"saturation[1]", 0.3},  {"saturation[2]", 0.49},
+    {"saturation[1]", 0.3},  {"saturation[2]", 0.49},  {"bed_adhesion", 0},
 };
 
 /// Another value for every number.

@@ -2,6 +2,7 @@
 #pragma once
 #include "tests/reference/transport.inl"
 #include <array>
+#include <limits>
 
 namespace wadi::reference {
 
@@ -152,16 +153,27 @@ template <class Real> void Solver<Real>::stretch_deformation_gradient() {
     }
 }
 
+/// 2.7: how far a cell is pressed together at most [Pa], with 2.18 the share k of it.
+template <class Real> Real Solver<Real>::least_stress(Real depth, Real coh, Real k) const {
+    const Real weight =
+        P.passive_pressure > Real(0) ? P.passive_pressure * P.rho_s * P.gravity * depth : std::numeric_limits<Real>::infinity();
+    if (!has(EFFECT_SLOPE_NORMAL)) return weight + coh / P.yield_friction;
+    return k > Real(0) ? k * (weight + coh / P.yield_friction) : Real(0);
+}
+
 template <class Real> void Solver<Real>::project_deformation_gradient() {
     const Real lm = P.lambda + P.shear;
     const Axis x = axis(false);
     const Axis y_axis = axis(true);
     for (std::size_t c = 0; c < cells(); ++c) {
         sxx[c] = sxy[c] = syy[c] = cohesive_share[c] = Real(0);
-        const Real coh = cohesion(has(EFFECT_COHESION) ? saturation[c] : Real(0), sand[c]);
+        const Real phi = has(EFFECT_COHESION) ? saturation[c] : Real(0);
+        const Real coh = cohesion(phi, sand[c]);
+        const Real whole = cohesion(phi, std::numeric_limits<Real>::infinity());
         const Real cliff = P.yield_friction * P.rho_s * P.gravity * sand[c];
-        if (cliff > Real(0)) cohesive_share[c] = std::min(Real(1), Real(4) * coh / cliff);
         if (sand[c] <= P.eps) continue;
+        if (cliff > Real(0)) cohesive_share[c] = std::min(Real(1e6), Real(4) * whole / cliff);
+        const Real compression = least_stress(sand[c], coh, stressed(cohesive_share[c]));
         // Logarithmic strain of V from b = V V^T, without angles.
         const Real bxx = Vxx[c] * Vxx[c] + Vxy[c] * Vxy[c];
         const Real byy = Vxy[c] * Vxy[c] + Vyy[c] * Vyy[c];
@@ -183,10 +195,7 @@ template <class Real> void Solver<Real>::project_deformation_gradient() {
             }
         }
         // Compression cap, tip and cone of the yield surface.
-        if (P.passive_pressure > Real(0)) {
-            const Real pressure = P.passive_pressure * P.rho_s * P.gravity * sand[c] + coh / P.yield_friction;
-            tr = std::max(tr, -pressure / lm);
-        }
+        tr = std::max(tr, -compression / lm);
         const Real A = P.yield_friction * Real(2) * lm;
         const Real y = A * tr - coh;
         if (y >= Real(0)) {
@@ -219,10 +228,7 @@ template <class Real> void Solver<Real>::project_deformation_gradient() {
                                 P.dx;
         const Real before = mean(sxx[c], syy[c]);
         Real after = std::min(before + P.viscosity * divergence, std::max(before, coh / (Real(2) * P.yield_friction)));
-        if (P.passive_pressure > Real(0)) {
-            const Real passive = P.passive_pressure * P.rho_s * P.gravity * sand[c] + coh / P.yield_friction;
-            after = std::max(after, std::min(before, -passive));
-        }
+        after = std::max(after, std::min(before, -compression));
         sxx[c] += after - before;
         syy[c] += after - before;
     }

@@ -1,6 +1,7 @@
 // Sand in balance (2.20).
 #pragma once
 #include "tests/reference/transport.inl"
+#include <limits>
 
 namespace wadi::reference {
 
@@ -24,14 +25,13 @@ template <class Real> Real Solver<Real>::balance(Real depth, Real held) const {
     const Material& m = settings.material;
     const Real c = cohesion(has(EFFECT_COHESION) ? held / (held + depth) : Real(0), depth);
     const Real wet = std::min(held, depth) / depth;
-    Real kr(1);
-    if (has(EFFECT_RETENTION)) {
-        const Real retained = real(m.retention);
-        const Real drained = std::clamp((held / depth - retained) / (Real(1) - retained), Real(0), Real(1));
-        kr = drained * drained * drained;
+    const Real full = full_depth(depth, held) / depth;
+    Real pushes = (wet - full) - full; // of the water's weight
+    if (!has(EFFECT_SLOPE_NORMAL)) {
+        const Real kr = has(EFFECT_RETENTION) ? full * full * full : Real(1);
+        pushes = wet * wet * ((P.exchange > Real(0) ? Real(1) - kr : Real(0)) - kr);
     }
-    const Real leans = P.exchange > Real(0) ? Real(1) - kr : Real(0);
-    const Real carried = std::max(Real(1) + P.rho_w / P.rho_s * wet * wet * (leans - kr), Real(0));
+    const Real carried = std::max(Real(1) + P.rho_w / P.rho_s * pushes, Real(0));
     const Real T = P.rho_s * sand_gravity(depth) * depth / Real(2) * carried;
     const Real chi = real(m.slope_normal);
     Real least(1); // C*
@@ -51,6 +51,51 @@ template <class Real> Real Solver<Real>::balance(Real depth, Real held) const {
     }
     const Real tip = c / (P.yield_friction * Real(2) * (P.lambda + P.shear));
     return std::expm1(std::min(low, tip) / Real(2));
+}
+
+/// Depth times tension falls no faster than push and friction bear: the least that all neighbours with sand allow.
+template <class Real> void Solver<Real>::bound_balance() {
+    const Axis x = axis(false);
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    const auto weight = [&](std::size_t c) { // what pushes of it
+        const Real full = full_depth(sand[c], water[c]);
+        return std::max(Real(1) + P.rho_w / P.rho_s * (std::min(water[c], sand[c]) - Real(2) * full) / sand[c], Real(0));
+    };
+    const auto clings = [&](std::size_t c) {
+        const Real whole = cohesion(water[c] / (water[c] + sand[c]), std::numeric_limits<Real>::infinity());
+        return P.adhesion * whole / P.yield_cohesion;
+    };
+    Field<Real> pull(cells());
+    for (std::size_t c = 0; c < cells(); ++c)
+        pull[c] = sand[c] * (P.lambda + P.shear) * Real(2) * std::log(Vxx[c]) / (Vxx[c] * Vxx[c]);
+    Field<Real> most = pull;
+    for (bool changed = true; changed;) {
+        changed = false;
+        const auto bound = [&](std::size_t c, std::size_t n) {
+            if (sand[n] <= P.eps || !(most[c] > Real(0))) return;
+            const Real w = mean(weight(c), weight(n)), unit = P.rho_s * P.gravity;
+            const Real rise = (terrain[c] + sand[c]) - (terrain[n] + sand[n]);
+            const Real borne = unit * w * mean(sand[c], sand[n]) * (rise + real(0.8) * P.friction * P.dx) +
+                               real(0.8) * P.dx * mean(clings(c), clings(n));
+            const Real balanced = unit / Real(2) * (weight(c) * sand[c] * sand[c] - weight(n) * sand[n] * sand[n]);
+            const Real allowed = std::max(most[n] + std::max(borne, balanced), Real(0));
+            if (allowed < most[c]) changed = true;
+            most[c] = std::min(most[c], allowed);
+        };
+        for (int j = 0; j < x.ny; ++j) {
+            for (int i = 0; i < x.nx; ++i) {
+                if (i > 0) bound(x.cell(i, j), x.cell(i - 1, j));
+                if (i + 1 < x.nx) bound(x.cell(i, j), x.cell(i + 1, j));
+                if (j > 0) bound(x.cell(i, j), x.cell(i, j - 1));
+                if (j + 1 < x.ny) bound(x.cell(i, j), x.cell(i, j + 1));
+            }
+        }
+    }
+    for (std::size_t c = 0; c < cells(); ++c) {
+        if (!(most[c] < pull[c])) continue;
+        Vxx[c] = Real(1) + (Vxx[c] - Real(1)) * (most[c] / pull[c]);
+        Vyy[c] = Vxx[c];
+    }
 }
 
 /// Sand of a cell is about to become `added` deeper, or shallower.

@@ -54,7 +54,7 @@ template <class Real> void Solver<Real>::add_stress(const Axis& ax, int a, int b
     const Field<Real>& normal = ax.is_y ? syy : sxx;
     const Real force = (sand[R] * normal[R] - sand[L] * normal[L]) + (corner(b + 1) - corner(b));
     const Real hb = mean(sand[L], sand[R]);
-    u = hb < P.eps / Real(2) ? Real(0) : u + P.k_sand * force / (P.rho_s * hb);
+    u = hb < P.film / Real(2) ? Real(0) : u + P.k_sand * force / (P.rho_s * hb);
 }
 
 /// 2.7 and 2.18: gravity and the wet/dry rule with S = H + hs + (rho_w/rho_s) h_w.
@@ -70,20 +70,27 @@ template <class Real> void Solver<Real>::add_gravity(const Axis& ax, int a, int 
     const Real g_f = sand_gravity(std::max(sand[L], sand[R]));
     Real& u = sand_velocity.along(ax)[f];
     const bool pushed = sand[L] + sand[R] > Real(0);
-    const Slope slope = has(EFFECT_SLOPE_NORMAL) ? slope_at(ax, a, b) : Slope{Real(0), Real(1), Real(1)};
-    friction_limit.along(ax)[f] = pushed ? slope.C * level_friction(L, R) : Real(0);
+    const Slope slope = has(EFFECT_SLOPE_NORMAL) ? slope_at(ax, a, b) : Slope{Real(0), Real(1), Real(1), Real(0)};
+    friction_limit.along(ax)[f] = pushed ? slope.C * level_friction(L, R) + slope.clings * adhesion(L, R) : Real(0);
     if (has(EFFECT_SLOPE_NORMAL)) {
-        const Real D = open_water(R) - open_water(L);
-        const Real m = minmod(-D, slope.d); // where the water's surface is level the sand feels its buoyant weight
-        u -= P.k_sand * g_f * slope.C * (slope.r * (slope.d - buoyancy * m) + buoyancy * (D + m));
+        const Pores pores = pores_at(L, R);
+        const Real own = slope.C * slope.r * slope.d;
+        const Real borne = std::max(Real(1) - buoyancy * pores.full, Real(0)); // by the water's pressure
+        // What drag brings of held water: the fall of the water's surface, where 2.4c lets it.
+        const Real eta_L = terrain[L] + water[L];
+        const Real eta_R = terrain[R] + water[R];
+        const Real brought = blocked(mixed[L], mixed[R], eta_L, eta_R, P.eps) ? Real(0) : eta_R - eta_L;
+        u -= P.k_sand * g_f * (borne * own + buoyancy * pores.held * (own - brought));
         // Rankine's passive pressure, (1 + sin phi)/(1 - sin phi) times the sand's own, where no stress bears it.
         const Real sine = P.friction / std::sqrt(Real(1) + P.friction * P.friction);
-        const Real borne = has(EFFECT_ELASTOPLASTIC) ? Real(1) : (Real(1) + sine) / (Real(1) - sine);
-        withheld_push.along(ax)[f] = pushed ? P.k_sand * g_f * (borne - slope.C * slope.r) * slope.d : Real(0);
+        const Real passive = (Real(1) + sine) / (Real(1) - sine);
+        const Real k = stressed(deeper_cohesion(L, R));
+        const Real K = k + (Real(1) - k) * passive;
+        withheld_push.along(ax)[f] = pushed ? P.k_sand * g_f * (K - slope.C * slope.r) * slope.d * borne : Real(0);
     } else {
         u -= P.k_sand * g_f * (S_R - S_L);
     }
-    if (blocked(sand[L], sand[R], S_L, S_R, P.eps)) u = Real(0);
+    if (blocked(sand[L], sand[R], S_L, S_R, P.film)) u = Real(0);
 }
 
 template <class Real> void Solver<Real>::integrate_sand_velocity() {
@@ -148,7 +155,7 @@ template <class Real> void Solver<Real>::apply_friction() {
         const Real hm_bar = mean(mixed[L], mixed[R]);
         Real& us = sand_velocity.along(ax)[f];
         Real& um = partner.along(ax)[f];
-        if (hs_bar <= P.eps / Real(2)) {
+        if (std::max(sand[L], sand[R]) <= P.film) {
             us = Real(0);
             if (drag) um = two_layers && hm_bar <= Real(0) ? Real(0) : clamped(um, P.clamp);
             return;
@@ -171,13 +178,19 @@ template <class Real> void Solver<Real>::apply_friction() {
             kappa = (two_layers ? r : Real(1) / (P.rho_s * hs_bar)) * inertia * kd / (inertia * free + kd);
         const Real carried = kappa * um_old.along(ax)[f];
         Real p = us_old.along(ax)[f] + carried;
+        Real p_cross = across_face(us_old, ax, a, b) + kappa * um_cross;
         if (has(EFFECT_SLOPE_NORMAL)) { // 2.18: what the water brings uphill meets the whole push
-            const Real withheld = withheld_push.along(ax)[f];
-            const Real uphill = withheld > Real(0) ? std::max(carried, Real(0)) : std::max(-carried, Real(0));
-            const Real extra = std::min(std::abs(withheld), uphill);
-            if (p * withheld > Real(0)) p = std::copysign(std::max(std::abs(p) - extra, Real(0)), p);
+            const Real up = withheld_push.along(ax)[f];
+            const Real up_cross = across_face(withheld_push, ax, a, b);
+            const Real length = std::hypot(up, up_cross);
+            if (length > Real(0)) {
+                const Real uphill = (carried * up + kappa * um_cross * up_cross) / length;
+                const Real moves = (p * up + p_cross * up_cross) / length;
+                const Real met = std::max(std::min({uphill, length, moves}), Real(0));
+                p -= met * up / length;
+                p_cross -= met * up_cross / length;
+            }
         }
-        const Real p_cross = across_face(us_old, ax, a, b) + kappa * um_cross;
         const Real size = std::sqrt(p * p + p_cross * p_cross);
         const Real N = friction_limit.along(ax)[f];
         const Real kept = size > Real(0) ? std::max(Real(1) - N / size, Real(0)) / (Real(1) + kappa) : Real(0);

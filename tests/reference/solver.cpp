@@ -34,7 +34,11 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
     P.yield_friction = static_cast<Real>(material.yield_friction);
     // 2.7: tan(45 deg + phi/2) of the yield surface's friction angle.
     const double rankine = material.yield_friction + std::sqrt(1 + material.yield_friction * material.yield_friction);
-    const double apex = has(EFFECT_PUBLISHED) ? 1 : 4 * material.yield_friction * rankine;
+    P.rankine = static_cast<Real>(rankine);
+    P.adhesion = static_cast<Real>(material.bed_adhesion);
+    const double measured = has(EFFECT_SLOPE_NORMAL) ? 0.78 : 1;
+    const double apex = has(EFFECT_PUBLISHED) ? 1 : measured * 4 * material.yield_friction * rankine;
+    P.yield_cohesion = static_cast<Real>(apex);
     P.c0 = static_cast<Real>(apex * material.cohesion_dry);
     P.c1 = static_cast<Real>(apex * material.cohesion_wet);
     P.c2 = static_cast<Real>(apex * material.cohesion_capillary);
@@ -48,19 +52,21 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
     const double submerged = std::max(material.sand_density / material.water_density - 1, 0.05) * world.gravity;
     P.bed_threshold = static_cast<Real>(0.047 * submerged * material.grain_size);
     P.bed_rate = static_cast<Real>(submerged > 0 ? 8 / submerged : 0);
-    P.eps = static_cast<Real>(method.dry_threshold);
     P.largest_height = static_cast<Real>(method.largest_height);
     const double quantum = method.quantum < 0 ? std::exp2(std::ceil(std::log2(method.largest_height)) - 24) : method.quantum;
     P.quantum = static_cast<Real>(quantum);
+    const double grain = std::exp2(std::ceil(std::log2(method.largest_height)) - 24); // of heights as floats
+    P.eps = P.film = static_cast<Real>(method.dry_threshold);
+    if (!has(EFFECT_PUBLISHED)) P.film = std::min(P.eps, static_cast<Real>(2 * grain));
     P.alpha = static_cast<Real>(method.velocity_clamp);
     P.gravity_cap = static_cast<Real>(method.gravity_cap);
     P.sand_gravity_cap = static_cast<Real>(method.sand_gravity_cap);
     P.rest_surface = P.rest_velocity = Real(-1);
     if (method.rest_rule) { // two quanta, and the speed that one step's push of three gives; without a quantum those of the float
                             // grid
-        const double grain = quantum > 0 ? quantum : std::exp2(std::ceil(std::log2(method.largest_height)) - 24);
-        P.rest_surface = static_cast<Real>(2 * grain);
-        P.rest_velocity = static_cast<Real>(world.dt / world.grid.dx * world.gravity * 3 * grain);
+        const double least = quantum > 0 ? quantum : grain;
+        P.rest_surface = static_cast<Real>(2 * least);
+        P.rest_velocity = static_cast<Real>(world.dt / world.grid.dx * world.gravity * 3 * least);
     }
     P.passive_pressure = static_cast<Real>(method.passive_pressure);
     P.gradient_clamp = static_cast<Real>(method.gradient_clamp);
@@ -146,6 +152,7 @@ template <class Real> void Solver<Real>::load(const InitialFields& fields) {
     if (has(EFFECT_SAND)) heights(fields.sand, sand);
     if (has(EFFECT_WATER)) heights(fields.water, water);
     for (std::size_t c = 0; c < cells(); ++c) Vxx[c] = Vyy[c] = Real(1) + balance(sand[c], water[c]);
+    if (settings.method.prestress && has(EFFECT_COHESION) && has(EFFECT_SLOPE_NORMAL)) bound_balance();
     if (has(EFFECT_SAND)) velocities(fields.sand_velocity_x, fields.sand_velocity_y, sand_velocity);
     if (has(EFFECT_WATER)) velocities(fields.velocity_x, fields.velocity_y, pure_velocity);
     if (has(EFFECT_MIXTURE)) velocities(fields.velocity_x, fields.velocity_y, mixed_velocity);

@@ -18,7 +18,10 @@ template <class Real> struct Constants {
     Real rho_w{}, rho_s{};            // [kg/m3]
     Real friction{};                  // mu of Coulomb friction
     Real yield_friction{};            // c_f
+    Real rankine{};                   // s_f of 2.7
+    Real adhesion{};                  // a of 2.8
     Real c0{}, c1{}, c2{};            // cohesion of the yield surface [Pa]
+    Real yield_cohesion{};            // its share of the material's
     Real phi1{}, phi2{}, phi3{};      // saturation
     Real exchange{};                  // c_e [kg/(m3 s)], 0 without the drag effect
     Real diffusion{};                 // min(c_d, 0.2 dx2/dt) [m2/s]
@@ -27,7 +30,7 @@ template <class Real> struct Constants {
     Real bed_shear{};                 // c, 0 without its effect
     Real bed_threshold{}, bed_rate{}; // [m2/s2], [s2/m]
     Real lambda{}, shear{};           // Lame constants [Pa], capped (2.7)
-    Real eps{};                       // dry threshold [m]
+    Real eps{}, film{};               // dry threshold, and that of moving sand [m]
     Real quantum{}, largest_height{}; // [m]; quantum 0 = plain arithmetic
     Real clamp{}, clamp_sand{};       // alpha dx/dt, alpha dx/substep [m/s]
     Real alpha{};                     // the clamp's factor
@@ -138,8 +141,8 @@ template <class Real> class Solver {
     Field<Real> saturation;                       // phibar
     Field<Real> sand_before, mixed_before;        // hs^n and min(W, hs^n)
     Field<Real> sxx, sxy, syy;                    // Cauchy stress [Pa]
-    Field<Real> cohesive_share;                   // w of 2.18, 0 without elastoplastic
-    Faces<Real> friction_limit, withheld_push;    // 2.18: N, k_sand g_f (1 - C r) d [m/s]
+    Field<Real> cohesive_share;                   // R of 2.18, 0 without elastoplastic
+    Faces<Real> friction_limit, withheld_push;    // 2.18: N, k_sand g_f (K - C r) d (1 - r^ f) [m/s]
     Field<Real> roughness;                        // of each cell beyond P.manning [s/m^(1/3)]
     Faces<Real> ghost_water;                      // depth outside the open sides [m], on boundary faces
 
@@ -187,14 +190,30 @@ template <class Real> class Solver {
     std::array<Real, 4> velocity_gradient(const Field<Real>& depth, int i, int j) const; // substep * (xx, xy, yx, yy)
     void stretch_by_velocity_gradient(int i, int j);
     Real cohesion(Real phi, Real depth) const;
+    Real least_stress(Real depth, Real coh, Real k) const;
     void change_strain(std::size_t cell, Real added);
-    /// 2.18: C and r of a face, 1 and 1 without slope_normal; d is the rise of the bed of sand across it.
+    void bound_balance();
+    /// 2.18: C and r of a face, 1 and 1 without slope_normal, and how much of its cohesion clings to the ground; d is the rise of
+    /// the bed of sand across it.
     struct Slope {
-        Real d, C, r;
+        Real d, C, r, clings;
     };
     Slope slope_at(const Axis& axis, int a, int b) const;
-    Real open_rise(const Axis& axis, int a, int b) const;
+    Real open_rise(const Axis& axis, int a, int b, bool of_ground) const;
+    Real culmann_excess(Real slope) const;
+    Real culmann_share(Real slope, Real bed, Real C_bed, Real at_rest, Real in_one_cell) const;
+    Real deeper_cohesion(std::size_t left, std::size_t right) const;
+    /// 2.19 and 2.8: of a face's sand the depth with full pores and that of water held above, as shares.
+    struct Pores {
+        Real full, held;
+    };
+    Pores pores_at(std::size_t left, std::size_t right) const;
+    Real full_depth(Real sand_depth, Real held) const;
+    Real stressed(Real cohesive) const;
     Real level_friction(std::size_t left, std::size_t right) const;
+    Real adhesion(std::size_t left, std::size_t right) const;
+    Real shared_depth(std::size_t one, std::size_t other) const;
+    Real thinnest(const Field<Real>& height) const; // of faces that move
     Real relative_permeability(std::size_t cell) const;
     Real diffusion(const Axis& axis, int a, int b) const; // 2.1 through an inner face [m2/s]
     void slow_from_within(const Faces<Real>& old, const Axis& axis, int a, int b);

@@ -151,12 +151,13 @@ TEST_CASE("reference: what water brings uphill meets the whole push, of friction
     set.material.exchange_rate = 1e12;
     set.material.retention = 0;
     set.method.sand_gravity_cap = 0;
-    const auto moved = [&](double um, bool law, unsigned more = 0) {
+    const auto moved = [&](double um, bool law, unsigned more = 0, double cohesive = 0) {
         Solver<double> s(set, WET_SAND | (law ? EFFECT_SLOPE_NORMAL : 0u) | more);
         for (int i = 0; i < 4; ++i) {
             s.terrain[index(i)] = 0.3 * i;
             s.sand[index(i)] = s.water[index(i)] = 0.5;
         }
+        std::fill(s.cohesive_share.begin(), s.cohesive_share.end(), cohesive);
         s.split_water();
         s.integrate_sand_velocity();
         std::fill(s.sand_velocity.x.begin(), s.sand_velocity.x.end(), 0.0);
@@ -176,6 +177,9 @@ TEST_CASE("reference: what water brings uphill meets the whole push, of friction
     // slope of 3 is steeper than the wedge, 2.
     set.material.friction = 0.75;
     const double level = set.dt / set.method.substeps / 0.1 * set.gravity * 0.3, left = (2 + 0.1) / 3 / 5;
-    CHECK(moved(0, true).second == doctest::Approx(level * (4 - left)));
-    CHECK(moved(0, true, EFFECT_ELASTOPLASTIC).second == doctest::Approx(level * (1 - left)));
+    const double borne = 0.5; // of the sand's weight, by the pressure in full pores
+    CHECK(moved(0, true).second == doctest::Approx(level * (4 - left) * borne));
+    CHECK(moved(0, true, EFFECT_ELASTOPLASTIC).second == doctest::Approx(level * (4 - left) * borne));
+    // Where stress bears the rest it is that of level ground, less what a slab on the wedge's slope pushes with.
+    CHECK(moved(0, true, EFFECT_ELASTOPLASTIC, 4).second == doctest::Approx(level * (1 - 0.2 * 2 / 3) * borne));
 }

@@ -116,13 +116,17 @@ template <class Real> Real Solver<Real>::gain(const Faces<Real>& flux, int i, in
     return (flux.x[x.face(i, j)] - flux.x[x.face(i + 1, j)]) + (flux.y[y.face(j, i)] - flux.y[y.face(j + 1, i)]);
 }
 
+template <class Real> Real Solver<Real>::thinnest(const Field<Real>& height) const {
+    return &height == &sand ? P.film / Real(2) : P.eps;
+}
+
 /// 2.3 with the layer's predicted height and its limited fluxes.
 template <class Real>
 void Solver<Real>::advect_velocity(const Field<Real>& height, const Faces<Real>& flux, Faces<Real>& velocity) const {
     const Faces<Real> old = velocity;
     for_inner_faces([&](const Axis& ax, int a, int b) {
         const Real hb = mean(height[ax.cell(a - 1, b)], height[ax.cell(a, b)]);
-        if (hb <= P.eps) return;
+        if (hb <= thinnest(height)) return;
         const Field<Real>& along = flux.along(ax);
         const Field<Real>& across = flux.across(ax);
         const Real Q_W = mean(along[ax.face(a - 1, b)], along[ax.face(a, b)]);
@@ -149,7 +153,7 @@ void Solver<Real>::advect_velocity_second_order(const Field<Real>& height, const
     const Faces<Real> old = velocity;
     for_inner_faces([&](const Axis& ax, int a, int b) {
         const Real hb = mean(height[ax.cell(a - 1, b)], height[ax.cell(a, b)]);
-        if (hb <= P.eps) return;
+        if (hb <= thinnest(height)) return;
         // Offsets along and across; beyond the last face or row its value again, or 0 where something comes in there.
         const auto enters = [&](int row) {
             return mean(flux.across(ax)[ax.cross(a - 1, row)], flux.across(ax)[ax.cross(a, row)]);

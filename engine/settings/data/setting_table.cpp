@@ -90,6 +90,8 @@ constexpr Setting rows[] = {
      "depth of water per depth of sand that pores hold back; 0 = none", InDigest::where_set},
     {"material.manning", material<&Material::manning>, {0, MANNING_MOST}, "s/m^(1/3)", EFFECT_BED_FRICTION,
      "Manning's n of the bed under pure water, beside bed_friction; 0 = off", InDigest::where_set},
+    {"material.bed_adhesion", material<&Material::bed_adhesion>, {0, 1}, "", EFFECT_ELASTOPLASTIC,
+     "share of its cohesion with which sand clings to the ground under it; 0 = none", InDigest::where_set},
     {"method.substeps", method<&Method::substeps>, {1, 64}, "", EFFECT_SAND, "sand substeps per water step"},
     {"method.outflow_limiter", method<&Method::outflow_limiter>, flag, "", several, "no cell gives away more than it has"},
     {"method.quantum", method<&Method::quantum>, {-1, 1e6}, "m", several,

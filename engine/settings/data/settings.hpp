@@ -40,6 +40,7 @@ struct Material {
     double sand_viscosity = 0.05;   // nu of NUMERICS 2.18, in the plane
     double retention = 0.4925;      // r of NUMERICS 2.19: W/hs that pores hold back
     double manning = 0;             // n of NUMERICS 2.4
+    double bed_adhesion = 1;        // a of NUMERICS 2.8
     friend bool operator==(const Material&, const Material&) = default;
 };
 

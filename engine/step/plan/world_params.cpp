@@ -31,18 +31,29 @@ void set_sources(const Settings& s, WorldParams& p) {
     p.source_rows = pieces.rows;
 }
 
-// Cohesion of the yield surface per cohesion of the material: its tip then holds cuts up to Rankine's height (NUMERICS 2.7).
-double yield_cohesion(const Material& m) {
-    const double c_f = m.yield_friction;
-    return 4 * c_f * (c_f + std::sqrt(1 + c_f * c_f));
+// That of which heights are multiples unless a level says otherwise: what floats tell apart.
+double finest_quantum(const Method& method) {
+    Method chosen = method;
+    chosen.quantum = -1;
+    return height_quantum(chosen);
+}
+
+// tan(45 deg + phi/2) of the sand's inner friction.
+double rankine(const Material& m) { return m.yield_friction + std::sqrt(1 + m.yield_friction * m.yield_friction); }
+
+// Cohesion of the yield surface per cohesion of the material: its tip then holds cuts up to Rankine's height (NUMERICS 2.7). The
+// paper's is the material's.
+double yield_cohesion(const Material& m, std::uint32_t effects) {
+    if ((effects & EFFECT_PUBLISHED) != 0) return 1;
+    const double measured =
+        (effects & EFFECT_SLOPE_NORMAL) != 0 ? 0.78 : 1.0; // what falls is held by friction on its ground, too
+    return measured * 4 * m.yield_friction * rankine(m);
 }
 
 } // namespace
 
 double ledger_quantum(const Method& method) {
-    Method chosen = method;
-    chosen.quantum = -1;
-    return height_quantum(method) > 0 ? height_quantum(method) : height_quantum(chosen);
+    return height_quantum(method) > 0 ? height_quantum(method) : finest_quantum(method);
 }
 
 float velocity_limit(const Method& method, double k) { return static_cast<float>(method.velocity_clamp / k); }
@@ -77,6 +88,7 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     p.inv_ledger_quantum = f(1 / ledger_quantum(w));
     p.largest_height = f(w.largest_height);
     p.dry_threshold = f(w.dry_threshold);
+    p.film = f(std::min(w.dry_threshold, 2 * finest_quantum(w))); // so much or less is none
 
     p.k = f(k);
     p.water_velocity_clamp = velocity_limit(w, k);
@@ -114,10 +126,14 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     p.drag_coupling = f(kd * m.water_density / (m.water_density + kd) / m.sand_density);
     p.drag_share = f(kd / (m.water_density + kd));
     const double wedge = m.slope_normal > 0 ? m.friction + std::sqrt(m.friction * m.friction + 1 / m.slope_normal) : steep;
-    p.slope_normal = f(m.slope_normal);
+    p.slope_normal = (effects & EFFECT_SLOPE_NORMAL) != 0 ? f(m.slope_normal) : 0.0F;
     p.wedge_slope = f(std::min(wedge, steep));
     p.wedge_slope2 = f(std::min(wedge * wedge, steep * steep));
     p.wedge_weight = f(1 / (1 + m.slope_normal * std::min(wedge * wedge, steep * steep)));
+    p.inner_friction = f(m.yield_friction);
+    p.rankine = f(rankine(m));
+    p.bed_adhesion = f(m.bed_adhesion);
+    p.adhesion_slip = f(m.bed_adhesion * dts * gravity * m.yield_friction / (4 * yield_cohesion(m, effects)));
     p.internal_friction = f(m.internal_friction);
     const bool retains = (effects & EFFECT_RETENTION) != 0;
     p.retained = retains ? f(m.retention) : -1.0F; // all water is free
@@ -158,7 +174,7 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     p.gradient_clamp = w.gradient_clamp > 0 ? f(w.gradient_clamp) : off;
     p.cohesion_cap = w.cohesion_cap > 0 ? f(2 * m.yield_friction * w.cohesion_cap * weight) : off;
     const auto [phi1, phi2, phi3] = m.saturation;
-    const double apex = (effects & EFFECT_PUBLISHED) != 0 ? 1 : yield_cohesion(m);
+    const double apex = yield_cohesion(m, effects);
     p.cohesion0 = f(apex * m.cohesion_dry);
     p.cohesion1 = f(apex * m.cohesion_wet);
     p.phi1 = f(phi1);

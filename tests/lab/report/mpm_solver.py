@@ -18,24 +18,25 @@ ti.init(arch=ti.cpu, cpu_max_num_threads=1, default_fp=ti.f32, log_level=ti.WARN
 @ti.data_oriented
 class Column:
     """dimensions 2: a column of half-width `half` in plane strain, 3: radius; planes of symmetry at 0. Lengths in m. `cone`: the friction
-    coefficient in triaxial compression, `floor`: that of the ground; `cohesion` [Pa]: the cone's tip bears cohesion / cone."""
+    coefficient in triaxial compression, `floor`: that of the ground; `cohesion` [Pa]: the cone's tip bears cohesion / cone. `bed`: depth of
+    the sand that the column stands on, from the middle to walls at `wall`."""
 
-    def __init__(self, dimensions, half, height, cell, cone, floor, cohesion=0.0):
+    def __init__(self, dimensions, half, height, cell, cone, floor, cohesion=0.0, bed=0.0, wall=None):
         self.dimensions, self.cell, self.floor = dimensions, cell, floor
-        young = 1e6 * max(1.0, height / 2)  # stiff enough for strains of some percent under the column
+        young = 1e6 * max(1.0, (bed + height) / 2)  # stiff enough for strains of some percent under the column
         self.lame = young * POISSON / ((1 + POISSON) * (1 - 2 * POISSON))
         self.shear = young / (2 * (1 + POISSON))
         self.step_size = COURANT * cell / math.sqrt((self.lame + 2 * self.shear) / DENSITY)
         self.tip = 3 * cohesion / cone / (3 * self.lame + 2 * self.shear) if cohesion else 0.0  # in logarithmic volume
         sine = math.sin(math.atan(cone))
         self.cone = math.sqrt(2 / 3) * 2 * sine / (3 - sine)  # alpha of Klar et al. 2016
-        places = self.sites(half, height)
+        places = self.sites(half, height, bed, wall)
         self.count = len(places)
         area = math.pi * half**2 / 4 if dimensions == 3 else half
-        self.volume = area * height / self.count
+        self.volume = (area * height + (wall or 0) ** (dimensions - 1) * bed) / self.count
         self.mass = self.volume * DENSITY
-        reach = half + 2.2 * height + 1  # no pile gets there
-        self.nodes = (round(reach / cell) + 2 * PAD,) * (dimensions - 1) + (round(1.15 * height / cell) + 2 * PAD + 3,)
+        reach = wall + 2 * cell if wall else half + 2.2 * height + 1  # no pile gets there
+        self.nodes = (round(reach / cell) + 2 * PAD,) * (dimensions - 1) + (round(1.15 * (bed + height) / cell) + 2 * PAD + 3,)
         self.last = (self.nodes[0] - 2 * PAD - 2) * cell
         self.x = ti.Vector.field(dimensions, ti.f32, self.count)
         self.v = ti.Vector.field(dimensions, ti.f32, self.count)
@@ -49,15 +50,15 @@ class Column:
         self.elastic.from_numpy(np.broadcast_to(np.eye(dimensions, dtype=np.float32), (self.count, dimensions, dimensions)).copy())
         self.clock = 0.0
 
-    def sites(self, half, height):
+    def sites(self, half, height, bed, wall):
         """Places of the particles: a lattice, each moved by up to a quarter of its spacing."""
         spacing = self.cell / SIDE
-        across, up = (np.arange(round(length / spacing)) + 0.5 for length in (half, height))
+        across, up = (np.arange(round(length / spacing)) + 0.5 for length in (wall or half, bed + height))
         axes = np.meshgrid(*[across] * (self.dimensions - 1), up, indexing="ij")
         places = np.stack([axis.ravel() for axis in axes], axis=1)
         places += np.random.default_rng(1).uniform(-0.25, 0.25, places.shape)
         places *= spacing
-        return places[np.linalg.norm(places[:, :-1], axis=1) < half]
+        return places[(np.linalg.norm(places[:, :-1], axis=1) < half) | (places[:, -1] < bed)]
 
     @ti.func
     def kernel_at(self, place):
@@ -119,7 +120,7 @@ class Column:
                     v[d - 1] = 0
                     v *= ti.max(0.0, 1 + stopped / (v.norm() + 1e-20))
                 for i in ti.static(range(d - 1)):
-                    if node[i] <= PAD:
+                    if node[i] <= PAD or node[i] >= ti.static(self.nodes[0] - PAD - 2):
                         v[i] = 0
                 self.momentum[node] = v
         for p in self.x:

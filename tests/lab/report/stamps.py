@@ -36,6 +36,7 @@ KINDS = {  # a kind of page: the parts, and the scripts and files besides
     "timings": (("stages", "step", "defaults", "levels"), ("tests/lab/report/timings.py",)),
     "advice": ((), tuple(f"tests/lab/report/{page}/*.csv" for page in ("frontier", "prices_cpu", "prices_h100", "timings"))),
     "sand": (("stages", "step", "defaults", "levels"), ("tests/lab/sand/*.py",)),
+    "matrix": (("stages", "step", "defaults", "levels"), ("tests/lab/sand/matrix/*.py", "tests/lab/sand/piles.py", *SAND_LAB)),
 }
 PAGES = {
     "tests/lab/report/README.md": "advice",
@@ -48,6 +49,7 @@ PAGES = {
     "tests/lab/report/timings/README.md": "timings",
     "tests/lab/report/timings/two_cores/README.md": "timings",
     "tests/lab/sand/README.md": "sand",
+    "tests/lab/sand/matrix/README.md": "matrix",
 }
 
 

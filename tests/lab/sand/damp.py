@@ -78,7 +78,7 @@ def washed(name, scene, seconds, above, least, most, held, control=None):
         ]
 
 
-washed("castle_with_wave", castle, 3, above=1, least=0.7, most=0.11, held=0.115)
+washed("castle_with_wave", castle, 3, above=1, least=0.7, most=0.11, held=0.2)
 @case("castle_turned", dx=(0.2, 0.1), control={"dt": 0.03})
 def castle_turned(lab, dx):
     """The castle and its wave, on a walled square with room to turn them, do what they do along the grid."""

@@ -107,4 +107,4 @@ for suffix, force in FORCES:
 settling_cone("cone_0.505_friction_only", 0.505, {"young_modulus": 0}, 0, 0.006, 0.52)
 settling_cone("cone_0.52_drowned_friction_only", 0.52, {"young_modulus": 0}, 4, 0.01, 0.52)
 poured_heap(0.1, {"material.friction": 0.45})
-poured_heap(0.6, None, held=0.09)
+poured_heap(0.6, None, held=0.1)

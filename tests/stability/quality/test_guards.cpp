@@ -108,7 +108,7 @@ TEST_CASE("compression cap: sand fills a pit, the weaker the more; without the c
     const double on_slopes = filled_pit(1, 0, false);
     CHECK(on_slopes > 0.9);
     CHECK(filled_pit(1, 1e6, false) > 0.5 * on_slopes);
-    CHECK(filled_pit(0, 1e6, false) < 0.48 * on_slopes);
+    CHECK(filled_pit(0, 1e6, false) == doctest::Approx(on_slopes)); // and sand without cohesion bears no compression at all
 }
 
 TEST_CASE("low-pass of saturation: a soaked column runs out smooth; without it, it falls into ripples") {
@@ -125,7 +125,7 @@ TEST_CASE("low-pass of saturation: a soaked column runs out smooth; without it, 
 
 TEST_CASE("gradient clamp: sand that runs into sand is pressed; without it the strain turns inside out and is lost") {
     for (const double clamp : {0.4, 0.0}) {
-        auto scene = flat_scene(32, 8, 0.1, 0.01); // 6 of strain in the first substep
+        auto scene = level_ground(flat_scene(32, 8, 0.1, 0.01)); // 6 of strain in the first substep
         auto& method = scene.settings.method;
         method.substeps = 1;
         method.velocity_clamp = 1e6;
@@ -153,6 +153,7 @@ TEST_CASE("cohesion cap: tough sand that spreads thins out smoothly; without it 
             m.friction = 0.1;
             m.young_modulus = 1e7;
             m.cohesion_dry = cohesion;
+            m.bed_adhesion = 0; // it would not spread
             const auto inside = [](double x, double y) { return std::hypot(x - 3.2, y - 3.2) < 2; };
             scene.fill(scene.fields.sand, [&](double x, double y) {
                 return inside(x, y) ? 0.2 + 0.004 * std::sin(57 * x + 23 * y) : 0.0; // weak spots

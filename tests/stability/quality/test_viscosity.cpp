@@ -47,7 +47,7 @@ Release let_go(double bulk_viscosity, double young_modulus, bool damped = false)
     scene.settings.method.bulk_viscosity = bulk_viscosity;
     auto& material = scene.settings.material;
     material.young_modulus = young_modulus;
-    material.cohesion_wet = material.cohesion_capillary = 8.5e3;
+    material.cohesion_wet = material.cohesion_capillary = damped ? 1.1e4 : 8.5e3;
     scene.fill(scene.fields.sand, [](double x, double y) { return std::hypot(x - 3.2, y - 3.2) < 2 ? 2 : 0; });
     scene.fill(scene.fields.water, [](double x, double y) { return std::hypot(x - 3.2, y - 3.2) < 2 ? 0.5 : 0; });
     auto world = make_world(scene);

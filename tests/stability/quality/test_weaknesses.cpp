@@ -136,7 +136,7 @@ TEST_CASE(
         CHECK(worst(*make_world(level), 100, 10, sand_checkerboard) < 2e-3);
         auto drawn = make_world(scene); // a block that stands: its edges count
         const double edges = sand_checkerboard(*drawn);
-        CHECK((worst(*drawn, 100, 10, sand_checkerboard) < edges) == (dt < 0.2));
+        CHECK(worst(*drawn, 100, 10, sand_checkerboard) < edges); // sand that holds no wall has no elastic waves
         scene.settings.method.elastic_cap = scene.settings.method.sand_gravity_cap = 0.1;
         CHECK(worst(*make_world(scene), 100, 10, sand_checkerboard) < edges);
     }
