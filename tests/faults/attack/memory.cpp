@@ -88,7 +88,7 @@ int memory() {
             std::printf("%s: at most %.0f MiB used\n", name.c_str(), most);
         expect(ran.code == 0, name + ": ended with " + std::to_string(ran.code));
         expect(most < 0 || most > 100, name + ": worlds were made in it");
-        expect(most <= static_cast<double>(mebibytes - 8), name + ": 8 MiB are left");
+        expect(most <= static_cast<double>(mebibytes - 16), name + ": 16 MiB are left");
         rmdir(group.c_str());
     }
     return wrong;
