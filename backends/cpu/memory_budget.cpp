@@ -11,6 +11,8 @@ namespace {
 // A look takes some 0.1 ms and more where much is mapped: it holds for so long and for so many bytes.
 constexpr std::chrono::seconds holds_for{10};
 constexpr std::uint64_t holds_for_bytes = std::uint64_t{256} << 20;
+// Of that, the last part is not taken without another look: since the last one, levels and threads took some that nobody asked for.
+constexpr std::uint64_t looks_again_below = std::uint64_t{128} << 20;
 // Left for what is no buffer: a level while it is drawn, threads, the system's own pages. Without a least, nothing is left of it
 // where little is available.
 constexpr std::uint64_t least_left = std::uint64_t{32} << 20;
@@ -37,8 +39,8 @@ std::uint64_t MemoryBudget::measure() const {
 bool MemoryBudget::take(std::uint64_t bytes) {
     const std::lock_guard lock(mutex_);
     const auto now = std::chrono::steady_clock::now();
-    if (bytes > granted_ || now - looked_ > holds_for) {
-        granted_ = std::min(measure(), std::max(bytes, holds_for_bytes));
+    if (bytes + looks_again_below > granted_ || now - looked_ > holds_for) {
+        granted_ = std::min(measure(), std::max(bytes + looks_again_below, holds_for_bytes));
         looked_ = now;
     }
     if (bytes > granted_) return false;

@@ -2,7 +2,9 @@
 // fused multiply-add corrects both: a quotient by a reciprocal that is itself corrected, twice, which rounds correctly (P. Markstein
 // 1990); with the native reciprocal, once, about one quotient in 1e9 stayed wrong. Which of the two a device needs is found by its
 // self-test (backends/vulkan) with this very code: 0 = native, 1 = corrected.
+#ifndef CORRECTED_DIVISION // a test compiles this text for a processor
 layout(constant_id = 3) const int CORRECTED_DIVISION = 0;
+#endif
 
 // A zero residual leaves signed zeros alone, an infinite or undefined one infinities and NaN.
 bool correctable(float residual) { return abs(residual) > 0.0f && abs(residual) < 1.0e38f; }

@@ -28,11 +28,6 @@ FN float touching(SandTop low_left, SandTop low_right, SandTop high_left, SandTo
     return wmax(surface - ground, 0.0f);
 }
 
-// The least depth of the four.
-FN float least_of(SandTop low_left, SandTop low_right, SandTop high_left, SandTop high_right) {
-    return wmin(wmin(low_left.sand, high_right.sand), wmin(low_right.sand, high_left.sand));
-}
-
 // Rises between two cells, of the sand's surface and of the ground under it.
 struct Rise {
     float surface, ground;

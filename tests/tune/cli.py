@@ -127,7 +127,7 @@ def test_judged(folder, level):
 def main():
     folder = pathlib.Path(sys.argv[1]).resolve()
     tune, recorder = folder / "wadi-tune", folder / "wadi-recorder"
-    level = sys.argv[3] if sys.argv[2:3] == ["--judge"] else "piles"
+    level = sys.argv[3] if sys.argv[2:3] == ["--judge"] else "seepage"
     for test, arguments in ((test_refusals, (tune, recorder)), (test_writing, (tune, recorder)), (test_nothing_moves, (tune,)), (test_hardly_any_time, (tune,))):
         with tempfile.TemporaryDirectory() as scratch:
             file = pathlib.Path(scratch) / "level.json"
