@@ -11,7 +11,7 @@ namespace {
 // A look takes some 0.1 ms and more where much is mapped: it holds for so long and for so many bytes.
 constexpr std::chrono::seconds holds_for{10};
 constexpr std::uint64_t holds_for_bytes = std::uint64_t{256} << 20;
-// Of that, the last part is not taken without another look: since the last one, levels and threads took some that nobody asked for.
+// The last part of that is not taken without another look: levels and threads took some that nobody asked for.
 constexpr std::uint64_t looks_again_below = std::uint64_t{128} << 20;
 // Left for what is no buffer: a level while it is drawn, threads, the system's own pages. Without a least, nothing is left of it
 // where little is available.

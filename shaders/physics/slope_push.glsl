@@ -119,7 +119,7 @@ FN SlopeShares slope_shares(float slope2, SlopeLaw by) {
     bool steep = slope2 > by.wedge_slope2;
     // One quotient for both: C where the wedge does not count, r where it does.
     float root = 1.0f;
-    if (UNIFORM(steep)) root = lean_root(slope2);
+    if (UNIFORM(steep)) root = lean_root(wmax(slope2, 1.0e-20f)); // as cliff_push has it
     float quotient = lean_reciprocal(steep ? root : 1.0f + by.chi * slope2);
     SlopeShares s;
     s.weight = steep ? by.wedge_weight : quotient;
@@ -129,68 +129,69 @@ FN SlopeShares slope_shares(float slope2, SlopeLaw by) {
     return s;
 }
 
-// By how much more than its friction a face of this slope pushes, in units of the weight. Against it stand the tension at its top, up to
-// 2 s_f c, and the cohesion on the ground under it: both hold it up to the height that Culmann's (1875) plane gives it. 0 at the inner
-// friction's slope, the slope itself less a constant far beyond it.
-FN float culmann_drive(float slope, SlopeLaw by) {
-    float slope2 = square(slope);
-    float plane = lean_root((1.0f + slope2) * (1.0f + square(by.inner))) - 1.0f - by.inner * slope;
-    float ground = 0.5f * by.adhesion * lean_reciprocal(slope * (1.0f + by.chi * wmin(slope2, by.wedge_slope2)));
-    return (by.rankine + ground) * plane;
+// The ground under cohesive sand. Its weight follows that, not the cliff.
+struct Bed {
+    float ground2; // square of its slope
+    float slope2;  // of that as far as the surface falls with it
+    float weight;  // C there
+    float tilt;    // 1/C
+};
+
+FN Bed bed_under(Rise along, Rise across, float slope2, SlopeLaw by) {
+    Bed bed;
+    bed.ground2 = slope_squared(along.ground, across.ground, by.inv_dx);
+    bed.slope2 = wmin(bed.ground2, slope2);
+    bed.tilt = 1.0f + by.chi * wmin(bed.slope2, by.wedge_slope2);
+    bed.weight = lean_reciprocal(bed.tilt);
+    return bed;
 }
 
-// r of such a face as Culmann's plane has it, level and upright ones as they are. bed: the ground's slope; weight: C of that; at_rest: the
-// least push that balances the column's own tension (NUMERICS 2.20) within its friction; within_cell: share of a wall that one cell
-// holds, which is upright however coarse the grid.
-FN float culmann_push(float slope, float bed, float weight, float at_rest, float within_cell, SlopeLaw by) {
-    float base = wmax(by.friction, bed);
-    float wedge = wmax(by.friction, by.wedge_slope);
-    float slides = weight * wmin(base, wedge);
-    float upright = wmax(slides + (slope - base), at_rest); // what a column's own tension bears beside nothing
-    float net = slides + (culmann_drive(slope, by) - culmann_drive(base, by));
-    net = wmin(wmax(net, at_rest), upright);
-    net = net + within_cell * (upright - net);
-    return lean_quotient(slope > base ? net : weight * wmin(slope, wedge), weight * slope);
+// Whether a surface is steeper than its sand's friction and the ground under it. Where it is not, cohesive sand pushes whole.
+FN bool is_cliff(float slope2, Bed bed, SlopeLaw by) { return slope2 > wmax(square(by.friction), wmin(bed.slope2, by.wedge_slope2)); }
+
+// What the wedge above Culmann's (1875) plane pushes with more than its friction bears, in units of the weight: 0 at the inner friction's
+// slope, the slope itself less a constant far beyond it.
+FN float culmann_excess(float slope, float slope2, SlopeLaw by) {
+    return lean_root((1.0f + slope2) * (1.0f + square(by.inner))) - 1.0f - by.inner * slope;
 }
 
-// r of sand whose cohesion holds a cliff of its depth, steeper than its friction and its bed: Culmann's plane.
-FN float cohesive_push(Rise along, Rise across, float slope2, float ground2, float bed2, float weight, float depth, SlopeLaw by) {
+// r of a cliff whose cohesion holds one of its depth: as Culmann's plane has it, level and upright faces as they are. Against its excess
+// stand the tension at the top, up to 2 s_f c, and the cohesion on the ground: both hold it up to the height that the plane gives it.
+// weight: C of the surface's slope; depth: the sand's on the higher side [m].
+FN float cliff_push(Rise along, Rise across, float slope2, Bed bed, float weight, float depth, SlopeLaw by) {
+    float base2 = wmax(wmax(square(by.friction), bed.slope2), 1.0e-20f);
     float slope = lean_root(wmax(slope2, 1.0e-20f));
-    float bed = lean_root(wmax(bed2, 1.0e-20f));
+    float base = lean_root(base2);
+    // One quotient for what is divided by the slope, by the ground's and by the depth.
+    float tilted = base * (1.0f + by.chi * wmin(base2, by.wedge_slope2));
+    float cells = wmax(depth * by.inv_dx, 1.0e-6f);
+    float inverse = lean_reciprocal(slope * tilted * cells);
+    float inv_slope = inverse * (tilted * cells);
+    float inv_tilted = inverse * (slope * cells);
+    float per_cell = slope * (inverse * (slope * tilted));
+    float adhesion = 0.5f * by.adhesion;
+    float drive = (by.rankine + adhesion * (inv_slope * weight)) * culmann_excess(slope, slope2, by);
+    float drive_base = (by.rankine + adhesion * inv_tilted) * culmann_excess(base, base2, by);
     // Tension pulls by the rise of the depth: the surface's less the ground's, of which friction takes what lies askew.
-    float follows = lean_quotient((along.surface * along.ground + across.surface * across.ground) * square(by.inv_dx), slope);
-    float askew2 = wmax(ground2 - square(follows), 0.0f);
-    float grip = lean_root(wmax(square(by.friction * weight) - askew2, 1.0e-20f));
-    float at_rest = slope - wmax(follows + grip, 0.0f);
-    float per_cell = slope * lean_reciprocal_or_zero(depth * by.inv_dx);
-    return culmann_push(slope, bed, weight, at_rest, wmin(1.0f, square(per_cell)), by);
+    float follows = (along.surface * along.ground + across.surface * across.ground) * square(by.inv_dx) * inv_slope;
+    float askew2 = wmax(bed.ground2 - square(follows), 0.0f);
+    float grip = lean_root(wmax(square(by.friction * bed.weight) - askew2, 1.0e-20f));
+    float at_rest = slope - wmax(follows + grip, 0.0f); // the least that balances the column's own tension (NUMERICS 2.20) within its friction
+    float slides = bed.weight * wmin(base, wmax(by.friction, by.wedge_slope));
+    float upright = wmax(slides + (slope - base), at_rest); // what a column's own tension bears beside nothing
+    float net = wmin(wmax(slides + (drive - drive_base), at_rest), upright);
+    float within = depth > 0.0f ? wmin(1.0f, square(per_cell)) : 0.0f; // a wall that one cell holds is upright however coarse the grid
+    net = net + within * (upright - net);
+    return (slope > base ? net : bed.weight * wmin(slope, wmax(by.friction, by.wedge_slope))) * (bed.tilt * inv_slope);
 }
 
-// Of such sand: its weight follows the ground, not the cliff.
-FN SlopeShares cohesive_shares(SlopeShares dry, Rise along, Rise across, float slope2, float depth, SlopeLaw by) {
-    float ground2 = slope_squared(along.ground, across.ground, by.inv_dx);
-    float bed2 = wmin(ground2, slope2); // as far as the surface falls with it
-    float tilt = 1.0f + by.chi * wmin(bed2, by.wedge_slope2);
+// What cohesion makes of the shares. push: r of cohesive sand; held: its cohesive share, 1 at most; strength: above 0 where there is any.
+FN SlopeShares with_cohesion(SlopeShares dry, Bed bed, float push, float held, float strength) {
     SlopeShares s;
-    s.weight = lean_reciprocal(tilt);
-    s.base = dry.weight * tilt;
-    s.slope2 = slope2;
-    bool steep = slope2 > wmax(square(by.friction), wmin(bed2, by.wedge_slope2)); // else it pushes whole
-    s.push = 1.0f;
-    if (UNIFORM(steep)) s.push = steep ? cohesive_push(along, across, slope2, ground2, bed2, s.weight, depth, by) : 1.0f;
-    return s;
-}
-
-// Of sand on any slope. held: its cohesive share, 1 at most; strength: above 0 where there is any cohesion.
-FN SlopeShares shares_on_slope(Rise along, Rise across, float depth, float held, float strength, SlopeLaw by) {
-    float slope2 = slope_squared(along.surface, across.surface, by.inv_dx);
-    SlopeShares s = slope_shares(slope2, by);
-    if (UNIFORM(strength > 0.0f)) {
-        SlopeShares whole = cohesive_shares(s, along, across, slope2, depth, by);
-        s.weight = s.weight + held * (whole.weight - s.weight);
-        s.push = s.push + held * (whole.push - s.push);
-        s.base = strength > 0.0f ? whole.base : 1.0f;
-    }
+    s.weight = dry.weight + held * (bed.weight - dry.weight);
+    s.push = dry.push + held * (push - dry.push);
+    s.base = strength > 0.0f ? dry.weight * bed.tilt : 1.0f;
+    s.slope2 = dry.slope2;
     return s;
 }
 

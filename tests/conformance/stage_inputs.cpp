@@ -150,7 +150,6 @@ compute::Range2 written_range(const std::string& stage, const std::string& base,
     if (stage == "open_sides" && base == "water_height") return {-1, -1, params.nx + 1, params.ny + 1};
     if ((stage == "apply_edits" || stage == "write_values") && base == "terrain")
         return {-GHOST, -GHOST, params.nx + 1 + GHOST, params.ny + 1 + GHOST};
-    if (base == "wedge_depth") return compute::extent_range(compute::Extent::faces, params); // a cell's, by a stage of faces
     return values_of(base, params);
 }
 

@@ -52,6 +52,7 @@ constexpr Step<Real> steps[] = {
     {"project_deformation_gradient", &Solver<Real>::project_deformation_gradient, EFFECT_ELASTOPLASTIC, EFFECT_PUBLISHED},
     {"bend_sand_velocity", &Solver<Real>::bend_sand_velocity, EFFECT_SAND | EFFECT_SLOPE_NORMAL, EFFECT_PUBLISHED},
     {"integrate_sand_velocity", &Solver<Real>::integrate_sand_velocity, EFFECT_SAND, EFFECT_PUBLISHED},
+    {"raise_failing_planes", &Solver<Real>::raise_failing_planes, EFFECT_SAND | EFFECT_SLOPE_NORMAL, EFFECT_PUBLISHED},
     {"apply_friction", &Solver<Real>::apply_friction, EFFECT_SAND, EFFECT_PUBLISHED},
     {"extrapolate_sand_velocity", &Solver<Real>::extrapolate_sand_velocity, EFFECT_PUBLISHED | EFFECT_SAND},
     {"backtrace_sand_velocity", &Solver<Real>::backtrace_sand_velocity, EFFECT_PUBLISHED | EFFECT_SAND},

@@ -113,7 +113,7 @@ template <class Real> Real Solver<Real>::wedge_push(const Axis& ax, int a, int b
 }
 
 /// 2.18: the failing plane, from that of the neighbours before -> wedge_depth.
-template <class Real> void Solver<Real>::raise_planes() {
+template <class Real> void Solver<Real>::raise_failing_planes() {
     const Field<Real> before = wedge_depth;
     const Axis x = axis(false);
     for (int j = 0; j < x.ny; ++j)
@@ -129,7 +129,7 @@ template <class Real> void Solver<Real>::raise_planes() {
                     z = std::min(z, terrain[n] + sand[n] - before[n] + P.plane * distance);
                 }
             z = std::max(z, terrain[c]);
-            const Real held = has(EFFECT_ELASTOPLASTIC) ? std::min(cohesive_share[c], Real(1)) : Real(0);
+            const Real held = has(EFFECT_ELASTOPLASTIC) ? std::min(Real(4) * cohesive_share[c], Real(1)) : Real(0);
             wedge_depth[c] = (Real(1) - held) * (top - z);
         }
 }

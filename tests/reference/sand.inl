@@ -107,7 +107,6 @@ template <class Real> void Solver<Real>::integrate_sand_velocity() {
         if (has(EFFECT_ELASTOPLASTIC)) add_stress(ax, a, b);
         add_gravity(old, ax, a, b);
     });
-    if (has(EFFECT_SLOPE_NORMAL)) raise_planes();
 }
 
 /// 2.4a: momentum follows the water that changes between the pure and the mixed layer.

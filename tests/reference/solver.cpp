@@ -282,6 +282,7 @@ template <class Real> void Solver<Real>::step_robust() {
         }
         if (has(EFFECT_SLOPE_NORMAL)) bend_sand_velocity();
         integrate_sand_velocity();
+        if (has(EFFECT_SLOPE_NORMAL)) raise_failing_planes();
         if (has(EFFECT_MIXTURE)) compute_momentum_exchange();
         apply_friction();
     }

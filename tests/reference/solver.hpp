@@ -93,11 +93,12 @@ template <class Real> class Solver {
     void extrapolate_sand_velocity();            // 2.12 -> extrapolated
     void backtrace_sand_velocity();              // 2.12 -> sand_velocity
     void bend_sand_velocity();                   // 2.3 -> bend_gain, bed_lift
-    void integrate_sand_velocity();      // 2.3, 2.7, 2.4c, 2.18 -> sand_velocity, friction_limit, withheld_push, wedge_depth
-    void advect_deformation_gradient();  // 2.13 -> Vxx, Vxy, Vyy, rotation
-    void stretch_deformation_gradient(); // 2.13, after the velocity -> Vxx, Vxy, Vyy, rotation
-    void compute_momentum_exchange();    // 2.4a after the sand height, then mixed_push on mixed_velocity
-    void apply_friction();               // 2.8 -> sand_velocity, mixed_velocity (pure_velocity in the single-layer mask)
+    void integrate_sand_velocity();              // 2.3, 2.7, 2.4c, 2.18 -> sand_velocity, friction_limit, withheld_push
+    void raise_failing_planes();                 // 2.18 -> wedge_depth
+    void advect_deformation_gradient();          // 2.13 -> Vxx, Vxy, Vyy, rotation
+    void stretch_deformation_gradient();         // 2.13, after the velocity -> Vxx, Vxy, Vyy, rotation
+    void compute_momentum_exchange();            // 2.4a after the sand height, then mixed_push on mixed_velocity
+    void apply_friction();                       // 2.8 -> sand_velocity, mixed_velocity (pure_velocity in the single-layer mask)
     // 2.21, water as the paper has it
     void diffuse_mixed_height();   // -> mixed
     void spread_mixed_water();     // -> water
@@ -209,7 +210,6 @@ template <class Real> class Solver {
     bool beyond_head(const Faces<Real>& old, const Axis& axis, int a, int b, Real u) const;
     Real wedge_share(std::size_t left, std::size_t right) const;
     Real wedge_push(const Axis& axis, int a, int b, const Slope& slope, Real own) const;
-    void raise_planes();
     Slope slope_at(const Axis& axis, int a, int b) const;
     Real open_rise(const Axis& axis, int a, int b, bool of_ground) const;
     Real culmann_excess(Real slope) const;

@@ -41,8 +41,8 @@ double finest_quantum(const Method& method) {
 // tan(45 deg + phi/2) of the sand's inner friction.
 double rankine(const Material& m) { return m.yield_friction + std::sqrt(1 + m.yield_friction * m.yield_friction); }
 
-// Cohesion of the yield surface per cohesion of the material: its tip then holds cuts up to Rankine's height (NUMERICS 2.7), less of
-// it where friction on the ground holds what falls, too. The paper's is the material's.
+// Cohesion of the yield surface per cohesion of the material: its tip then holds cuts up to Rankine's height (NUMERICS 2.7), less
+// of it where friction on the ground holds what falls, too. The paper's is the material's.
 double yield_cohesion(const Material& m, std::uint32_t effects) {
     if ((effects & EFFECT_PUBLISHED) != 0) return 1;
     const double measured = (effects & EFFECT_SLOPE_NORMAL) != 0 ? 0.78 : 1.0;

@@ -46,15 +46,6 @@ double most_used(const std::string& group) {
     return -1;
 }
 
-/// Of that, what files hold in the page cache [MiB]: it stays with the group, and the system takes it back where it is short.
-double cached_files(const std::string& group) {
-    std::ifstream file(group + "/memory.stat");
-    std::string key;
-    for (double bytes = 0; file >> key >> bytes;)
-        if (key == "file" || key == "cache") return bytes / (1 << 20);
-    return 0;
-}
-
 } // namespace
 
 int memory() {
@@ -81,7 +72,7 @@ int memory() {
             return worlds_until_refused(700);
         });
         const std::string name = "a control group of " + std::to_string(mebibytes) + " MiB";
-        const double most = most_used(group) - cached_files(group);
+        const double most = most_used(group);
         if (most < 0)
             std::printf("%s: this system does not tell how much was used\n", name.c_str());
         else

@@ -1,5 +1,6 @@
 // Saturation swept through phi_1, phi_2 and phi_3, in space and in time: strength comes and goes, what is left is smooth.
 #include "tests/stability/quality.hpp"
+#include <array>
 
 using namespace wadi;
 using namespace wadi::test;
@@ -28,7 +29,8 @@ TEST_CASE("a levee from dry to soaked stands where it is damp and nowhere else, 
     auto rough = make_world(level_ground(levee(0)));
     step(*rough, 250);
     on_every_backend(levee(2), [](World& world) { step(world, 20); });
-    const auto run = [](const Scene& scene, double dry, double damp, double soaked) {
+    // soaked: at 0.36, 0.45, 0.58; the more of the water runs free, the less the sand beneath it bears.
+    const auto run = [](const Scene& scene, double dry, double damp, const std::array<double, 3>& soaked) {
         auto world = make_world(scene);
         step(*world, 250);
         check_books(*world);
@@ -36,11 +38,12 @@ TEST_CASE("a levee from dry to soaked stands where it is damp and nowhere else, 
         const auto crest = [&](double phi) { return sand.at(static_cast<int>(phi / 0.6 * 64), 15); };
         CHECK(crest(0.02) < dry);
         for (const double phi : {0.12, 0.2, 0.25}) CHECK(crest(phi) > damp);
-        for (const double phi : {0.36, 0.45, 0.58}) CHECK(crest(phi) < soaked);
+        const std::array phis = {0.36, 0.45, 0.58};
+        for (std::size_t n = 0; n < phis.size(); ++n) CHECK(crest(phis[n]) < soaked[n]);
         CHECK(checkerboard(sand) < 5e-5);
     };
-    run(level_ground(levee(2)), 0.7, 0.9, 0.5);
-    run(levee(2), 0.9, 0.98, 0.6); // gravity along the slope pushes a bank less than its full weight
+    run(level_ground(levee(2)), 0.7, 0.9, {0.5, 0.5, 0.5});
+    run(levee(2), 0.9, 0.98, {0.7, 0.6, 0.45}); // gravity along the slope pushes a bank less than its full weight
     CHECK(checkerboard(cells_of(*rough, "sand_height")) > 2e-4);
 }
 
@@ -65,7 +68,8 @@ TEST_CASE("a damp column soaked by rain falls, and stays as it fell when it drie
         CHECK(largest(cells_of(*world, "sand_height")) > 0.9); // still damp enough
         CHECK(roughness(cells_of(*world, "sand_height")) < 0.02);
         step(*world, 200);
-        CHECK(largest(cells_of(*world, "sand_height")) < 0.6); // soaked: fallen
+        // Soaked: fallen. With slopes pushed less than their whole weight, and borne by what water the pores hold back.
+        CHECK(largest(cells_of(*world, "sand_height")) < (level ? 0.6 : 0.85));
         step(*world, 200);
         CHECK(largest(cells_of(*world, "water_height")) == 0); // dry again
         CHECK(sand_speed(*world) == 0);
