@@ -72,14 +72,14 @@ FN BedRide bed_ride(BedBend bends, float inv_sum, float gravity_dts, float inv_d
     return ride;
 }
 
-// Wet/dry rule of sand with a head (NUMERICS 2.4c): a face stands where it would draw from a dry cell, or climb onto a dry one that is higher
-// than the sand's top and its head.
+// Wet/dry rule of sand with a head (NUMERICS 2.4c): a face stands between dry cells, where it would fall from a dry one, or climb onto a dry
+// one that is higher than the sand's top and its head. Away from a lower dry cell its velocity brings nothing, and is what holds a wall.
 FN bool beyond_head(float u, float height_low, float height_high, float top_low, float top_high, float head2, float gravity, float dry) {
     bool dry_low = height_low <= dry;
     bool dry_high = height_high <= dry;
     float rise = 2.0f * gravity * (top_high - top_low);
-    bool up = both(u > 0.0f, either(dry_low, both(dry_high, head2 <= rise)));
-    bool down = both(u < 0.0f, either(dry_high, both(dry_low, head2 <= -rise)));
+    bool up = both(u > 0.0f, either(both(dry_low, either(dry_high, rise <= 0.0f)), both(dry_high, head2 <= rise)));
+    bool down = both(u < 0.0f, either(both(dry_high, either(dry_low, rise >= 0.0f)), both(dry_low, head2 <= -rise)));
     return either(up, down);
 }
 

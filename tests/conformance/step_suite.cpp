@@ -46,7 +46,7 @@ constexpr Row against_reference[] = {
     {"33x17", WET | EFFECT_BED_SHEAR, "dam_break", "default", 2},
     {"33x17", EFFECT_SAND | SLOPES, "slope", "default", 3},
     {"33x17", WET | ELASTIC | EFFECT_COHESION | SLOPES | EFFECT_RETENTION, "cliff", "default", 2},
-    {"33x17", WET | SLOPES | EFFECT_RETENTION, "dam_break", "default", 3},
+    {"33x17", WET | SLOPES | EFFECT_RETENTION, "dam_break", "default", 2},
     {"33x17", WET | ELASTIC | EFFECT_COHESION | SLOPES | EFFECT_RETENTION, "slope", "default", 2},
     {"33x17", WET | ELASTIC | EFFECT_COHESION, "flat", "plain", 2},
     {"257x130", WET | ELASTIC | EFFECT_COHESION, "dam_break", "default", 2},

@@ -144,13 +144,34 @@ TEST_CASE("same level, same hash; profiling names every stage and changes nothin
         hashes[n] = stats.hash;
         uint32_t count = 0;
         REQUIRE(wadi_world_get_stage_timings(id, nullptr, &count) == WADI_OK);
-        CHECK(count == 14);
+        CHECK(count == 16);
         std::vector<wadi_stage_timing> timings(count);
         REQUIRE(wadi_world_get_stage_timings(id, timings.data(), &count) == WADI_OK);
         CHECK((timings[0].milliseconds > 0) == (n == 1));
         CHECK(wadi_destroy_world(id) == WADI_OK);
     }
     CHECK(hashes[0] == hashes[1]);
+}
+
+TEST_CASE("a world's warnings are read one by one, and none behind the last") {
+    const auto warnings = [](float depth) {
+        std::vector<float> terrain, water;
+        const auto arrays = pond(terrain, water);
+        for (float& d : water) d *= depth;
+        const auto options = cpu_device();
+        wadi_world_id id{};
+        REQUIRE_MESSAGE(wadi_create_world_from_arrays(&arrays, &options, &id) == WADI_OK, std::string(wadi_get_last_error()));
+        auto info = wadi_default_world_info();
+        REQUIRE(wadi_world_get_info(id, &info) == WADI_OK);
+        std::string all;
+        for (uint32_t n = 0; n < info.warning_count; ++n) all += std::string(wadi_world_get_warning(id, n)) + "\n";
+        CHECK(wadi_world_get_warning(id, info.warning_count) == nullptr);
+        CHECK(error_mentions("n is " + std::to_string(info.warning_count)));
+        CHECK(wadi_destroy_world(id) == WADI_OK);
+        return all;
+    };
+    CHECK(warnings(15).find("moves slower than it should") != std::string::npos); // the shallow-water wave outruns dx/dt
+    CHECK(warnings(1).empty());
 }
 
 TEST_CASE("null and destroyed ids are refused by every call") {

@@ -83,12 +83,13 @@ template <class Real> bool Solver<Real>::beyond_head(const Faces<Real>& old, con
     const std::size_t R = ax.cell(a, b);
     const std::size_t donor = u > Real(0) ? L : R;
     const std::size_t other = u > Real(0) ? R : L;
-    if (sand[donor] <= P.film) return true;
+    const Real rise = (terrain[other] + sand[other]) - (terrain[donor] + sand[donor]);
+    if (sand[donor] <= P.film) return sand[other] <= P.film || rise <= Real(0);
     if (sand[other] > P.film) return false;
     const Course at = course_at(old, ax, a, b);
     const Real climb = at.a * u + at.e * at.w;
     const Real head = u * u + at.w * at.w + climb * climb; // times 2 g
-    return head <= Real(2) * P.gravity * ((terrain[other] + sand[other]) - (terrain[donor] + sand[donor]));
+    return head <= Real(2) * P.gravity * rise;
 }
 
 /// 2.18: omega, the share of a face's sand above the failing plane.
@@ -130,7 +131,8 @@ template <class Real> void Solver<Real>::raise_failing_planes() {
                 }
             z = std::max(z, terrain[c]);
             const Real held = has(EFFECT_ELASTOPLASTIC) ? std::min(Real(4) * cohesive_share[c], Real(1)) : Real(0);
-            wedge_depth[c] = (Real(1) - held) * (top - z);
+            const bool rounding = top - z <= Real(1e-6) * std::abs(top);
+            wedge_depth[c] = rounding ? Real(0) : (Real(1) - held) * (top - z);
         }
 }
 

@@ -79,7 +79,7 @@ TEST_CASE("barriers everywhere, recording anew and profiling change no bit, on e
         CHECK(hash_of(*profiled) == expected);
         auto times = profiled->stepper().stage_times();
         REQUIRE(times);
-        CHECK(times->size() == 14);
+        CHECK(times->size() == 16);
         for (const auto& time : *times) CHECK_MESSAGE(time.milliseconds > 0, time.stage);
     }
 }

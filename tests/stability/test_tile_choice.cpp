@@ -50,7 +50,7 @@ Scene drying(int nx, int ny) {
     scene.settings.evaporation.samples = {{0, 1e-4}, {1, 1e-4}, {1.01, 0}};
     scene.fill(scene.fields.water, [](double x, double y) { return x + y < 3 ? 0.5 : 0.0; });
     scene.fill(scene.fields.sand,
-               [&](double x, double y) { return std::max(0.0, 0.8 - std::hypot(x - 0.14 * nx, y - 0.14 * ny) / 2); });
+               [&](double x, double y) { return std::max(0.0, 0.8 - 0.4 * std::hypot(x - 0.14 * nx, y - 0.14 * ny)); });
     scene.fill(scene.fields.terrain, [](double x, double y) { return 0.5 + 0.02 * (x + y); });
     return scene;
 }

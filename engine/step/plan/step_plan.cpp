@@ -100,23 +100,18 @@ void plan_sand_forces(PlanBuilder b) {
     if (b.has(EFFECT_ELASTOPLASTIC) && !b.can_fuse("transport_sand")) b.run("project_deformation_gradient");
     const std::vector<std::string> sand = {"sand_velocity_x", "sand_velocity_y"};
     std::vector<std::string> moved = sand;
-    std::vector<std::string> rubbed = sand;
-    if (b.has(EFFECT_SLOPE_NORMAL)) moved.emplace_back("wedge_depth");
     if (b.fuses_momentum_exchange()) {
         moved.insert(moved.end(), {"water_velocity_x", "water_velocity_y", "mixed_velocity_x", "mixed_velocity_y"});
         b.run("accelerate_mixture", moved);
         return;
     }
     const Names drag = drag_names(b);
-    for (const auto& [binding, field] : drag) {
-        moved.push_back(field);
-        rubbed.push_back(field);
-    }
+    for (const auto& [binding, field] : drag) moved.push_back(field);
     if (b.fuse("accelerate_sand", moved, drag)) return;
     if (b.has(EFFECT_SLOPE_NORMAL)) b.run("bend_sand_velocity");
     b.run("integrate_sand_velocity", sand);
     if (b.has(EFFECT_SLOPE_NORMAL)) b.run("raise_failing_planes", {"wedge_depth"});
-    b.run("apply_friction", rubbed, drag);
+    b.run("apply_friction", moved, drag);
 }
 
 // One list of tiles, or one for the water's passes, one for the sand's and one for those of both.
