@@ -36,7 +36,9 @@ FN BedBend bed_bend(float inflow, BedCourse from, BedCourse own, float normal2, 
     leaves = square(leaves) > 1.0e-9f * whole ? leaves : 0.0f; // less is rounding of heights
     float off = square(leaves); // over the whole: square of the sine of the bend
     bool follows = both(whole > 1.0e-12f, whole < 1.0e30f);
-    float longer = lean_root(lean_quotient(follows ? whole : 1.0f, follows ? wmax(off, whole - off) : 1.0f));
+    bool bent = both(follows, both(brought > 0.0f, off > 0.0f));
+    float longer = 1.0f;
+    if (UNIFORM(bent)) longer = lean_root(lean_quotient(bent ? whole : 1.0f, bent ? wmax(off, whole - off) : 1.0f));
     float turned = (from.along + own.slope_along * leaves * inv_normal2) * longer - from.along;
     float most = wabs(from.along) + wabs(from.across);
     BedBend b;
