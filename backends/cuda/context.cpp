@@ -47,6 +47,7 @@ Status read_capabilities(Context& c, const ListedDevice& chosen) {
     c.capabilities.groups = {largest_group, largest_group, largest_group, 256};
     c.capabilities.timestamps = true;
     c.tuning.fused_gain_cells = std::int64_t{1} << 16; // H100: below it too few groups fill the GPU (engine/step/README.md)
+    c.tuning.fused_slopes = true;                      // as many registers as they want, which Vulkan cannot ask for
     c.tuning.tiles_gain_cells = std::int64_t{1} << 20;
     c.capabilities.fused_stages = true; // every architecture that is compiled for has 48 KiB a group
     return ok_status();

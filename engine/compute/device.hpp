@@ -44,6 +44,7 @@ struct Capabilities {
 /// What was measured to be faster on devices of this kind. It changes no bit.
 struct Tuning {
     std::int64_t fused_gain_cells = 0; // cells of a grid from which fused stages are faster than one by one; 0 = never
+    bool fused_slopes = false;         // so is what accelerates sand on slopes, whose fused stages want many registers
     std::int64_t tiles_gain_cells = 0; // and from which active tiles may be, where few are awake
 };
 

@@ -175,7 +175,7 @@ std::vector<StepInput> inputs_of(const Scene& scene, int count) {
 Status measure_stages(Device& device, int size, bool fused, const PerfOptions& options, std::vector<Row>& rows) {
     auto scene = make_large_scene(size, ALL);
     if (!scene) return scene.status();
-    PassRunner runner(device, *scene, {.fused = fused});
+    PassRunner runner(device, *scene, {.fused = fused, .fused_slopes = device.tuning().fused_slopes});
     if (auto status = runner.open(); !status) return status;
     const auto inputs = inputs_of(*scene, 1);
     bool slept = true; // while the host made the scene
@@ -203,7 +203,7 @@ Status measure_step(Device& device, int size, const std::string& name, std::uint
                     const PerfOptions& options, std::vector<Row>& rows) {
     auto scene = make_large_scene(size, effects);
     if (!scene) return scene.status();
-    PassRunner runner(device, *scene, {.fused = fused});
+    PassRunner runner(device, *scene, {.fused = fused, .fused_slopes = device.tuning().fused_slopes});
     const auto passes = runner.passes();
     const bool has = std::any_of(passes.begin(), passes.end(), [](const PlanPass* pass) {
         return compute::stage_table()[static_cast<std::size_t>(pass->stage)].fused();

@@ -23,7 +23,9 @@ class PlanBuilder {
     bool fuse(const char* stage, std::vector<std::string> flips, const Names& names = {});
     /// In one pass with what accelerates the sand. That pass moves the water's velocities to their other buffers, which tiles
     /// without sand would have to do as well.
-    bool fuses_momentum_exchange() const { return !tiles_by_material() && can_fuse("accelerate_mixture"); }
+    bool fuses_momentum_exchange() const { return !tiles_by_material() && fuses_forces() && can_fuse("accelerate_mixture"); }
+    /// Whether what accelerates sand may run in one pass.
+    bool fuses_forces() const { return plan_.fused_slopes || !has(EFFECT_SLOPE_NORMAL); }
     /// Whether active tiles have a list for each material.
     bool tiles_by_material() const { return plan_.tiles_by_material; }
     std::vector<std::string> tile_lists() const { return plan_.tile_lists(); }

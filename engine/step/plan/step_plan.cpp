@@ -99,15 +99,19 @@ void plan_sand_forces(PlanBuilder b) {
     if (!b.has(EFFECT_SAND)) return;
     if (b.has(EFFECT_ELASTOPLASTIC) && !b.can_fuse("transport_sand")) b.run("project_deformation_gradient");
     const std::vector<std::string> sand = {"sand_velocity_x", "sand_velocity_y"};
-    std::vector<std::string> moved = sand;
+    std::vector<std::string> moved = sand, fused = sand;
+    if (b.has(EFFECT_SLOPE_NORMAL)) fused.emplace_back("wedge_depth");
     if (b.fuses_momentum_exchange()) {
-        moved.insert(moved.end(), {"water_velocity_x", "water_velocity_y", "mixed_velocity_x", "mixed_velocity_y"});
-        b.run("accelerate_mixture", moved);
+        fused.insert(fused.end(), {"water_velocity_x", "water_velocity_y", "mixed_velocity_x", "mixed_velocity_y"});
+        b.run("accelerate_mixture", fused);
         return;
     }
     const Names drag = drag_names(b);
-    for (const auto& [binding, field] : drag) moved.push_back(field);
-    if (b.fuse("accelerate_sand", moved, drag)) return;
+    for (const auto& [binding, field] : drag) {
+        moved.push_back(field);
+        fused.push_back(field);
+    }
+    if (b.fuses_forces() && b.fuse("accelerate_sand", fused, drag)) return;
     if (b.has(EFFECT_SLOPE_NORMAL)) b.run("bend_sand_velocity");
     b.run("integrate_sand_velocity", sand);
     if (b.has(EFFECT_SLOPE_NORMAL)) b.run("raise_failing_planes", {"wedge_depth"});
@@ -218,6 +222,7 @@ StepPlan make_step_plan(std::uint32_t effects, int substeps, PlanChoice choice) 
     StepPlan plan;
     plan.active_tiles = choice.active_tiles;
     plan.fused = choice.fused;
+    plan.fused_slopes = choice.fused_slopes;
     plan.effects = effects;
     plan.substeps = substeps;
     plan.tiles_by_material = choice.active_tiles && tells_materials_apart(effects);

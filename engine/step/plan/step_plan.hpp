@@ -47,6 +47,7 @@ struct StepPlan {
     std::vector<PlanField> fields;
     int scratch_blocks = 0;
     bool active_tiles = false, fused = false; // as asked for
+    bool fused_slopes = true;                 // what accelerates sand on slopes, too (Tuning)
     /// A list of active tiles for the passes ahead of the substeps, "_water", one for those in them, "_sand", and one for passes
     /// that change nothing but where both run, "_mixture".
     bool tiles_by_material = false;
@@ -76,6 +77,8 @@ struct PlanChoice {
     bool active_tiles = false;
     /// Fused stages where the mask allows them.
     bool fused = false;
+    /// Where fused: also what accelerates sand where the effect slope_normal is on, whose kernels want many registers.
+    bool fused_slopes = true;
 };
 
 /// Throws std::logic_error where a stage binds a field that field_table() lacks.

@@ -28,6 +28,10 @@ bool WorldState::fuses() const {
     return asked && (*device_).capabilities().fused_stages;
 }
 
+bool WorldState::fuses_slopes() const {
+    return settings_.fused_stages == FusedStages::always || (*device_).tuning().fused_slopes;
+}
+
 // Where a GPU does not fuse, its grid is so small that a step is short passes that wait for each other, whatever they run over;
 // and scratch fields of their own would take memory.
 bool WorldState::may_choose_tiles() const {
@@ -38,7 +42,7 @@ bool WorldState::may_choose_tiles() const {
 }
 
 StepPlan WorldState::plan_for(std::uint32_t effects, bool tiles) const {
-    return make_step_plan(effects, settings_.method.substeps, {tiles, fuses()});
+    return make_step_plan(effects, settings_.method.substeps, {tiles, fuses(), fuses_slopes()});
 }
 
 Status WorldState::check_device() const {

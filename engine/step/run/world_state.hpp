@@ -87,6 +87,8 @@ class WorldState {
     StepPlan plan_for(std::uint32_t effects, bool tiles) const;
     /// Whether the plan has fused stages.
     bool fuses() const;
+    /// Also for what accelerates sand on slopes.
+    bool fuses_slopes() const;
     bool may_choose_tiles() const;
     /// Of a pass of the plan.
     compute::GroupSize group_of(int stage, bool tiles) const;
