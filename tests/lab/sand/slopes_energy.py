@@ -108,7 +108,7 @@ def run_up(lab, dx):
     law = block(lambda x: float(foot(1, 2)(x)), 0.05, 8, -4, 1)[1]
     line = block(lambda x: float(foot(1, 2)(x)), 0.05, 8, -4, 1, bend=False)[1]
     found = climb(lab, dx, 0, 0.2, 2, 0)
-    return [falls_short("highest middle", found, law, 0.03, BLOCK, held=0.08), shown("energy line", line, "m")]
+    return [falls_short("highest middle", found, law, 0.03, BLOCK), shown("energy line", line, "m")]
 
 
 @case("run_up_turned", dx=(0.125,), control=PLANE)
@@ -116,7 +116,7 @@ def run_up_turned(lab, dx):
     angles = (0, 22.5, 45)
     found = [climb(lab, dx, angle, 0.2, 2, 4) for angle in angles]
     law = block(lambda x: float(foot(1, 2)(x)), 0.05, 8, -4, 1)[1]
-    rows = [falls_short(f"highest middle at {angle:g} degrees", height, law, 0.03, BLOCK, held=0.08) for angle, height in zip(angles, found)]
+    rows = [falls_short(f"highest middle at {angle:g} degrees", height, law, 0.03, BLOCK) for angle, height in zip(angles, found)]
     return [*rows, at_most("largest difference of these", 100 * (max(found) / min(found) - 1), 2, "%")]
 
 
