@@ -36,12 +36,14 @@ std::vector<std::uint32_t> legal_masks() {
     return few;
 }
 
-// Every legal mask one by one, and fused with and without active tiles.
+// Every legal mask one by one, and fused: with and without active tiles, and without what accelerates sand on slopes.
 std::vector<std::pair<std::uint32_t, PlanChoice>> legal_plans() {
     std::vector<std::pair<std::uint32_t, PlanChoice>> plans;
     for (const auto mask : legal_masks())
-        for (const PlanChoice choice :
-             {PlanChoice{}, {.active_tiles = false, .fused = true}, {.active_tiles = true, .fused = true}})
+        for (const PlanChoice choice : {PlanChoice{},
+                                        {.active_tiles = false, .fused = true},
+                                        {.active_tiles = true, .fused = true},
+                                        {.active_tiles = false, .fused = true, .fused_slopes = false}})
             plans.emplace_back(mask, choice);
     return plans;
 }
@@ -118,6 +120,21 @@ TEST_CASE("scratch that lives across the substeps is overwritten by nobody in th
             }
         }
     }
+}
+
+TEST_CASE("what accelerates sand on slopes runs stage by stage where its fused kernel does not pay, the rest fused") {
+    const std::uint32_t dry = EFFECT_SAND | EFFECT_SLOPE_NORMAL;
+    for (const auto& [mask, stage] : {std::pair{everything, "accelerate_mixture"}, std::pair{dry, "accelerate_sand"}}) {
+        const auto whole = make_step_plan(mask, 3, {.fused = true});
+        CHECK(runs(whole, stage));
+        CHECK_FALSE(runs(whole, "bend_sand_velocity"));
+        const auto apart = make_step_plan(mask, 3, {.fused = true, .fused_slopes = false});
+        CHECK_FALSE(runs(apart, stage));
+        for (const char* alone : {"bend_sand_velocity", "integrate_sand_velocity", "raise_failing_planes", "apply_friction"})
+            CHECK_MESSAGE(runs(apart, alone), alone);
+        CHECK(runs(make_step_plan(mask & ~EFFECT_SLOPE_NORMAL, 3, {.fused = true, .fused_slopes = false}), stage));
+    }
+    CHECK(runs(make_step_plan(everything, 3, {.fused = true, .fused_slopes = false}), "transport_sand"));
 }
 
 TEST_CASE("every flipped field comes back after two steps, and each pass writes what it flips") {
