@@ -10,49 +10,44 @@ struct BedCourse {
     float slope_along, slope_across;
 };
 
-// Slope across a face from the rises to the four cells beside its own two; those beyond the grid, 0 there, do not count.
-FN float slope_across_face(float left_rises, float right_rises, bool inside_left, bool inside_right, float inv_dx) {
-    return (left_rises + right_rises) * ((both(inside_left, inside_right) ? 0.25f : 0.5f) * inv_dx);
-}
+// Slope across a face from the rises beside its two cells: of two cells' lengths, or of one where the grid ends.
+FN float slope_across_face(float rise_low, float rise_high, bool whole, float inv_dx) { return (rise_low + rise_high) * ((whole ? 0.25f : 0.5f) * inv_dx); }
 
 // Speed along the bed, squared.
 FN float bed_speed2(BedCourse at) {
     float climb = at.slope_along * at.along + at.slope_across * at.across;
-    return (square(at.along) + square(at.across)) + square(climb);
+    return (at.along * at.along + at.across * at.across) + climb * climb;
 }
 
-// What bends bring beside the velocities that flow in: to the face's velocity, times depth, and of vertical velocity that the ground takes.
-struct BedBend {
-    float gain;
-    float asked;   // negative where the ground falls away
-    float pressed; // the same, of steep bends no more than what comes
+// What flows into a face, each a sum over the sides that bring depth, times that depth over the face's own.
+struct BedInflow {
+    float along;  // velocity along the face's direction
+    float speed;  // at least that along the bed of level ground
+    float energy; // square of the speed along the bed
+    float leaves; // how fast it would leave the face's bed, positive: where the ground falls away
+    float bend;   // the square of that
 };
 
-// inflow: depth that comes from the neighbour `from`, negative: nothing does. normal2: 1 + the square of the face's own slope.
-FN BedBend bed_bend(float inflow, BedCourse from, BedCourse own, float normal2, float inv_normal2) {
-    float brought = wmax(inflow, 0.0f);
+// Of one side. share: of the face's depth that comes from there, negative: nothing does.
+FN BedInflow bed_inflow(float share, BedCourse from, BedCourse own) {
+    float brought = wmax(share, 0.0f);
     float leaves = (from.slope_along - own.slope_along) * from.along + (from.slope_across - own.slope_across) * from.across;
-    float whole = normal2 * bed_speed2(from);
-    leaves = square(leaves) > 1.0e-9f * whole ? leaves : 0.0f; // less is rounding of heights
-    float off = square(leaves); // over the whole: square of the sine of the bend
-    bool follows = both(whole > 1.0e-12f, whole < 1.0e30f);
-    bool bent = both(follows, both(brought > 0.0f, off > 0.0f));
-    float longer = 1.0f;
-    if (UNIFORM(bent)) longer = lean_root(lean_quotient(bent ? whole : 1.0f, bent ? wmax(off, whole - off) : 1.0f));
-    float turned = (from.along + own.slope_along * leaves * inv_normal2) * longer - from.along;
-    float most = wabs(from.along) + wabs(from.across);
-    BedBend b;
-    b.gain = follows ? brought * turned : 0.0f;
-    b.asked = -brought * leaves;
-    b.pressed = -brought * wclamp(leaves, -most, most);
-    return b;
+    BedInflow flows;
+    flows.along = brought * from.along;
+    flows.speed = brought * (wabs(from.along) + wabs(from.across));
+    flows.energy = brought * bed_speed2(from);
+    flows.leaves = brought * leaves;
+    flows.bend = flows.leaves * leaves;
+    return flows;
 }
 
-FN BedBend both_bends(BedBend a, BedBend b) {
-    BedBend sum;
-    sum.gain = a.gain + b.gain;
-    sum.asked = a.asked + b.asked;
-    sum.pressed = a.pressed + b.pressed;
+FN BedInflow both_inflows(BedInflow a, BedInflow b) {
+    BedInflow sum;
+    sum.along = a.along + b.along;
+    sum.speed = a.speed + b.speed;
+    sum.energy = a.energy + b.energy;
+    sum.leaves = a.leaves + b.leaves;
+    sum.bend = a.bend + b.bend;
     return sum;
 }
 
@@ -62,15 +57,23 @@ struct BedRide {
     float lift; // what the bed adds to gravity [m/s2]
 };
 
-// Sand that is asked to fall faster than gravity makes it flies: of the bend it follows the share that gravity can. inv_sum: 1 over the
-// depth of both cells, to which the fluxes of all bends, of two faces each, belong.
-FN BedRide bed_ride(BedBend bends, float inv_sum, float gravity_dts, float inv_dts) {
-    float asked = bends.asked * inv_sum;
-    bool flies = asked < wmin(-gravity_dts, -1.0e-20f);
-    float share = lean_quotient(flies ? gravity_dts : 1.0f, flies ? -asked : 1.0f);
+// It is turned into the face's bed, and its length given back. Sand that is asked to fall faster than gravity makes it flies: of the bend it
+// follows the share that gravity can.
+FN BedRide bed_ride(BedInflow all, BedCourse own, float gravity_dts, float inv_dts) {
+    float normal2 = 1.0f + (own.slope_along * own.slope_along + own.slope_across * own.slope_across);
+    float whole = normal2 * all.energy;
+    bool bent = both(all.bend > wmax(1.0e-9f * whole, 1.0e-30f), whole < 1.0e30f); // less is rounding of heights
+    bool flies = both(bent, all.leaves > gravity_dts);
+    float gain = 0.0f;
+    if (UNIFORM(bent)) {
+        // Over the square of the bed's normal, so that the turn needs no quotient of its own.
+        float longer = lean_root(lean_quotient(bent ? all.energy : 1.0f, bent ? normal2 * wmax(all.bend, whole - all.bend) : 1.0f));
+        gain = (normal2 * all.along + own.slope_along * all.leaves) * longer - all.along;
+        if (UNIFORM(flies)) gain = gain * lean_quotient(flies ? gravity_dts : 1.0f, flies ? all.leaves : 1.0f);
+    }
     BedRide ride;
-    ride.gain = bends.gain * inv_sum * share;
-    ride.lift = bends.pressed * inv_sum * inv_dts;
+    ride.gain = bent ? gain : 0.0f;
+    ride.lift = bent ? -wclamp(all.leaves, -all.speed, all.speed) * inv_dts : 0.0f;
     return ride;
 }
 

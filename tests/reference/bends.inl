@@ -38,42 +38,31 @@ template <class Real> void Solver<Real>::bend_sand_velocity() {
         if (hb <= P.film / Real(2)) return;
         const Course own = course_at(old, ax, a, b);
         const Real n = Real(1) + own.a * own.a + own.e * own.e;
-        struct Bend {
-            Real turned, asked, pressed;
-        };
+        Real U(0), S(0), E(0), D(0), B(0); // sums of Q with u, |u| + |w|, V^2, d, d^2
         const auto side = [&](Real Q, const Course& from) {
-            Bend bend{Real(0), Real(0), Real(0)};
-            if (Q <= Real(0)) return bend;
-            Real d = (from.a - own.a) * from.u + (from.e - own.e) * from.w;
+            if (Q <= Real(0)) return;
+            const Real d = (from.a - own.a) * from.u + (from.e - own.e) * from.w;
             const Real climb = from.a * from.u + from.e * from.w;
-            const Real V2 = from.u * from.u + from.w * from.w + climb * climb;
-            if (d * d <= Real(1e-9) * n * V2) d = Real(0);
-            if (n * V2 > Real(1e-12)) {
-                const Real x = std::min(Real(1), d * d / (n * V2));
-                bend.turned = Q * ((from.u + own.a * d / n) / std::sqrt(std::max(x, Real(1) - x)) - from.u);
-            }
-            const Real most = std::abs(from.u) + std::abs(from.w);
-            bend.asked = -Q * d;
-            bend.pressed = -Q * std::clamp(d, -most, most);
-            return bend;
+            U += Q * from.u;
+            S += Q * (std::abs(from.u) + std::abs(from.w));
+            E += Q * (from.u * from.u + from.w * from.w + climb * climb);
+            D += Q * d;
+            B += Q * d * d;
         };
-        const auto sum = [](const Bend& one, const Bend& other) {
-            return Bend{one.turned + other.turned, one.asked + other.asked, one.pressed + other.pressed};
-        };
-        const Bend none{Real(0), Real(0), Real(0)};
         const Field<Real>& along = sand_flux.along(ax);
         const Field<Real>& across = sand_flux.across(ax);
-        const Bend low = side(mean(along[ax.face(a - 1, b)], along[f]), course_at(old, ax, a - 1, b));
-        const Bend high = side(-mean(along[f], along[ax.face(a + 1, b)]), course_at(old, ax, a + 1, b));
-        const Real Q_S = mean(across[ax.cross(a - 1, b)], across[ax.cross(a, b)]);
-        const Real Q_N = mean(across[ax.cross(a - 1, b + 1)], across[ax.cross(a, b + 1)]);
-        const Bend left = b > 0 ? side(Q_S, course_at(old, ax, a, b - 1)) : none;
-        const Bend right = b + 1 < ax.across() ? side(-Q_N, course_at(old, ax, a, b + 1)) : none;
-        const Bend all = sum(sum(low, high), sum(left, right));
-        const Real acceleration = all.asked / (hb * P.substep);
+        side(mean(along[ax.face(a - 1, b)], along[f]), course_at(old, ax, a - 1, b));
+        side(-mean(along[f], along[ax.face(a + 1, b)]), course_at(old, ax, a + 1, b));
+        if (b > 0) side(mean(across[ax.cross(a - 1, b)], across[ax.cross(a, b)]), course_at(old, ax, a, b - 1));
+        if (b + 1 < ax.across())
+            side(-mean(across[ax.cross(a - 1, b + 1)], across[ax.cross(a, b + 1)]), course_at(old, ax, a, b + 1));
+        if (B <= std::max(Real(1e-9) * n * E, Real(1e-30) * hb)) return;
+        const Real x = B / (n * E);
+        const Real turned = (U + own.a * D / n) / std::sqrt(std::max(x, Real(1) - x)) - U;
+        const Real acceleration = -D / (hb * P.substep);
         const Real follows = acceleration < -P.gravity ? P.gravity / -acceleration : Real(1);
-        bend_gain.along(ax)[f] = follows * all.turned / hb;
-        bed_lift.along(ax)[f] = all.pressed / (hb * P.substep);
+        bend_gain.along(ax)[f] = follows * turned / hb;
+        bed_lift.along(ax)[f] = -std::clamp(D, -S, S) / (hb * P.substep);
     });
 }
 
