@@ -116,6 +116,7 @@ struct WorldParams {
     float inv_dts;              // 1/dts [1/s]
     float inner_friction;       // c_f within the sand
     float rankine;              // s_f = tan(45 deg + phi_f/2)
+    float passive;              // Rankine's coefficient of passive earth pressure, tan^2(45 deg + phi/2): how many times its own push sand bears
     float bed_adhesion;         // a: share of the cohesion with which sand clings to its ground
     float adhesion_slip;        // what it takes from a velocity in a substep, per cohesive share [m/s], NUMERICS 2.8
     float cliff_share;          // 4/(c_f rho_s g): share of the cohesion that a cliff needs, per cohesion over depth [m/Pa]

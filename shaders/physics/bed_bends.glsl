@@ -10,7 +10,7 @@ struct BedCourse {
     float slope_along, slope_across;
 };
 
-// Slope across a face from the rises beside its two cells: of two cells' lengths, or of one where the grid ends.
+// Slope across a face from the rises beside its two cells: of two cells' lengths, or of one where the grid ends and the ground goes on level.
 FN float slope_across_face(float rise_low, float rise_high, bool whole, float inv_dx) { return (rise_low + rise_high) * ((whole ? 0.25f : 0.5f) * inv_dx); }
 
 // Speed along the bed, squared.

@@ -177,12 +177,12 @@ FN float cliff_push(Rise along, Rise across, float slope2, Bed bed, float weight
     float askew2 = wmax(bed.ground2 - square(follows), 0.0f);
     float grip = lean_root(wmax(square(by.friction * bed.weight) - askew2, 1.0e-20f));
     float at_rest = slope - wmax(follows + grip, 0.0f); // the least that balances the column's own tension (NUMERICS 2.20) within its friction
-    float slides = bed.weight * wmin(base, wmax(by.friction, by.wedge_slope));
+    float slides = bed.weight * wmin(base, by.wedge_slope);
     float upright = wmax(slides + (slope - base), at_rest); // what a column's own tension bears beside nothing
     float net = wmin(wmax(slides + (drive - drive_base), at_rest), upright);
     float within = depth > 0.0f ? wmin(1.0f, square(per_cell)) : 0.0f; // a wall that one cell holds is upright however coarse the grid
     net = net + within * (upright - net);
-    return (slope > base ? net : bed.weight * wmin(slope, wmax(by.friction, by.wedge_slope))) * (bed.tilt * inv_slope);
+    return (slope > base ? net : bed.weight * wmin(slope, by.wedge_slope)) * (bed.tilt * inv_slope);
 }
 
 // What cohesion makes of the shares. push: r of cohesive sand; held: its cohesive share, 1 at most; strength: above 0 where there is any.
@@ -225,18 +225,13 @@ FN float wedge_push(SlopeShares s, float rise, float low, float high, float inv_
     return both(loose, due != 0.0f) ? lacks : 0.0f;
 }
 
-// Rankine's coefficient of passive earth pressure, tan^2(45 deg + phi/2): how many times its own push sand can bear before it is
-// pushed together.
-FN float passive_coefficient(float friction) { return square(friction + lean_root(1.0f + square(friction))); }
-
 // Share of its own weight's pressure that the stress of a cell bears (NUMERICS 2.7): none up to half the cohesion that holds an upright
 // wall, whole where it does. cohesive: its cohesive share, not cut at 1.
 FN float stress_share(float cohesive) { return wclamp(0.5f * cohesive - 1.0f, 0.0f, 1.0f); }
 
 // What water meets where it drives sand uphill, as a rise: what the slope withholds of the push of level ground where stress bears the rest,
 // of Rankine's passive one where there is none. weight: pushing_weight.
-FN float withheld_push(float rise, SlopeShares s, float friction, float stressed, float weight) {
-    float passive = passive_coefficient(friction);
+FN float withheld_push(float rise, SlopeShares s, float passive, float stressed, float weight) {
     float borne = passive + stressed * (1.0f - passive);
     return (borne - s.weight * s.push) * rise * weight;
 }

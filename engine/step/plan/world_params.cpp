@@ -150,6 +150,8 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     p.inv_dts = f(1 / dts);
     p.inner_friction = f(m.yield_friction);
     p.rankine = f(rankine(m));
+    const double upright = m.friction + std::sqrt(1 + m.friction * m.friction);
+    p.passive = f(upright * upright);
     p.bed_adhesion = f(m.bed_adhesion);
     p.adhesion_slip = f(m.bed_adhesion * dts * gravity * m.yield_friction / (4 * yield_cohesion(m, effects)));
     p.internal_friction = f(m.internal_friction);
