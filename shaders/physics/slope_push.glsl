@@ -221,7 +221,7 @@ FN float wedge_push(SlopeShares s, float rise, float low, float high, float inv_
     float due = (friction_fall * s.weight + share * wedge_fall) * towards;
     float own = s.weight * s.push * rise;
     float lacks = due > 0.0f ? wmax(due - own, 0.0f) : wmin(due - own, 0.0f);
-    bool loose = both(share > 0.0f, s.slope2 < plane_slope2);
+    bool loose = both(low + high > 0.0f, s.slope2 < plane_slope2); // asked of the capped share, g++ -O3 leaves the loop over i scalar
     return both(loose, due != 0.0f) ? lacks : 0.0f;
 }
 
