@@ -1,5 +1,6 @@
 #include "engine/image/map.hpp"
 #include "engine/level/coverage.hpp"
+#include "engine/level/draw_work.hpp"
 #include "engine/level/lakes.hpp"
 #include "engine/level/layers.hpp"
 #include "engine/settings/data/quanta.hpp"
@@ -122,6 +123,10 @@ class Drawing {
           cut_(cut_cells(pointers(lists.sand, lists.water), grid)), map_heights_(lists.sand.size() + lists.water.size()) {}
 
     Status draw() {
+        // Sand's samples are taken again with those of water.
+        const std::int64_t times = lists_.sand.empty() || lists_.water.empty() ? 1 : 2;
+        const auto work = sampling_work(pointers(lists_.sand, lists_.water), grid_, cut_, files_.work_most);
+        if (Status status = files_.take_work(times * work); !status) return status;
         if (Status status = draw_terrain(); !status) return status;
         if (Status status = draw_sand(); !status) return status;
         return draw_water();
@@ -153,7 +158,7 @@ class Drawing {
     Status draw_sand() {
         std::vector<char> changed;
         if (Status status = draw_list(lists_.sand, LayerTarget::sand, fields_.sand, 0, changed); !status) return status;
-        const auto cells = cut_cells(pointers(lists_.sand), grid_);
+        const auto cells = cut_cells(pointers(lists_.sand), grid_).cells;
         in_cut_cells(cells, pointers(lists_.sand), changed, [&](CutCell& at) {
             const Below below = below_of(at.cell, false);
             for (std::size_t n = 0; n < at.values.size(); ++n)
@@ -169,7 +174,7 @@ class Drawing {
         if (Status status = draw_list(lists_.water, LayerTarget::water, fields_.water, lists_.sand.size(), changed); !status)
             return status;
         if (lists_.water.empty()) return ok_status();
-        in_cut_cells(cut_, pointers(lists_.sand, lists_.water), changed, [&](CutCell& at) {
+        in_cut_cells(cut_.cells, pointers(lists_.sand, lists_.water), changed, [&](CutCell& at) {
             at.sand_changed.resize(lists_.sand.size());
             at.sand.assign(at.samples.count(), 0.0);
             for (std::size_t n = 0; n < at.sand.size(); ++n)
@@ -204,11 +209,11 @@ class Drawing {
         std::mutex collecting;
         in_bands(cells.size(), band, [&](std::size_t, std::size_t begin, std::size_t end) {
             CutCell at{CellSamples(layers, grid_), 0, std::vector<char>(changed.size()), {}, {}, {}, {}};
-            auto place = std::lower_bound(cut_.begin(), cut_.end(), cells[begin]);
+            auto place = std::lower_bound(cut_.cells.begin(), cut_.cells.end(), cells[begin]);
             for (std::size_t n = begin; n < end; ++n) {
-                place = std::find(place, cut_.end(), cells[n]);
+                place = std::find(place, cut_.cells.end(), cells[n]);
                 at.cell = cells[n];
-                sample_cell(at.samples, static_cast<std::size_t>(place - cut_.begin()));
+                sample_cell(at.samples, static_cast<std::size_t>(place - cut_.cells.begin()));
                 at.values.assign(at.samples.count(), 0.0);
                 draw(at);
             }
@@ -248,7 +253,7 @@ class Drawing {
             if (other_size && target == LayerTarget::water && layer.amount == Amount::height)
                 if (Status status = level_lakes_of(layer, *map, heights); !status) return status;
             if (at_cut != nullptr)
-                for (const std::size_t cell : cut_) at_cut->push_back(heights[cell]);
+                for (const std::size_t cell : cut_.cells) at_cut->push_back(heights[cell]);
         }
         const CellRange range = reach_of(layer, grid_, lowest_);
         const auto rows = static_cast<std::size_t>(std::max(range.end_y - range.begin_y, 0));
@@ -320,7 +325,7 @@ class Drawing {
         for (std::size_t n = 0; n < samples.map_heights().size(); ++n)
             if (!map_heights_[n].empty()) samples.map_heights()[n] = static_cast<double>(map_heights_[n][at]);
         const auto width = static_cast<std::size_t>(grid_.nx);
-        samples.sample(static_cast<int>(cut_[at] % width), static_cast<int>(cut_[at] / width));
+        samples.sample(static_cast<int>(cut_.cells[at] % width), static_cast<int>(cut_.cells[at] / width));
     }
 
     /// The layers' result in a sample of a cell. `first`: number of the first layer in the samples.
@@ -358,7 +363,7 @@ class Drawing {
     LevelFiles& files_;
     InitialFields& fields_;
     std::vector<std::string>& warnings_;
-    const std::vector<std::size_t> cut_;                       // by the edges of sand and water
+    const CutCells cut_;                                       // by the edges of sand and water
     double lowest_ = -std::numeric_limits<double>::infinity(); // terrain, once it is drawn [m]
     std::vector<std::vector<float>> map_heights_;              // of the maps among sand's layers, then water's, in cut_
 };
@@ -372,7 +377,17 @@ std::string filled_warning(const Map& map, const std::string& path) {
 
 Status draw_layers(const LayerLists& lists, const LevelGrid& grid, LevelFiles& files, InitialFields& fields,
                    std::vector<std::string>& warnings) {
+    for (const auto* list : {&lists.terrain, &lists.sand, &lists.water})
+        if (Status status = files.take_work(drawing_work(pointers(*list), grid, files.work_most)); !status) return status;
     return Drawing(lists, grid, files, fields, warnings).draw();
+}
+
+Status LevelFiles::take_work(std::int64_t more) {
+    work += more;
+    if (work <= work_most) return ok_status();
+    return error(Code::bad_file, "the level's layers ask for " + number_text(static_cast<double>(work)) +
+                                     " looks at shapes, or more (cells by octaves of noise or segments of ridges); allowed are " +
+                                     number_text(static_cast<double>(work_most)));
 }
 
 Status draw_roughness(std::vector<Layer> layers, const LevelGrid& grid, LevelFiles& files, std::vector<float>& roughness,
@@ -391,6 +406,7 @@ Status draw_velocities(const std::vector<VelocityLayer>& layers, bool of_sand, c
                        std::vector<float>& x, std::vector<float>& y, std::vector<std::string>& warnings) {
     for (const VelocityLayer& layer : layers) {
         if (layer.of_sand != of_sand) continue;
+        if (Status status = files.take_work(static_cast<std::int64_t>(cell_count(grid))); !status) return status;
         x.resize(cell_count(grid), 0.0f);
         y.resize(cell_count(grid), 0.0f);
         std::atomic<bool> changed = false;

@@ -1,4 +1,4 @@
-// The files that a level names, and what they may hold together.
+// The files that a level names, what they may hold together, and the work that drawing may take.
 #pragma once
 #include "engine/image/map.hpp"
 
@@ -7,9 +7,15 @@ namespace wadi {
 /// Values of maps and bytes of series: whatever the grid, and per cell of it.
 inline constexpr std::int64_t LEVEL_VALUES = std::int64_t{8192} * 8192, LEVEL_VALUES_PER_CELL = 16;
 
+/// draw_work.hpp: whatever the grid, and per cell of it. Seconds of one thread on small grids.
+inline constexpr std::int64_t LEVEL_WORK = 400'000'000, LEVEL_WORK_PER_CELL = 512;
+
 struct LevelFiles {
     FileReader read;
     FileRoom room{LEVEL_VALUES};
+    std::int64_t work_most = LEVEL_WORK, work = 0;
+    /// Errors: bad_file, with the sum and the limit.
+    Status take_work(std::int64_t more);
 };
 
 } // namespace wadi

@@ -65,6 +65,12 @@ TEST_CASE("image: damaged PNG files") {
     CHECK(says(message(decode_png(png(8, 8, 16, 0, {1, 2, 3, 4, 5, 6, 7, 8}), "a.png")), "cannot be decoded"));
 }
 
+TEST_CASE("image: a PNG's data may not go far beyond its header's pixels") {
+    const auto bomb = decode_png(png_of_zeros(8, 8, 8, 0, 20'000'000), "bomb.png");
+    CHECK(says(message(bomb), "bomb.png: damaged, its data holds more than the pixels of its header"));
+    CHECK(decode_png(png_of_zeros(8, 8, 8, 0, 200), "padded.png")); // as some writers leave the end
+}
+
 TEST_CASE("image: a PNG counts with all its channels") {
     const auto padded = [](Bytes file, std::size_t padding) {
         Bytes chunk;
