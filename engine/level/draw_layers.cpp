@@ -1,4 +1,5 @@
 #include "engine/image/map.hpp"
+#include "engine/image/plausible.hpp"
 #include "engine/level/coverage.hpp"
 #include "engine/level/draw_work.hpp"
 #include "engine/level/lakes.hpp"
@@ -42,8 +43,9 @@ inline double combined(double current, double value, Combine combine) {
     return current;
 }
 
-/// A layer's map as its file has it.
-Result<Map> open_map(const MapSource& source, const std::string& path, LevelFiles& files, std::vector<std::string>& warnings) {
+/// A layer's map as its file has it; of ground, odd values are noted.
+Result<Map> open_map(const MapSource& source, const std::string& path, LevelFiles& files, std::vector<std::string>& warnings,
+                     bool ground = false) {
     auto map = read_map(source.file, source.size, files.read, files.room);
     if (!map) // a bad argument of ours is a bad field of the level's author
         return error(map.status().code == Code::bad_argument ? Code::bad_file : map.status().code,
@@ -54,7 +56,14 @@ Result<Map> open_map(const MapSource& source, const std::string& path, LevelFile
     if (map->integer && !source.grey_range && !source.scale_given)
         return error(Code::bad_file,
                      path + ": " + source.file + " holds grey values; give min and max, what black and white stand for");
-    if (map->filled > 0) warnings.push_back(filled_warning(*map, path + ".file: " + source.file));
+    const bool own_size = map->nx == files.own_nx && map->ny == files.own_ny;
+    map->corners = source.corners.value_or(!own_size && looks_like_corners(map->nx, map->ny));
+    if (map->corners && !source.corners)
+        map->notes.push_back(std::to_string(map->nx) + " x " + std::to_string(map->ny) +
+                             " samples are taken for the corners of cells, as engines have them; \"samples\": \"cells\" or "
+                             "\"corners\" says which they are");
+    if (ground) note_odd_ground(*map);
+    add_map_notes(*map, path + ".file: " + source.file, warnings);
     return map;
 }
 
@@ -244,7 +253,7 @@ class Drawing {
     Result<bool> draw_centers(const Layer& layer, LayerTarget target, std::vector<float>& field, std::vector<float>* at_cut) {
         std::vector<float> heights;
         if (layer.map) {
-            const auto map = open_map(*layer.map, layer.path, files_, warnings_);
+            const auto map = open_map(*layer.map, layer.path, files_, warnings_, target == LayerTarget::terrain);
             if (!map) return map.status();
             auto values = values_of(*map, *layer.map, layer.path, grid_.nx, grid_.ny);
             if (!values) return values.status();
@@ -370,9 +379,17 @@ class Drawing {
 
 } // namespace
 
-std::string filled_warning(const Map& map, const std::string& path) {
-    return path + ": " + std::to_string(map.filled) + " of " + std::to_string(std::int64_t{map.nx} * map.ny) +
-           " cells hold NODATA_value; they take the height of the nearest cell that has one";
+void add_map_notes(const Map& map, const std::string& path, std::vector<std::string>& warnings) {
+    if (map.filled > 0)
+        warnings.push_back(path + ": " + std::to_string(map.filled) + " of " + std::to_string(std::int64_t{map.nx} * map.ny) +
+                           " cells hold NODATA_value; they take the height of the nearest cell that has one");
+    for (const std::string& note : map.notes) warnings.push_back(path + ": " + note);
+}
+
+bool looks_like_corners(int nx, int ny) {
+    constexpr int least = 32; // cells: smaller maps are drawn by hand
+    const auto power = [](int n) { return n >= least && (n & (n - 1)) == 0; };
+    return power(nx - 1) && power(ny - 1);
 }
 
 Status draw_layers(const LayerLists& lists, const LevelGrid& grid, LevelFiles& files, InitialFields& fields,

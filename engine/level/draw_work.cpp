@@ -34,7 +34,8 @@ std::int64_t segments(const Layer& layer) { return static_cast<std::int64_t>(lay
 std::int64_t drawing_work(const std::vector<const Layer*>& layers, const LevelGrid& grid, std::int64_t most) {
     std::int64_t work = 0;
     in_blocks(layers, grid, [&](int i, int j, std::size_t n) {
-        const std::int64_t width = std::min(WORK_BLOCK, grid.nx - i * WORK_BLOCK), rows = std::min(WORK_BLOCK, grid.ny - j * WORK_BLOCK);
+        const std::int64_t width = std::min(WORK_BLOCK, grid.nx - i * WORK_BLOCK),
+                           rows = std::min(WORK_BLOCK, grid.ny - j * WORK_BLOCK);
         work += rows * (width * looks_per_place(*layers[n], grid, i, j) + segments(*layers[n]));
         return work <= most;
     });

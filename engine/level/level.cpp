@@ -90,6 +90,8 @@ Result<Level> parse(const std::string& text, const FileReader& read, LevelOverri
     if (overrides.variant) level.name += ", " + *overrides.variant;
     if (Status status = validate(level.settings); !status) return error(Code::bad_file, status.message);
     const std::int64_t own_cells = cells_of(level.settings.grid);
+    files.own_nx = level.settings.grid.nx;
+    files.own_ny = level.settings.grid.ny;
     auto grid = apply_overrides(overrides, level.settings);
     if (!grid) return grid.status();
     if (Status status = validate(level.settings); !status) return error(Code::bad_argument, status.message);

@@ -13,6 +13,7 @@ inline constexpr std::int64_t LEVEL_WORK = 400'000'000, LEVEL_WORK_PER_CELL = 51
 struct LevelFiles {
     FileReader read;
     FileRoom room{LEVEL_VALUES};
+    int own_nx = 0, own_ny = 0; // cells of the level's own grid: a map of that size has its samples in their middles
     std::int64_t work_most = LEVEL_WORK, work = 0;
     /// Errors: bad_file, with the sum and the limit.
     Status take_work(std::int64_t more);

@@ -36,7 +36,7 @@ if [ "$full" = --full ]; then # ctest runs each of these by itself
     run "$bin/wadi-test-faults" memory
     run "$bin/wadi-test-faults" load 1
     for what in save disk; do run "$bin/wadi-test-faults" "$what"; done
-    for what in snapshots savers memory; do run "$bin/wadi-test-files" "$what"; done
+    for what in snapshots rights savers memory; do run "$bin/wadi-test-files" "$what"; done
     for what in threads exit fork; do run "$bin/wadi-test-process" "$what"; done
     run "$bin/wadi-test-plugin" -tc='*rounding*,*traps*,*thread*,*handle*,*snapshot*'
 fi

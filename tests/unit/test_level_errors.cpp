@@ -239,7 +239,7 @@ TEST_CASE("level errors: maps") {
     map(R"("file": "good.png")", "good.png holds grey values; give min and max");
     map(R"("file": "good.png", "min": 1)", "terrain[0].max: missing");
     map(R"("file": "good.png", "max": 1, "scale": 2)", "give either min and max, or scale and offset");
-    map(R"("file": "good.png", "max": 1, "size": [2, 2])", "only .r16 and .raw maps are given a size");
+    map(R"("file": "good.png", "max": 1, "size": [2, 2])", "only .r16, .r32 and .raw maps are given a size");
     map(R"("file": "good.png", "max": 1, "absolute": true)", "terrain[0].absolute: unknown key");
     map(R"("file": "good.png", "maxx": 1)", "terrain[0].maxx: unknown key, did you mean \"max\"?");
     map(R"("file": "cut.png", "max": 1)", "cut.png: truncated");

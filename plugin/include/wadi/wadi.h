@@ -221,7 +221,7 @@ typedef struct wadi_accuracy_preset {
 /** Lists the accuracy presets by rising accuracy. */
 WADI_API wadi_result wadi_list_accuracy_presets(wadi_accuracy_preset* presets, uint32_t* count);
 
-/** Creates a world from a level file (.json) or from a terrain map (.png, .r16, .npy, .asc).
+/** Creates a world from a level file (.json) or from a terrain map (.png, .r16, .r32, .raw, .hgt, .npy, .asc).
  *  overrides, options: NULL = the defaults.
  *  Waits: for compilers of drivers.
  *  Errors: NOT_FOUND, BAD_FILE, BAD_ARGUMENT, OUT_OF_MEMORY, NOT_SUPPORTED; no world is made. */
@@ -337,7 +337,7 @@ static inline wadi_frame wadi_default_frame(void) {
  *  its steps are beside this clock, which goes on where it was. Every call that reads or changes the state first finishes a step that
  *  `spread` began; the update in which it falls due does not repeat it.
  *  Waits: nothing, unless max_steps_in_flight is 0; a step ahead of which an edit brings a new material may (wadi_world_edit).
- *  Errors: OUT_OF_MEMORY (a new material). */
+ *  Errors: OUT_OF_MEMORY (a new material). One that fails has not taken the time: repeated, it takes what steps are left of it. */
 WADI_API wadi_result wadi_world_update(wadi_world_id world, uint64_t host_nanoseconds, wadi_frame* frame);
 
 /** Advances by `steps` water steps of fixed dt.
