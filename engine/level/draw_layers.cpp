@@ -148,6 +148,7 @@ class Drawing {
             auto changed = draw_centers(layer, LayerTarget::terrain, fields_.terrain, nullptr);
             if (!changed) return changed.status();
             warn_unchanged(layer, *changed);
+            if (*changed) warn_thin(layer);
         }
         lowest_ = lowest_terrain();
         return ok_status();
@@ -353,6 +354,24 @@ class Drawing {
 
     void store(std::vector<float>& field, std::size_t cell, double height) const {
         field[cell] = static_cast<float>(nearest_quantum(height, grid_.quantum, Halves::away));
+    }
+
+    /// Terrain is drawn at the middles of cells: a wall holds where its cells touch by their sides.
+    void warn_thin(const Layer& layer) {
+        const Shape& shape = layer.shape;
+        const bool raises = layer.top > 0 && layer.combine != Combine::subtract && layer.combine != Combine::min;
+        if (layer.map || !raises || (shape.kind != ShapeKind::ridge && shape.kind != ShapeKind::box)) return;
+        double width = shape.width, least = grid_.dx;
+        if (shape.kind == ShapeKind::box)
+            width = std::min(shape.to[0] - shape.from[0], (shape.to[1] - shape.from[1]) * grid_.stretch_y);
+        for (std::size_t n = 1; n < shape.points.size(); ++n) {
+            const Point &a = shape.points[n - 1], &b = shape.points[n];
+            if (a[0] != b[0] && a[1] != b[1]) least = std::sqrt(2.0) * grid_.dx; // its cells may touch by their corners alone
+        }
+        if (width >= least * (1 - 1e-9)) return;
+        warnings_.push_back(layer.path + ": too thin to hold water back on this grid: a width of " + number_text(width) +
+                            " m on cells of " + number_text(grid_.dx) + " m leaves gaps, through which water passes; from " +
+                            number_text(least) + " m on there are none");
     }
 
     void warn_unchanged(const std::vector<Layer>& layers, const std::vector<char>& changed) {

@@ -69,6 +69,7 @@ LIBRARIES = {
     "nlohmann/": ["engine/level", "samples", "tests"],
     "stb/": ["engine/image", "samples/common", "tests"],
     "libdeflate.h": ["samples/common"],
+    "tiffio.h": ["samples/import"],
     "vulkan/": ["backends/vulkan", "plugin/include", "plugin/godot", "samples", "tests"],
     "volk.h": ["backends/vulkan"],
     "cuda": ["backends/cuda"],

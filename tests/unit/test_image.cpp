@@ -303,6 +303,23 @@ TEST_CASE("image: raw samples of 8, 16 and 32 bits, in either order, signed or n
     CHECK(says(message(decode_raw({1, 2, 3, 4, 5, 6}, "a.raw", std::pair{2, 2})), "truncated, 6 bytes where 2 x 2 16-bit"));
 }
 
+TEST_CASE("image: whatever raw bytes hold, a map that is read holds numbers") {
+    std::mt19937 random(11);
+    int read = 0;
+    for (int trial = 0; trial < 600; ++trial) {
+        Bytes bytes(std::size_t{4} * (1 + random() % 20) * (1 + random() % 20));
+        const unsigned mask = trial % 3 == 0 ? 0xffU : trial % 3 == 1 ? 0x7fU : 0x43U;
+        for (auto& byte : bytes) byte = static_cast<std::uint8_t>(random() & mask);
+        for (const auto& map : {decode_raw(bytes, "a.raw", std::nullopt), decode_r32(bytes, "a.r32", std::nullopt),
+                                decode_r16(bytes, "a.r16", std::nullopt), decode_hgt(bytes, "N60E007.hgt")}) {
+            if (!map) continue;
+            ++read;
+            REQUIRE(std::all_of(map->values.begin(), map->values.end(), [](float value) { return std::isfinite(value); }));
+        }
+    }
+    CHECK(read > 50);
+}
+
 TEST_CASE("image: tiles of SRTM") {
     std::vector<double> heights;
     for (int j = 0; j < 33; ++j)
@@ -336,7 +353,7 @@ TEST_CASE("image: odd ground is noted with numbers; ground as it is, is not") {
     CHECK(noted(notes_of(pit), "its value -7000 in column 2, row 2 from the south lies"));
     std::mt19937 random(3);
     std::vector<double> noise(1024);
-    for (double& value : noise) value = random() % 65536;
+    for (double& value : noise) value = static_cast<double>(random() % 65536);
     CHECK(noted(notes_of(noise), "as in noise"));
     std::vector<double> terraces = hill(200);
     for (double& value : terraces) value = std::floor(value / 10) * 10;

@@ -2,6 +2,7 @@
 #include "engine/level/level.hpp"
 #include "tests/unit/level_text.hpp"
 #include "tests/unit/map_files.hpp"
+#include <algorithm>
 #include <doctest/doctest.h>
 
 using namespace wadi;
@@ -192,4 +193,20 @@ TEST_CASE("level maps: samples at corners, as said or guessed for 2^n + 1, keep 
     CHECK(
         says(message(parse_level(level(R"("terrain": [{"file": "z.r16", "max": 1, "samples": "vertices"}])"), folder.path(), {})),
              "terrain[0].samples: \"vertices\" is not known"));
+}
+
+TEST_CASE("level maps: a wall that is thinner than its cells is named with its width, on the grid that it is drawn on") {
+    const auto warned = [](const std::string& shape, std::optional<std::pair<int, int>> size = {}) {
+        LevelOverrides overrides;
+        overrides.size = size;
+        const auto made = must(parse_level(level(R"("terrain": [{"height": 2, )" + shape + "}]"), "", overrides));
+        return std::any_of(made.warnings.begin(), made.warnings.end(), [](const auto& w) { return says(w, "too thin"); });
+    };
+    const std::string slanting = R"("shape": "ridge", "points": [[0, 2], [10, 6]], "width": )";
+    CHECK(!warned(slanting + "1.5"));
+    CHECK(warned(slanting + "1.3"));
+    CHECK(warned(slanting + "1.5", std::pair{5, 4}));
+    CHECK(!warned(R"("shape": "ridge", "points": [[0, 2], [10, 2]], "width": 1)"));
+    CHECK(warned(R"("shape": "box", "from": [2, 0], "to": [2.9, 8])"));
+    CHECK(!warned(R"("shape": "box", "from": [2, 0], "to": [2.9, 8], "combine": "subtract")"));
 }
