@@ -73,6 +73,15 @@ std::int64_t find_holes(Map& map) {
     return found;
 }
 
+/// Share of the samples that equal the one `apart` before them.
+double equal_share(const Map& map, int apart) {
+    const auto off = static_cast<std::size_t>(apart);
+    if (map.values.size() <= off) return 0;
+    std::size_t equal = 0;
+    for (std::size_t cell = off; cell < map.values.size(); ++cell) equal += map.values[cell] == map.values[cell - off] ? 1 : 0;
+    return static_cast<double>(equal) / static_cast<double>(map.values.size() - off);
+}
+
 std::string place_text(const Map& map, std::size_t cell) {
     const auto width = static_cast<std::size_t>(map.nx);
     return "column " + std::to_string(cell % width + 1) + ", row " + std::to_string(cell / width + 1) + " from the south";
@@ -151,7 +160,8 @@ void note_odd_ground(Map& map) {
     levels.erase(std::unique(levels.begin(), levels.end()), levels.end());
     constexpr std::size_t few = 256, some = 16; // fewer are a mask
     const double relief = spread.most - spread.least;
-    if (levels.size() >= some && levels.size() <= few)
+    constexpr double mostly = 0.4; // of neighbours along either axis: a plane along one has few values as well
+    if (levels.size() >= some && levels.size() <= few && std::min(equal_share(map, 1), equal_share(map, map.nx)) > mostly)
         map.notes.push_back("it has " + std::to_string(levels.size()) + " different values alone: terraces of " +
                             number_text(relief / static_cast<double>(levels.size() - 1)) + (map.integer ? " of white" : " m") +
                             ", on which water stands; a map of 16 bits or of floats has none");

@@ -8,7 +8,7 @@ namespace wadi {
 inline constexpr std::int64_t LEVEL_VALUES = std::int64_t{8192} * 8192, LEVEL_VALUES_PER_CELL = 16;
 
 /// draw_work.hpp: whatever the grid, and per cell of it. Seconds of one thread on small grids.
-inline constexpr std::int64_t LEVEL_WORK = 400'000'000, LEVEL_WORK_PER_CELL = 512;
+inline constexpr std::int64_t LEVEL_WORK = 200'000'000, LEVEL_WORK_PER_CELL = 256;
 
 struct LevelFiles {
     FileReader read;

@@ -23,11 +23,15 @@ std::string temporary_of(const std::filesystem::path& path) {
 }
 
 // The file that a link leads to is replaced, not the link.
-std::filesystem::path behind_links(const std::string& path) {
+std::filesystem::path behind_links(std::filesystem::path path) {
+    constexpr int most = 40; // links in a row, as systems have it
     std::error_code failure;
-    if (!std::filesystem::is_symlink(path, failure)) return path;
-    const auto real = std::filesystem::weakly_canonical(path, failure);
-    return failure ? std::filesystem::path(path) : real;
+    for (int n = 0; n < most && std::filesystem::is_symlink(path, failure); ++n) {
+        const auto next = std::filesystem::read_symlink(path, failure);
+        if (failure) break;
+        path = next.is_absolute() ? next : path.parent_path() / next;
+    }
+    return path;
 }
 
 } // namespace

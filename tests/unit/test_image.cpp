@@ -356,8 +356,8 @@ TEST_CASE("image: odd ground is noted with numbers; ground as it is, is not") {
     for (double& value : noise) value = static_cast<double>(random() % 65536);
     CHECK(noted(notes_of(noise), "as in noise"));
     std::vector<double> terraces = hill(200);
-    for (double& value : terraces) value = std::floor(value / 10) * 10;
-    CHECK(noted(notes_of(terraces), "20 different values alone: terraces of 10 m"));
+    for (double& value : terraces) value = std::floor(value / 12) * 12;
+    CHECK(noted(notes_of(terraces), "17 different values alone: terraces of 12 m"));
     std::vector<double> sea = hill(300);
     for (std::size_t n = 0; n < 300; ++n) sea[n] = 0;
     CHECK(noted(notes_of(sea), "29 % of it is exactly 0"));
