@@ -72,34 +72,38 @@ Map map_of_16(const Bytes& bytes, const std::pair<int, int>& shape, const Readin
     return map;
 }
 
-/// Mean difference of neighbours, not over the range: what a wrong reading makes large.
+/// Mean difference of neighbours, not over the range: large where a sea level is read as a cliff from black to white.
 double steps_of(const Map& map) {
     const auto [low, high] = std::minmax_element(map.values.begin(), map.values.end());
     return roughness_of(map) * (static_cast<double>(*high) - static_cast<double>(*low));
 }
 
-/// The reading whose neighbours differ least, where it does by far; black and white alone are the same in any.
+/// Signed where that has far smaller steps.
+Map of_either_sign(const Bytes& bytes, const std::pair<int, int>& shape, bool swapped) {
+    constexpr double by_far = 8;
+    Map map = map_of_16(bytes, shape, {swapped, false});
+    Map other = map_of_16(bytes, shape, {swapped, true});
+    if (!(steps_of(other) < steps_of(map) / by_far)) return map;
+    other.notes.emplace_back("its 16-bit samples are signed: black is -32768, white 32767");
+    return other;
+}
+
+/// Little-endian, unless that is noise and the other order is none. Black and white alone are the same in any reading.
 Map smoothest_of_16(const Bytes& bytes, const std::pair<int, int>& shape) {
     constexpr std::size_t fewest = 256, levels = 64;
-    Map best = map_of_16(bytes, shape, {});
-    if (best.values.size() < fewest) return best;
-    std::vector<float> different = best.values;
+    Map plain = map_of_16(bytes, shape, {});
+    if (plain.values.size() < fewest) return plain;
+    std::vector<float> different = plain.values;
     std::sort(different.begin(), different.end());
-    if (std::unique(different.begin(), different.end()) - different.begin() < static_cast<std::ptrdiff_t>(levels)) return best;
-    constexpr double by_far = 8;
-    double least = steps_of(best) / by_far;
-    for (const auto& [how, text] :
-         {std::pair{Reading{true, false}, "its bytes are swapped: read as big-endian 16-bit samples"},
-          std::pair{Reading{false, true}, "its 16-bit samples are signed: black is -32768, white 32767"},
-          std::pair{Reading{true, true}, "its bytes are swapped and signed: big-endian, black is -32768, white 32767"}}) {
-        Map other = map_of_16(bytes, shape, how);
-        const double steps = steps_of(other);
-        if (!(steps < least)) continue;
-        least = steps;
-        other.notes.push_back(text);
-        best = std::move(other);
-    }
-    return best;
+    if (std::unique(different.begin(), different.end()) - different.begin() < static_cast<std::ptrdiff_t>(levels)) return plain;
+    constexpr double noisy = 0.1, by_far = 4;
+    Map map = of_either_sign(bytes, shape, false);
+    const double roughness = roughness_of(map);
+    if (roughness < noisy) return map;
+    Map other = of_either_sign(bytes, shape, true);
+    if (!(roughness_of(other) < roughness / by_far)) return map;
+    other.notes.insert(other.notes.begin(), "its bytes are swapped: read as big-endian 16-bit samples");
+    return other;
 }
 
 float float_of(const Bytes& bytes, std::size_t n, bool swapped) {

@@ -81,7 +81,7 @@ TEST_CASE("a snapshot with contents that no world reaches is refused, whatever i
         while (header->fields[n].name != field) ++n;
         return in_memory(header->begin_of(n)) + 4 * world->state().layout().index(3, 2);
     };
-    refuses(place("water_height"), none, "snapshot: water_height: nan is outside 0 ... 16384 in cell (3, 2)");
+    refuses(place("water_height"), none, "snapshot: water_height: nan is outside 0 ... 1.6e+07 in cell (3, 2)");
     refuses(place("sand_height"), -0.5F, "snapshot: sand_height: -0.5 is outside");
     refuses(place("water_velocity_x"), 1e6F, "snapshot: water_velocity_x: 1e+06 is outside");
     refuses(place("stretch_xy"), infinite, "snapshot: stretch_xy: inf is outside");
