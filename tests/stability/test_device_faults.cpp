@@ -240,3 +240,38 @@ TEST_CASE("a written region or a trim that fails half way changes nothing: state
         }
     }
 }
+
+TEST_CASE("an update that fails has not taken the time: repeated, it takes what steps are left of it") {
+    auto device = backends::open_device("cpu", -1, {});
+    REQUIRE(device);
+    auto scene = flat_scene(9, 7, 0.25, 0.01);
+    scene.fill(scene.fields.water, [](double x, double) { return x < 1 ? 0.6 : 0.1; });
+    const auto run = [&](FaultyDevice::Plan& plan, int fail_at) {
+        auto made = World::create(scene.settings, scene.fields, std::make_unique<FaultyDevice>(**device, plan), {});
+        REQUIRE(made);
+        World& world = **made;
+        REQUIRE(world.outputs().set_mask(1));
+        const Edit edits[] = {pour(EditLayer::sand)}; // promotes the world in the first step
+        REQUIRE(world.commands().edit(edits));
+        const int first = plan.calls;
+        plan.fail_at = fail_at == 0 ? 0 : first + fail_at;
+        Frame frame;
+        const auto status = world.update(35'000'000, frame);
+        plan.fail_at = 0;
+        const int calls = plan.calls - first;
+        if (!status) REQUIRE(world.update(35'000'000, frame));
+        CHECK(world.steps() == 3);
+        REQUIRE(world.update(5'000'000, frame)); // 40 ms in all
+        CHECK(world.steps() == 4);
+        CHECK(static_cast<bool>(status) == (fail_at == 0));
+        return calls;
+    };
+    FaultyDevice::Plan whole;
+    const int calls = run(whole, 0);
+    CHECK(calls > 4);
+    for (int n = 1; n <= calls; ++n) {
+        CAPTURE(n);
+        FaultyDevice::Plan plan;
+        run(plan, n);
+    }
+}
