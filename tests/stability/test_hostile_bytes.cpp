@@ -2,6 +2,7 @@
 #include "engine/saves/snapshot_checks.hpp"
 #include "engine/settings/rules/material_keys.hpp"
 #include "tests/support/worlds.hpp"
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <doctest/doctest.h>
@@ -107,6 +108,32 @@ TEST_CASE("a snapshot whose books do not tell what it holds says so when it is l
     REQUIRE(world->snapshots().load(bytes));
     REQUIRE(heard.size() == 1);
     CHECK(heard[0].find("holds 0 quanta of sand and 12 of water that its books do not say") != std::string::npos);
+}
+
+TEST_CASE("columns above the declared largest height are counted") {
+    auto scene = flat_scene(12, 9, 0.5, 0.02);
+    scene.settings.method.largest_height = 1;
+    scene.fill(scene.fields.water, [](double x, double) { return x < 2 ? 0.96 : 0.5; });
+    auto world = make_world(scene);
+    CHECK(world->reader().stats()->high_columns == 0);
+    Edit push;
+    push.kind = EditKind::push;
+    push.x0 = 3;
+    push.y0 = 2;
+    push.radius = 3;
+    push.strength = 1;
+    push.velocity_x = -6; // against the wall
+    for (std::uint64_t n = 0; n < 10; ++n) {
+        edit_world(*world, {push});
+        step(*world, 1);
+    }
+    const auto stats = world->reader().stats();
+    REQUIRE(stats);
+    std::vector<float> water(12 * 9);
+    REQUIRE(world->reader().read("water_height", water));
+    const auto high = std::count_if(water.begin(), water.end(), [](float height) { return height > 1; });
+    CHECK(high > 0);
+    CHECK(stats->high_columns == static_cast<std::uint64_t>(high));
 }
 
 TEST_CASE("a command log is refused for what its commands bring, not found out step by step") {

@@ -185,8 +185,9 @@ typedef enum wadi_choice WADI_ENUM {
 /** Tiles in which nothing changes any more are left out of a step; every bit stays, also in snapshots. */
 typedef enum wadi_active_tiles WADI_ENUM {
     WADI_ACTIVE_TILES_OFF = -1,
-    WADI_ACTIVE_TILES_LEVEL = 0, /* as the level says, which by default is AUTO in large grids on GPUs, else OFF */
+    WADI_ACTIVE_TILES_LEVEL = 0, /* as the level says, by default CHEAP */
     WADI_ACTIVE_TILES_AUTO = 1,  /* on while little of the world is awake */
+    WADI_ACTIVE_TILES_CHEAP = 2, /* AUTO in large grids on GPUs, else OFF */
     WADI_ACTIVE_TILES_8 = 8,     /* on, of 8 x 8 cells */
     WADI_ACTIVE_TILES_16 = 16,
     WADI_ACTIVE_TILES_32 = 32,
@@ -522,6 +523,8 @@ typedef struct wadi_world_stats {
     uint64_t tiles, active_tiles; /* of the world, and of those the ones that the newest step ran over, in the longer of its two lists
                                      where water and sand have one each; 0 without active tiles */
     uint64_t hash;                /* 64-bit state hash, ghosts excluded */
+    uint64_t high_columns;        /* columns of terrain, sand and water above method.largest_height, which flow and pushes can pile up:
+                                     there heights are rounded like any float, and the books drift */
 } wadi_world_stats;
 static inline wadi_world_stats wadi_default_world_stats(void) {
     WADI_ZERO_STRUCT(wadi_world_stats);
