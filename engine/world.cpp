@@ -37,8 +37,10 @@ Status World::step(std::uint32_t count) {
 Status World::update(std::uint64_t nanoseconds, Frame& frame) {
     outputs_.begin_update();
     if (auto status = frames_.take_steps(nanoseconds, frame); !status) return status;
-    if (auto status = outputs_.publish(stepper_.parts_done() == 0, frame.interpolation); !status) return status;
-    return frames_.begin_parts();
+    auto status = outputs_.publish(stepper_.parts_done() == 0, frame.interpolation);
+    if (status) status = frames_.begin_parts();
+    if (!status) frames_.take_back(nanoseconds);
+    return status;
 }
 
 Status World::set_update_settings(const UpdateSettings& settings) {

@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::size_t most_in_flight = 64;
 constexpr std::uint64_t most_in_small_pages = 65536;
-constexpr std::size_t kept_timings = 64;
-constexpr std::int64_t small_pass = 8192; // cells below which a second thread costs more than it gives
+constexpr std::size_t kept_timings = 2 * most_in_flight; // room is made as submissions come
+constexpr std::int64_t small_pass = 8192;                // cells below which a second thread costs more than it gives
 
 std::int64_t area(const compute::Range2& r) { return std::int64_t{std::max(0, r.i1 - r.i0)} * std::max(0, r.j1 - r.j0); }
 
@@ -287,8 +287,17 @@ std::uint64_t CpuDevice::finished_so_far() {
 Result<compute::Ticket> CpuDevice::submit_inputs(compute::Program program, std::span<const StepInput> inputs) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return queue_.size() < most_in_flight; });
-    queue_.push_back(
-        {submitted_ + 1, programs_.find(program.id), {inputs.begin(), inputs.end()}}); // may throw: nothing is counted then
+    // What throws comes ahead of all that counts.
+    auto* recorded = programs_.find(program.id);
+    if (const auto& labels = recorded->timestamp_labels; labels.size() > 1) {
+        auto& times = timings_[submitted_ + 1];
+        times.clear();
+        for (std::size_t n = 1; n < labels.size(); ++n) times.push_back({labels[n], 0});
+        if (timings_.size() > kept_timings) timings_.erase(timings_.begin());
+    }
+    Submission next{submitted_ + 1, recorded, {inputs.begin(), inputs.end()}};
+    next.stamps.resize(recorded->timestamp_labels.size());
+    queue_.push_back(std::move(next));
     queue_.back().buffers = std::move(retired_buffers_);
     queue_.back().programs = std::move(retired_programs_);
     ++submitted_;
@@ -314,7 +323,7 @@ Status CpuDevice::wait(compute::Ticket ticket) {
 Result<std::vector<compute::Timing>> CpuDevice::timings(compute::Ticket ticket) {
     const std::lock_guard lock(mutex_);
     const auto found = timings_.find(ticket.value);
-    return found == timings_.end() ? std::vector<compute::Timing>{} : found->second;
+    return found == timings_.end() || ticket.value > done_ ? std::vector<compute::Timing>{} : found->second;
 }
 
 void CpuDevice::device_thread() {
@@ -331,16 +340,16 @@ void CpuDevice::device_thread() {
 void CpuDevice::run_next(std::unique_lock<std::mutex>& lock) {
     Submission& next = queue_.front(); // stays where it is while others are put behind it
     lock.unlock();
-    std::vector<compute::Timing> times;
-    execute(*next.program, next.inputs, times);
+    execute(next);
     free(next.buffers, next.programs);
     lock.lock();
     done_ = next.ticket;
-    queue_.pop_front();
-    if (!times.empty()) {
-        timings_[done_] = std::move(times);
-        if (timings_.size() > kept_timings) timings_.erase(timings_.begin());
+    if (const auto found = timings_.find(done_); found != timings_.end()) {
+        for (std::size_t n = 1; n < next.stamps.size(); ++n)
+            found->second[n - 1].milliseconds =
+                std::chrono::duration<double, std::milli>(next.stamps[n] - next.stamps[n - 1]).count();
     }
+    queue_.pop_front();
     changed_.notify_all();
 }
 
@@ -382,7 +391,10 @@ void CpuDevice::run_rows(Step& step, const WorldParams& params, const StepInput&
 }
 
 // A barrier waits for rows, not for threads: one that the system has put aside holds nothing up but the rows it has taken.
-void CpuDevice::execute(Recorded& program, std::span<const StepInput> inputs, std::vector<compute::Timing>& timings) {
+void CpuDevice::execute(Submission& submission) {
+    Recorded& program = *submission.program;
+    const std::span<const StepInput> inputs = submission.inputs;
+    auto& stamps = submission.stamps;
     if (!program.prepared) prepare(program);
     const std::size_t count = program.steps.size();
     for (std::size_t n = 0; n < count; ++n) {
@@ -390,7 +402,6 @@ void CpuDevice::execute(Recorded& program, std::span<const StepInput> inputs, st
         program.progress[n].rows.set(program.steps[n].rows());
         program.progress[n].rows_to_run.store(program.steps[n].rows(), std::memory_order_relaxed);
     }
-    std::vector<std::chrono::steady_clock::time_point> stamps(program.timestamp_labels.size());
     const auto work = [&] {
         std::size_t waited = 0; // all steps before this one are done
         for (std::size_t n = 0; n < count; ++n) {
@@ -423,10 +434,6 @@ void CpuDevice::execute(Recorded& program, std::span<const StepInput> inputs, st
         work();
     } else {
         pool_->run(std::ref(work)); // allocates nothing: nobody could catch it here
-    }
-    for (std::size_t n = 1; n < stamps.size(); ++n) {
-        timings.push_back(
-            {program.timestamp_labels[n], std::chrono::duration<double, std::milli>(stamps[n] - stamps[n - 1]).count()});
     }
 }
 

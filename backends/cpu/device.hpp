@@ -10,6 +10,7 @@
 #include "backends/cpu/thread_pool.hpp"
 #include "engine/compute/device.hpp"
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <map>
@@ -96,6 +97,8 @@ class CpuDevice final : public compute::Device {
         std::uint64_t ticket;
         Recorded* program;
         std::vector<StepInput> inputs;
+        // Of its program's timestamps; room is made ahead, since on the device's thread nobody could be told that there is none.
+        std::vector<std::chrono::steady_clock::time_point> stamps = {};
         // Destroyed ahead of it: the device thread frees them behind it, since a host waits for its own.
         backends::Retired<Memory> buffers = {};
         backends::Retired<Recorded> programs = {};
@@ -112,7 +115,7 @@ class CpuDevice final : public compute::Device {
     void device_thread();
     /// The oldest submission that waits, with the lock given back meanwhile.
     void run_next(std::unique_lock<std::mutex>& lock);
-    void execute(Recorded& program, std::span<const StepInput> inputs, std::vector<compute::Timing>& timings);
+    void execute(Submission& submission);
     /// Errors: internal (more outputs than any stage has).
     Status set_active(const compute::Dispatch& dispatch, const compute::StageInfo& stage, Step& step);
     /// On the device thread, while nothing else runs: what depends on what fields hold.
@@ -146,7 +149,7 @@ class CpuDevice final : public compute::Device {
     std::deque<Submission> queue_;
     std::uint64_t submitted_ = 0, done_ = 0;
     bool stop_ = false;
-    std::map<std::uint64_t, std::vector<compute::Timing>> timings_; // of the last submissions that had any
+    std::map<std::uint64_t, std::vector<compute::Timing>> timings_; // of the last submissions that have any
     std::thread runner_;
 };
 

@@ -60,11 +60,13 @@ void Pages::forget(std::byte* data, std::size_t bytes) {
 }
 
 std::shared_ptr<std::byte> PageArena::take(std::size_t bytes, std::size_t offset) {
-    constexpr std::size_t least = std::size_t{64} << 20;
+    // Twice as much with every mapping: a world of a few cells takes no more than it needs.
+    constexpr std::size_t least = large_page, most = std::size_t{64} << 20;
     const auto place = [&](std::size_t used) { return rounded_up(used, small_page) + offset; };
     auto pages = pages_.lock();
     if (!pages || place(used_) + bytes > pages->bytes()) {
-        pages = Pages::map(std::max(least, offset + bytes), large_);
+        next_ = std::min(most, std::max(least, 2 * next_));
+        pages = Pages::map(std::max(next_, offset + bytes), large_ && next_ > least);
         if (!pages) return nullptr;
         pages_ = pages;
         used_ = 0;

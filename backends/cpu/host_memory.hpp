@@ -57,5 +57,6 @@ class PageArena {
     const bool large_;
     std::weak_ptr<Pages> pages_; // goes with the last of its buffers
     std::size_t used_ = 0;
+    std::size_t next_ = 0; // bytes of the newest mapping but for a larger buffer
 };
 } // namespace wadi::cpu

@@ -154,6 +154,7 @@ Result<std::unique_ptr<Context>> Context::open(int index, const compute::DeviceO
 }
 
 Context::~Context() {
+    if (left) static_cast<void>(instance.release());
     if (device != VK_NULL_HANDLE && !options.host) vk.vkDestroyDevice(device, nullptr);
 }
 
@@ -187,7 +188,30 @@ Status Context::lost_status() const {
 }
 
 void Context::wait_idle() {
-    if (const VkResult r = vk.vkQueueWaitIdle(queue); r != VK_SUCCESS) lost = true;
+    constexpr int tries = 3; // memory of the host may come back
+    VkResult r = VK_ERROR_OUT_OF_HOST_MEMORY;
+    for (int n = 0; n < tries && r != VK_SUCCESS && r != VK_ERROR_DEVICE_LOST; ++n) r = vk.vkQueueWaitIdle(queue);
+    if (r == VK_SUCCESS) return;
+    lost = true;
+    if (r != VK_ERROR_DEVICE_LOST) leave_all(); // nobody knows what the device still uses
+}
+
+// A leak, in place of a driver whose thread works on with memory that is gone.
+void Context::leave_all() {
+    left = true;
+    vk.vkDestroyBuffer = [](VkDevice, VkBuffer, const VkAllocationCallbacks*) {};
+    vk.vkDestroyCommandPool = [](VkDevice, VkCommandPool, const VkAllocationCallbacks*) {};
+    vk.vkDestroyDescriptorPool = [](VkDevice, VkDescriptorPool, const VkAllocationCallbacks*) {};
+    vk.vkDestroyDescriptorSetLayout = [](VkDevice, VkDescriptorSetLayout, const VkAllocationCallbacks*) {};
+    vk.vkDestroyDevice = [](VkDevice, const VkAllocationCallbacks*) {};
+    vk.vkDestroyFence = [](VkDevice, VkFence, const VkAllocationCallbacks*) {};
+    vk.vkDestroyPipeline = [](VkDevice, VkPipeline, const VkAllocationCallbacks*) {};
+    vk.vkDestroyPipelineCache = [](VkDevice, VkPipelineCache, const VkAllocationCallbacks*) {};
+    vk.vkDestroyPipelineLayout = [](VkDevice, VkPipelineLayout, const VkAllocationCallbacks*) {};
+    vk.vkDestroyQueryPool = [](VkDevice, VkQueryPool, const VkAllocationCallbacks*) {};
+    vk.vkDestroySemaphore = [](VkDevice, VkSemaphore, const VkAllocationCallbacks*) {};
+    vk.vkDestroyShaderModule = [](VkDevice, VkShaderModule, const VkAllocationCallbacks*) {};
+    vk.vkFreeMemory = [](VkDevice, VkDeviceMemory, const VkAllocationCallbacks*) {};
 }
 
 std::string_view result_name(VkResult result) {

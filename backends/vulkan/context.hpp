@@ -26,8 +26,10 @@ struct Context {
     /// Turns a result into a Status: "what of 'label': VK_ERROR_...". A lost device is remembered for ever.
     Status check(VkResult result, std::string_view what, std::string_view label = {});
     Status lost_status() const;
-    /// Waits until the queue has nothing left to do; a lost device counts as done.
+    /// Waits until the queue has nothing left to do; a lost device counts as done. Where that fails for want of memory nothing of
+    /// this device is destroyed from here on.
     void wait_idle();
+    void leave_all();
 
     std::unique_ptr<Instance> instance;
     VkPhysicalDevice physical = VK_NULL_HANDLE;
@@ -41,6 +43,7 @@ struct Context {
     bool timeline = false;           // VK_KHR_timeline_semaphore is there and on
     bool corrected_division = false; // chosen by the self-test
     bool lost = false;
+    bool left = false; // by leave_all()
     compute::DeviceOptions options;
     compute::Capabilities capabilities;
     compute::Tuning tuning;

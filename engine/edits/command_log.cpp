@@ -1,5 +1,6 @@
 #include "engine/edits/command_log.hpp"
 #include "engine/settings/rules/material_keys.hpp"
+#include "engine/settings/rules/messages.hpp"
 #include "engine/step/run/prestress.hpp"
 #include <algorithm>
 
@@ -9,12 +10,58 @@ std::uint64_t step_of(const Command& command) {
     return std::visit([](const auto& c) { return c.step; }, command);
 }
 
+namespace {
+
+void count(std::map<std::uint64_t, CommandCounts>& counts, const Command& command) {
+    CommandCounts& of_step = counts[step_of(command)];
+    ++(std::holds_alternative<Edit>(command) ? of_step.edits : of_step.others);
+}
+
+std::string too_many_text(std::uint64_t step, bool edits) {
+    return "more than " + std::to_string(edits ? LOG_EDITS_MOST : LOG_COMMANDS_MOST) +
+           (edits ? " edits" : " commands but edits") + " of step " + std::to_string(step) + " are more than a log may hold";
+}
+
+// Heights as write_region() takes them, whatever stands in the cell by then.
+Status check_values(const RegionWrite& write, double most) {
+    const double least = write.layer == EditLayer::terrain ? -most : 0;
+    for (const float value : write.values) {
+        const auto height = static_cast<double>(value);
+        if (!(height >= least && height <= most))
+            return error(Code::bad_argument, outside_text("play_commands: a height of a region", height, least, most));
+    }
+    return ok_status();
+}
+
+Content content_written(const RegionWrite& write) {
+    const bool some = std::any_of(write.values.begin(), write.values.end(), [](float height) { return height > 0.0F; });
+    return {some && write.layer == EditLayer::sand, some && write.layer == EditLayer::water};
+}
+
+} // namespace
+
 void CommandLog::note(const Command& command) {
-    if (remember_) remembered_.push_back(command);
+    if (!remember_) return;
+    remembered_.push_back(command);
+    count(counts_, command);
+}
+
+Status CommandLog::check_room(const char* function, std::uint64_t step, bool edits, std::uint32_t more) const {
+    if (!remember_) return ok_status();
+    const auto found = counts_.find(step);
+    const std::uint64_t before = found == counts_.end() ? 0 : edits ? found->second.edits : found->second.others;
+    if (before + more <= (edits ? LOG_EDITS_MOST : LOG_COMMANDS_MOST)) return ok_status();
+    return error(Code::not_supported, std::string(function) + ": the command log is on, and " + too_many_text(step, edits));
 }
 
 Status CommandLog::edit(std::span<const Edit> edits) {
     if (auto status = edits_.check("wadi_world_edit", edits, edits_.stamps()); !status) return status;
+    std::map<std::uint64_t, std::uint32_t> added;
+    for (const Edit& edit : edits) {
+        const std::uint64_t step = edit.step == 0 ? edits_.next_step() : edit.step;
+        if (!remember_) break;
+        if (auto status = check_room("wadi_world_edit", step, true, ++added[step]); !status) return status;
+    }
     for (Edit edit : edits) {
         if (edit.step == 0) edit.step = edits_.next_step();
         note(edit);
@@ -25,6 +72,7 @@ Status CommandLog::edit(std::span<const Edit> edits) {
 
 Status CommandLog::write_region(EditLayer layer, const Region& region, std::span<const float> values) {
     auto status = stepper_.finish_step();
+    if (status) status = check_room("write_region", state_.steps, false, 1);
     if (status) status = wadi::write_region(state_, stepper_, layer, region, values);
     if (status && remember_) note(RegionWrite{state_.steps, layer, region, {values.begin(), values.end()}});
     return status;
@@ -41,6 +89,7 @@ Status CommandLog::write_values(EditLayer layer, const Region& region, const Val
 
 Status CommandLog::trim() {
     auto status = stepper_.finish_step();
+    if (status) status = check_room("trim", state_.steps, false, 1);
     if (status) status = wadi::trim(state_, stepper_);
     if (status) note(Trim{state_.steps});
     return status;
@@ -48,6 +97,7 @@ Status CommandLog::trim() {
 
 Status CommandLog::set_material(int key, double value) {
     if (auto status = stepper_.finish_step(); !status) return status;
+    if (auto status = check_room("set_material", state_.steps, false, 1); !status) return status;
     if (auto status = check_material_change("set_material", state_.settings(), key, value); !status) return status;
     const Material before = state_.settings().material;
     Material material = before;
@@ -65,6 +115,7 @@ Status CommandLog::set_material(int key, double value) {
 void CommandLog::remember(bool on) {
     remember_ = on;
     remembered_.clear();
+    counts_.clear();
 }
 
 std::vector<std::byte> CommandLog::bytes() const { return write_commands(state_.level(), edits_.stamps(), remembered_); }
@@ -76,7 +127,22 @@ Status CommandLog::check(const CommandList& list) const {
         if (auto status = check_stamp("play_commands", stamp.nx, stamp.ny, stamp.values); !status) return status;
     }
     Settings settings = state_.settings(); // as the commands before leave them
+    std::map<std::uint64_t, CommandCounts> counts;
+    std::vector<const Command*> by_step;
     for (const auto& command : list.commands) {
+        by_step.push_back(&command);
+        count(counts, command);
+    }
+    for (const auto& [step, of_step] : counts)
+        if (of_step.edits > LOG_EDITS_MOST || of_step.others > LOG_COMMANDS_MOST)
+            return error(Code::bad_argument, "play_commands: " + too_many_text(step, of_step.edits > LOG_EDITS_MOST));
+    for (const auto& [step, of_step] : counts)
+        if (auto status = check_room("play_commands", step, true, of_step.edits); !status) return status;
+    // A log lists its commands as they came, edits of later steps among them; they run by step.
+    std::stable_sort(by_step.begin(), by_step.end(),
+                     [](const Command* a, const Command* b) { return step_of(*a) < step_of(*b); });
+    for (const Command* each : by_step) {
+        const Command& command = *each;
         if (step_of(command) < edits_.next_step()) {
             return error(Code::bad_argument, "play_commands: the log has a command for step " + std::to_string(step_of(command)) +
                                                  ", but the world's next step is " + std::to_string(edits_.next_step()));
@@ -86,6 +152,9 @@ Status CommandLog::check(const CommandList& list) const {
         } else if (const auto* write = std::get_if<RegionWrite>(&command)) {
             const auto& grid = state_.settings().grid;
             if (auto status = check_region("play_commands", write->region, grid, write->values.size()); !status) return status;
+            if (auto status = check_values(*write, state_.settings().method.largest_height); !status) return status;
+            if (auto status = check_allowed(settings, content_written(*write)); !status)
+                return error(Code::bad_argument, "play_commands: " + status.message);
         } else if (const auto* change = std::get_if<MaterialChange>(&command)) {
             if (auto status = check_material_change("play_commands", settings, change->key, change->value); !status)
                 return status;
@@ -135,6 +204,7 @@ void CommandLog::went_to(std::uint64_t step) {
     edits_.forget();
     played_.clear();
     std::erase_if(remembered_, [&](const Command& command) { return step_of(command) >= step; });
+    counts_.erase(counts_.lower_bound(step), counts_.end());
 }
 
 } // namespace wadi

@@ -26,6 +26,9 @@ struct MaterialChange {
 using Command = std::variant<Edit, RegionWrite, Trim, MaterialChange>;
 std::uint64_t step_of(const Command& command);
 
+/// A log may bring so many edits into a step, and so many other commands, each of which waits for the device: seconds of work.
+inline constexpr std::uint32_t LOG_EDITS_MOST = 4096, LOG_COMMANDS_MOST = 256;
+
 /// What the bytes of a log hold.
 struct CommandList {
     std::uint64_t level = 0; // level_digest()
@@ -36,13 +39,18 @@ std::vector<std::byte> write_commands(std::uint64_t level, std::span<const Stamp
 /// Errors: bad_file (no command log, a newer version, truncated, changed).
 Result<CommandList> read_commands(std::span<const std::byte> bytes);
 
+struct CommandCounts {
+    std::uint32_t edits = 0, others = 0;
+};
+
 /// The way for commands into a world: runs or queues them and remembers them where that was asked for.
 class CommandLog {
   public:
     CommandLog(WorldState& state, Stepper& stepper, Edits& edits, ValueWrites& values)
         : state_(state), stepper_(stepper), edits_(edits), values_(values) {}
 
-    /// Queues edits for their steps. Errors: bad_argument, and nothing is queued.
+    /// Queues edits for their steps. Errors: bad_argument, and nothing is queued; not_supported here and below where a log that
+    /// is remembered could not be played, with more in one step than LOG_EDITS_MOST or LOG_COMMANDS_MOST.
     Status edit(std::span<const Edit> edits);
     /// The state between two steps is changed: what is left of a step begun in parts runs first. Errors: regions.hpp.
     Status write_region(EditLayer layer, const Region& region, std::span<const float> values);
@@ -71,6 +79,8 @@ class CommandLog {
 
   private:
     void note(const Command& command);
+    /// Whether what is remembered has room for so many more of one step.
+    Status check_room(const char* function, std::uint64_t step, bool edits, std::uint32_t more) const;
     Status check(const CommandList& list) const;
     Status run(const Command& command);
 
@@ -80,7 +90,8 @@ class CommandLog {
     ValueWrites& values_;
     bool remember_ = false;
     std::vector<Command> remembered_;
-    std::multimap<std::uint64_t, Command> played_; // all but edits: they wait for their step, in order
+    std::map<std::uint64_t, CommandCounts> counts_; // of remembered_, by step
+    std::multimap<std::uint64_t, Command> played_;  // all but edits: they wait for their step, in order
 };
 
 } // namespace wadi

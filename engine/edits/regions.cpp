@@ -5,7 +5,9 @@
 #include "engine/step/run/ledger.hpp"
 #include "engine/step/run/prestress.hpp"
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 
 namespace wadi {
 
@@ -24,26 +26,25 @@ class Rows {
 
   private:
     WorldState& state_;
-    const char* const field_;
-    const std::size_t offset_;
+    const char* field_;
+    std::size_t offset_;
     std::vector<float> values_;
 };
 
-// What a region is written into.
+// What decides whether a region may be written.
 struct Bands {
     Bands(WorldState& state, int first, int end)
-        : terrain(state, "terrain", first, end), sand(state, "sand_height", first, end), water(state, "water_height", first, end),
-          xx(state, "stretch_xx", first, end), xy(state, "stretch_xy", first, end), yy(state, "stretch_yy", first, end),
-          turn(state, "rotation", first, end) {}
+        : terrain(state, "terrain", first, end), sand(state, "sand_height", first, end),
+          water(state, "water_height", first, end) {}
     Status read() {
-        for (Rows* rows : {&terrain, &sand, &water, &xx, &xy, &yy, &turn}) {
+        for (Rows* rows : {&terrain, &sand, &water}) {
             if (auto status = rows->read(); !status) return status;
         }
         return ok_status();
     }
     Rows& of(EditLayer layer) { return layer == EditLayer::terrain ? terrain : layer == EditLayer::sand ? sand : water; }
 
-    Rows terrain, sand, water, xx, xy, yy, turn;
+    Rows terrain, sand, water;
 };
 
 const char* layer_name(EditLayer layer) {
@@ -84,11 +85,67 @@ void repeat_edges(const FieldLayout& layout, Rows& terrain, int first, int end) 
     }
 }
 
-Status write_sand(Bands& bands) {
-    for (Rows* rows : {&bands.sand, &bands.xx, &bands.xy, &bands.yy, &bands.turn}) {
-        if (auto status = rows->write(); !status) return status;
+// The fields that a write of this layer changes: its heights first, and the strain of sand.
+class Written {
+  public:
+    Written(WorldState& state, EditLayer layer, int first, int end) {
+        if (layer == EditLayer::terrain) rows_.emplace_back(state, "terrain", first, end);
+        if (layer == EditLayer::water) rows_.emplace_back(state, "water_height", first, end);
+        if (layer != EditLayer::sand) return;
+        for (const char* field : {"sand_height", "stretch_xx", "stretch_xy", "stretch_yy", "rotation"})
+            rows_.emplace_back(state, field, first, end);
     }
-    return ok_status();
+    Status read() {
+        return each([](Rows& rows) { return rows.read(); });
+    }
+    Status write() {
+        return each([](Rows& rows) { return rows.write(); });
+    }
+    Rows& heights() { return rows_.front(); }
+    std::span<Rows> strain() { return std::span(rows_).subspan(1); }
+
+  private:
+    template <class Call> Status each(const Call& call) {
+        for (Rows& rows : rows_)
+            if (auto status = call(rows); !status) return status;
+        return ok_status();
+    }
+    std::vector<Rows> rows_;
+};
+
+// Values come into the rows; what that adds and takes.
+std::array<LedgerChange, 2> put_values(Written& to, EditLayer layer, const Region& region, std::span<const float> values,
+                                       double quantum) {
+    Rows& written = to.heights();
+    const bool sand = layer == EditLayer::sand;
+    std::int64_t in = 0, out = 0;
+    for (int b = 0; b < region.ny; ++b) {
+        for (int a = 0; a < region.nx; ++a) {
+            const int i = region.i0 + a, j = region.j0 + b;
+            const float value =
+                values[static_cast<std::size_t>(b) * static_cast<std::size_t>(region.nx) + static_cast<std::size_t>(a)];
+            const float held = written.at(i, j);
+            const std::int64_t change =
+                add_quanta(to_quanta(static_cast<double>(value), quantum), -to_quanta(static_cast<double>(held), quantum));
+            auto& moved = change > 0 ? in : out;
+            moved = add_quanta(moved, std::abs(change));
+            if (value > held) {
+                for (Rows& rows : to.strain()) {
+                    const float stretch = rows.at(i, j) * (held / value);
+                    rows.at(i, j) = std::abs(stretch) < 1e-20F ? 0.0F : stretch; // as the stages do: no denormals
+                }
+            }
+            written.at(i, j) = value;
+        }
+    }
+    return {{{sand ? LEDGER_SAND_IN : LEDGER_WATER_IN, in}, {sand ? LEDGER_SAND_OUT : LEDGER_WATER_OUT, out}}};
+}
+
+// What a write that fails half way has changed is put back.
+Status taken_back(WorldState& state, const Status& failed, const std::function<Status()>& put_back) {
+    if (failed || !state.lost()) return failed;
+    return put_back() ? failed
+                      : state.device().give_up("write_region: what it had half done cannot be taken back: " + failed.message);
 }
 
 } // namespace
@@ -103,9 +160,9 @@ Status write_region(WorldState& state, Stepper& stepper, EditLayer layer, const 
     const int end = terrain && region.j0 + region.ny == layout.ny ? layout.ny + 1 + GHOST : region.j0 + region.ny;
     std::vector<float> rounded(values.begin(), values.end());
     {
-        Bands before(state, first, end);
-        if (auto status = before.read(); !status) return status;
-        if (auto status = round_and_check(layer, region, before, method, rounded); !status) return status;
+        Bands now(state, first, end);
+        if (auto status = now.read(); !status) return status;
+        if (auto status = round_and_check(layer, region, now, method, rounded); !status) return status;
     }
     const bool some = std::any_of(rounded.begin(), rounded.end(), [](float h) { return h > 0.0F; });
     const Content brought{some && sand, some && !sand && !terrain};
@@ -115,40 +172,20 @@ Status write_region(WorldState& state, Stepper& stepper, EditLayer layer, const 
     if (content != state.content) {
         if (auto status = stepper.set_content(content); !status) return status;
     }
-    if (auto status = sand ? change_balance(state, region, Balance::take) : ok_status(); !status) return status;
-    Bands bands(state, first, end);
-    if (auto status = bands.read(); !status) return status;
-    Rows& written = bands.of(layer);
-    const double quantum = ledger_quantum(method);
-    std::int64_t in = 0, out = 0;
-    for (int b = 0; b < region.ny; ++b) {
-        for (int a = 0; a < region.nx; ++a) {
-            const int i = region.i0 + a, j = region.j0 + b;
-            const float value =
-                rounded[static_cast<std::size_t>(b) * static_cast<std::size_t>(region.nx) + static_cast<std::size_t>(a)];
-            const float held = written.at(i, j);
-            const std::int64_t change =
-                add_quanta(to_quanta(static_cast<double>(value), quantum), -to_quanta(static_cast<double>(held), quantum));
-            auto& moved = change > 0 ? in : out;
-            moved = add_quanta(moved, std::abs(change));
-            if (sand && value > held) {
-                for (Rows* rows : {&bands.xx, &bands.xy, &bands.yy, &bands.turn}) {
-                    const float stretch = rows->at(i, j) * (held / value);
-                    rows->at(i, j) = std::abs(stretch) < 1e-20F ? 0.0F : stretch; // as the stages do: no denormals
-                }
-            }
-            written.at(i, j) = value;
-        }
-    }
+    Written before(state, layer, first, end); // with the fields that the plan has now
+    if (auto status = before.read(); !status) return status;
+    Written after = before;
     state.tiles().wake_all();
-    if (terrain) {
-        repeat_edges(layout, written, first, end);
-        return written.write();
-    }
-    if (auto status = sand ? write_sand(bands) : written.write(); !status) return status;
-    if (auto status = count_in_ledger(state, sand ? LEDGER_SAND_IN : LEDGER_WATER_IN, in); !status) return status;
-    if (auto status = count_in_ledger(state, sand ? LEDGER_SAND_OUT : LEDGER_WATER_OUT, out); !status) return status;
-    return sand ? change_balance(state, region, Balance::add) : ok_status();
+    const auto run = [&] {
+        if (auto status = sand ? change_balance(state, region, Balance::take) : ok_status(); !status) return status;
+        if (auto status = sand ? after.read() : ok_status(); !status) return status;
+        const auto moved = put_values(after, layer, region, rounded, ledger_quantum(method));
+        if (terrain) repeat_edges(layout, after.heights(), first, end);
+        if (auto status = after.write(); !status) return status;
+        if (auto status = sand ? change_balance(state, region, Balance::add) : ok_status(); !status) return status;
+        return terrain ? ok_status() : count_in_ledger(state, moved); // last: it is whole or not at all
+    };
+    return taken_back(state, run(), [&] { return before.write(); });
 }
 
 Status trim(WorldState& state, Stepper& stepper) {
@@ -167,14 +204,17 @@ Status trim(WorldState& state, Stepper& stepper) {
     auto sand_sides = read_side_ledger(state, "sand_side_ledger"), water_sides = read_side_ledger(state, "water_side_ledger");
     if (!sand_sides) return sand_sides.status();
     if (!water_sides) return water_sides.status();
-    if (auto status = stepper.set_content({*sand, *water}); !status) return status;
-    const auto keep = [&](const char* field, const auto& sides, int in, int out) {
-        if (state.plan().find(field) != nullptr) return ok_status();
-        auto status = count_in_ledger(state, in, sides.first);
-        return status ? count_in_ledger(state, out, sides.second) : status;
+    // The first thing that is changed under the new plan, and the last that may fail.
+    const auto keep = [&] {
+        std::vector<LedgerChange> changes;
+        const auto add = [&](const char* field, const auto& sides, int in, int out) {
+            if (state.plan().find(field) == nullptr) changes.insert(changes.end(), {{in, sides.first}, {out, sides.second}});
+        };
+        add("sand_side_ledger", *sand_sides, LEDGER_SAND_IN, LEDGER_SAND_OUT);
+        add("water_side_ledger", *water_sides, LEDGER_WATER_IN, LEDGER_WATER_OUT);
+        return count_in_ledger(state, changes);
     };
-    if (auto status = keep("sand_side_ledger", *sand_sides, LEDGER_SAND_IN, LEDGER_SAND_OUT); !status) return status;
-    return keep("water_side_ledger", *water_sides, LEDGER_WATER_IN, LEDGER_WATER_OUT);
+    return stepper.change(state.settings().material, {*sand, *water}, keep);
 }
 
 } // namespace wadi

@@ -100,6 +100,12 @@ Status FrameDriver::take_steps(std::uint64_t nanoseconds, Frame& frame) {
     if (!state_.lost()) return state_.lost();
     frame = {};
     frame.dropped = clock_.add(nanoseconds);
+    auto status = take_due(frame);
+    if (!status) take_back(nanoseconds);
+    return status;
+}
+
+Status FrameDriver::take_due(Frame& frame) {
     while (clock_.due()) {
         if (run_is_due(frame.steps)) {
             if (auto status = take_run(); !status) return status;

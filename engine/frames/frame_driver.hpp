@@ -31,8 +31,10 @@ class FrameDriver {
     Status set(const UpdateSettings& settings);
     const UpdateSettings& settings() const { return settings_; }
 
-    /// Submits the whole steps due after `nanoseconds` more of host time.
+    /// Submits the whole steps due after `nanoseconds` more of host time. Where that fails the time was not taken.
     Status take_steps(std::uint64_t nanoseconds, Frame& frame);
+    /// The update that took this time fails: repeated, it takes what steps are left of it.
+    void take_back(std::uint64_t nanoseconds) { clock_.take_back(nanoseconds); }
     /// With `spread`: submits the parts of the next step that are due already. After the outputs were published.
     Status begin_parts();
 
@@ -46,6 +48,7 @@ class FrameDriver {
 
     bool device_keeps_up();
     bool queue_has_room() const;
+    Status take_due(Frame& frame);
     Status take_step(bool& taken);
     /// Whether so many steps are due at once, and the device may have them, that they go to it as one run.
     bool run_is_due(std::uint32_t taken);

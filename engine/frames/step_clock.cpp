@@ -18,9 +18,18 @@ StepClock::StepClock(double dt) {
 }
 
 std::uint64_t StepClock::add(std::uint64_t nanoseconds) {
+    const std::uint64_t paid = std::min(nanoseconds, owed_);
+    owed_ -= paid;
+    nanoseconds -= paid;
     const std::uint64_t fits = std::min(nanoseconds, most_held - since_);
     since_ += fits;
     return nanoseconds - fits;
+}
+
+void StepClock::take_back(std::uint64_t nanoseconds) {
+    const std::uint64_t held = std::min(nanoseconds, since_);
+    since_ -= held;
+    owed_ += nanoseconds - held;
 }
 
 std::uint64_t StepClock::to_next() const {

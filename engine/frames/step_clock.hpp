@@ -13,6 +13,8 @@ class StepClock {
 
     /// More host time. The clock holds at most 2^62 ns (146 years) beyond the last step; returns what did not fit.
     std::uint64_t add(std::uint64_t nanoseconds);
+    /// Takes time back that add() took in, of which steps may have been taken meanwhile: that is owed by what comes next.
+    void take_back(std::uint64_t nanoseconds);
     /// The next step is due.
     bool due() const { return since_ >= to_next(); }
     /// Counts the step that is due as done.
@@ -27,6 +29,7 @@ class StepClock {
     std::uint64_t to_next() const;
 
     std::uint64_t period_, period_fraction_; // dt [ns], [2^-64 ns]
+    std::uint64_t owed_ = 0;                 // of time to come [ns]
     std::uint64_t since_ = 0;                // since the last boundary's whole nanoseconds [ns]
     std::uint64_t fraction_ = 0;             // of the last boundary [2^-64 ns]
 };

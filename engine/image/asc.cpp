@@ -1,16 +1,21 @@
 // Esri ASCII grids: a header of "key value" lines, then values in rows from the north, separated by blanks or line ends.
 #include "engine/image/map.hpp"
 #include "engine/image/parse_number.hpp"
+#include "engine/image/plausible.hpp"
+#include "engine/settings/rules/messages.hpp"
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <limits>
-#include <queue>
 #include <string_view>
 
 namespace wadi {
 namespace {
 
 constexpr double NO_DATA = -9999; // where the header names no other
+
+constexpr std::string_view BYTE_ORDER_MARK = "\xef\xbb\xbf"; // of text editors
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
@@ -26,15 +31,27 @@ bool parse(std::string_view word, double& number) {
     return parse_number(word, number);
 }
 
-/// Cuts a text into words and counts lines.
+/// Words that programs write for a cell without a value, in lower case.
+bool is_hole(const std::string& word) {
+    static const char* const words[] = {"null", "nodata", "no_data", "none", "na", "n/a", "nan", "-nan", "*", "-"};
+    return std::find(std::begin(words), std::end(words), word) != std::end(words);
+}
+
+/// Cuts a text into words and counts lines; what follows # or // to the end of a line is none.
 class Words {
   public:
-    explicit Words(std::string_view text) : rest_(text) {}
+    explicit Words(std::string_view text) : rest_(text) {
+        if (rest_.starts_with(BYTE_ORDER_MARK)) rest_.remove_prefix(BYTE_ORDER_MARK.size());
+    }
     /// The next word, which stays the next one; empty at the end.
     std::string_view peek() {
-        while (!rest_.empty() && is_blank(rest_.front())) {
-            if (rest_.front() == '\n') ++line_;
-            rest_.remove_prefix(1);
+        for (;;) {
+            while (!rest_.empty() && is_blank(rest_.front())) {
+                if (rest_.front() == '\n') ++line_;
+                rest_.remove_prefix(1);
+            }
+            if (!rest_.starts_with('#') && !rest_.starts_with("//")) break;
+            rest_.remove_prefix(std::min(rest_.find('\n'), rest_.size()));
         }
         std::size_t size = 0;
         while (size < rest_.size() && !is_blank(rest_[size])) ++size;
@@ -62,13 +79,14 @@ class AscReader {
         Status status = read_header();
         if (status) status = check_map_size(map_.nx, map_.ny, name_, room);
         if (status) status = read_values();
+        if (status) status = fill_holes(map_, name_);
+        if (status) status = make_square(room);
         if (!status) return status;
-        fill_unknown();
         return std::move(map_);
     }
 
   private:
-    enum Key : std::size_t { columns, rows, x_origin, y_origin, cell_size, no_data, KEY_COUNT };
+    enum Key : std::size_t { columns, rows, x_origin, y_origin, cell_size, cell_height, no_data, KEY_COUNT };
 
     Status refuse(const std::string& message) const {
         return error(Code::bad_file, name_ + ": line " + std::to_string(words_.line()) + ": " + message);
@@ -79,40 +97,46 @@ class AscReader {
         if (word == "nrows") return rows;
         if (word == "xllcorner" || word == "xllcenter") return x_origin;
         if (word == "yllcorner" || word == "yllcenter") return y_origin;
-        if (word == "cellsize") return cell_size;
-        return word == "nodata_value" ? no_data : KEY_COUNT;
+        if (word == "cellsize" || word == "dx") return cell_size;
+        if (word == "dy") return cell_height;
+        return word == "nodata_value" || word == "nodata" ? no_data : KEY_COUNT;
     }
 
     Status read_header() {
         bool given[KEY_COUNT] = {};
-        double found[KEY_COUNT] = {0, 0, 0, 0, 0, NO_DATA};
+        double found[KEY_COUNT] = {0, 0, 0, 0, 0, 0, NO_DATA};
         for (double unused = 0; !words_.peek().empty() && !parse(words_.peek(), unused);) {
+            if (given[cell_size] && is_hole(lower_case(words_.peek())) && lower_case(words_.peek()) != "nodata") break; // a value
             const std::string word(words_.next());
             const Key key = key_of(lower_case(word));
             if (key == KEY_COUNT)
-                return refuse("\"" + word + "\" is no key of an Esri ASCII grid with square cells; the keys are ncols, nrows, " +
-                              "xllcorner or xllcenter, yllcorner or yllcenter, cellsize, NODATA_value");
+                return refuse("\"" + word.substr(0, 40) + "\" is no key of an Esri ASCII grid; the keys are ncols, nrows, " +
+                              "xllcorner or xllcenter, yllcorner or yllcenter, cellsize or dx and dy, NODATA_value");
             if (given[key]) return refuse(word + " is given twice");
             given[key] = true;
             if (Status status = read_header_value(word, key, found[key]); !status) return status;
         }
         static const char* const names[] = {"ncols", "nrows", "xllcorner or xllcenter", "yllcorner or yllcenter", "cellsize"};
-        for (std::size_t key = 0; key < no_data; ++key)
+        for (std::size_t key = 0; key <= cell_size; ++key)
             if (!given[key]) return refuse(std::string("the header ends without ") + names[key]);
         map_.nx = static_cast<int>(found[columns]);
         map_.ny = static_cast<int>(found[rows]);
         map_.cell_size = found[cell_size];
+        cell_height_ = given[cell_height] ? found[cell_height] : map_.cell_size;
         no_data_ = found[no_data];
         return ok_status();
     }
 
     Status read_header_value(const std::string& word, Key key, double& value) {
         const std::string text(words_.next());
-        if (!parse(text, value) || (key != no_data && !std::isfinite(value)))
-            return refuse(word + ": \"" + text + "\" is not a number");
+        if (key == no_data && is_hole(lower_case(text))) {
+            value = std::numeric_limits<double>::quiet_NaN();
+            return ok_status();
+        }
+        if (!parse(text, value) || (key != no_data && !std::isfinite(value))) return refuse(word + ": " + no_number_text(text));
         if (key <= rows && !(value >= 1 && value <= MAP_LIMIT && value == std::floor(value)))
             return refuse(word + ": " + text + " is not a whole number in 1 ... " + std::to_string(MAP_LIMIT));
-        if (key == cell_size && !(value > 0)) return refuse(word + ": " + text + " is not above 0");
+        if ((key == cell_size || key == cell_height) && !(value > 0)) return refuse(word + ": " + text + " is not above 0");
         return ok_status();
     }
 
@@ -126,16 +150,14 @@ class AscReader {
             const std::string_view word = words_.next();
             double value = 0;
             if (word.empty()) return refuse(few_text(n, count));
-            if (!parse(word, value)) return refuse(place(n) + ": \"" + std::string(word.substr(0, 40)) + "\" is not a number");
-            const bool unknown = value == no_data_ || (std::isnan(value) && std::isnan(no_data_));
-            if (!unknown && !(std::fabs(value) <= static_cast<double>(std::numeric_limits<float>::max())))
-                return refuse(place(n) + " is " + (std::isnan(value) ? "NaN" : "infinite or too large for a float"));
+            const bool hole = is_hole_value(word, value);
+            if (!hole && !parse(word, value)) return refuse(place(n) + ": " + no_number_text(word));
+            if (!hole && !(std::fabs(value) <= static_cast<double>(std::numeric_limits<float>::max())))
+                return refuse(place(n) + " is infinite or too large for a float");
             const std::size_t row = static_cast<std::size_t>(map_.ny) - 1 - n / nx;
-            map_.values[row * nx + n % nx] = unknown ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(value);
-            map_.filled += unknown ? 1 : 0;
+            map_.values[row * nx + n % nx] = hole ? std::numeric_limits<float>::quiet_NaN() : static_cast<float>(value);
         }
         if (!words_.next().empty()) return refuse("more values than ncols x nrows, " + size_text());
-        if (map_.filled == static_cast<std::int64_t>(count)) return refuse("every value is NODATA_value");
         return ok_status();
     }
 
@@ -154,30 +176,43 @@ class AscReader {
         return "the value in column " + std::to_string(n % nx + 1) + " of row " + std::to_string(n / nx + 1);
     }
 
-    /// Gives unknown cells the height of the nearest known one, by steps between neighbours: flat ground, no cliffs.
-    void fill_unknown() {
-        if (map_.filled == 0) return;
-        std::queue<std::size_t> front;
-        for (std::size_t cell = 0; cell < map_.values.size(); ++cell)
-            if (!std::isnan(map_.values[cell])) front.push(cell);
-        const auto nx = static_cast<std::size_t>(map_.nx);
-        for (; !front.empty(); front.pop()) {
-            const std::size_t cell = front.front();
-            const auto reach = [&](bool inside, std::size_t neighbour) {
-                if (!inside || !std::isnan(map_.values[neighbour])) return;
-                map_.values[neighbour] = map_.values[cell];
-                front.push(neighbour);
-            };
-            reach(cell % nx > 0, cell - 1);
-            reach(cell % nx + 1 < nx, cell + 1);
-            reach(cell >= nx, cell - nx);
-            reach(cell + nx < map_.values.size(), cell + nx);
-        }
+    /// NODATA_value, which programs round as they write it, no number, or the largest of floats.
+    bool is_hole_value(std::string_view word, double& value) const {
+        if (!parse(word, value)) return is_hole(lower_case(word));
+        if (std::isnan(value) || is_float_limit(value)) return true;
+        constexpr double rounded = 1e-6;
+        const double size = std::fabs(no_data_);
+        return std::fabs(value - no_data_) <= (size > 1e6 ? rounded * size : 0);
+    }
+
+    static std::string no_number_text(std::string_view word) {
+        std::string text(word.substr(0, 40));
+        std::string pointed = text;
+        std::replace(pointed.begin(), pointed.end(), ',', '.');
+        double unused = 0;
+        const bool comma = pointed != text && parse(pointed, unused);
+        return "\"" + text + "\" " + (comma ? "has a decimal comma; save the grid with decimal points" : "is not a number");
+    }
+
+    /// Rows anew where cells are not square: as many as give them the width of the columns.
+    Status make_square(FileRoom* room) {
+        if (cell_height_ == map_.cell_size) return ok_status();
+        const double height = std::round(map_.ny * cell_height_ / map_.cell_size);
+        if (!(height >= 1 && height <= MAP_LIMIT))
+            return error(Code::bad_file, name_ + ": cells of " + number_text(map_.cell_size) + " by " +
+                                             number_text(cell_height_) + " m would be " + number_text(height) +
+                                             " rows of square ones");
+        if (Status status = check_map_size(map_.nx, static_cast<std::int64_t>(height), name_, room); !status) return status;
+        map_.notes.push_back("cells of " + number_text(map_.cell_size) + " by " + number_text(cell_height_) + " m: its " +
+                             std::to_string(map_.ny) + " rows are resampled to " + number_text(height));
+        map_.values = resample(map_, map_.nx, static_cast<int>(height));
+        map_.ny = static_cast<int>(height);
+        return ok_status();
     }
 
     Words words_;
     const std::string& name_;
-    double no_data_ = NO_DATA;
+    double no_data_ = NO_DATA, cell_height_ = 0;
     Map map_;
 };
 

@@ -25,10 +25,11 @@ struct Tap {
     double weight = 0;
 };
 
-std::vector<Tap> taps(int source, int target) {
+std::vector<Tap> taps(int source, int target, bool corners) {
     std::vector<Tap> result(static_cast<std::size_t>(target));
     for (int i = 0; i < target; ++i) {
-        const double position = std::clamp((i + 0.5) * source / target - 0.5, 0.0, source - 1.0);
+        const double place = corners ? (i + 0.5) * (source - 1) / target : (i + 0.5) * source / target - 0.5;
+        const double position = std::clamp(place, 0.0, source - 1.0);
         const double low = std::floor(position);
         Tap& tap = result[static_cast<std::size_t>(i)];
         tap.low = static_cast<std::size_t>(low);
@@ -106,26 +107,29 @@ FileReader files_in(const std::string& folder, FilesFrom from) {
 
 Result<Map> read_map(const std::string& path, std::optional<std::pair<int, int>> size, const FileReader& files, FileRoom& room) {
     const std::string ending = lower_case_ending(path);
-    const bool raw = ending == ".r16" || ending == ".raw";
-    if (!raw && ending != ".png" && ending != ".npy" && ending != ".asc")
-        return error(Code::bad_file, path + ": maps end in .png, .r16, .raw, .npy or .asc");
-    if (!raw && size) return error(Code::bad_argument, path + ": only .r16 and .raw maps are given a size");
+    const bool raw = ending == ".r16" || ending == ".r32" || ending == ".raw";
+    if (!raw && ending != ".png" && ending != ".npy" && ending != ".asc" && ending != ".hgt")
+        return error(Code::bad_file, path + ": maps end in .png, .r16, .r32, .raw, .hgt, .npy or .asc");
+    if (!raw && size) return error(Code::bad_argument, path + ": only .r16, .r32 and .raw maps are given a size");
     // The largest map as float64 or as text, and some room for a header.
     const std::uint64_t values = std::min(static_cast<std::uint64_t>(room.left()), std::uint64_t{MAP_LIMIT} * MAP_LIMIT / 2);
     const std::uint64_t limit = values * 16 + 65536;
     auto bytes = files(path, limit);
     if (!bytes) return bytes.status();
-    if (raw) return decode_r16(*bytes, path, size, &room);
+    if (ending == ".raw") return decode_raw(*bytes, path, size, &room);
+    if (ending == ".r32") return decode_r32(*bytes, path, size, &room);
+    if (ending == ".r16") return decode_r16(*bytes, path, size, &room);
+    if (ending == ".hgt") return decode_hgt(*bytes, path, &room);
     if (ending == ".asc") return decode_asc(*bytes, path, &room);
     return ending == ".png" ? decode_png(*bytes, path, &room) : decode_npy(*bytes, path, &room);
 }
 
 std::vector<float> resample(const Map& map, int nx, int ny) {
-    if (map.nx == nx && map.ny == ny) return map.values;
+    if (map.nx == nx && map.ny == ny && !map.corners) return map.values;
     const auto width = static_cast<std::size_t>(places(map.nx, nx));
     const auto depth = static_cast<std::size_t>(places(map.ny, ny));
-    const std::vector<Tap> columns = taps(map.nx, nx * static_cast<int>(width));
-    const std::vector<Tap> rows = taps(map.ny, ny * static_cast<int>(depth));
+    const std::vector<Tap> columns = taps(map.nx, nx * static_cast<int>(width), map.corners);
+    const std::vector<Tap> rows = taps(map.ny, ny * static_cast<int>(depth), map.corners);
     const auto share = 1.0 / static_cast<double>(width * depth);
     const auto length = static_cast<std::size_t>(nx);
     std::vector<float> result(length * static_cast<std::size_t>(ny));

@@ -1,4 +1,5 @@
-// Height maps read from files: PNG, RAW r16, NPY and Esri ASCII grids. Row 0 is the south side, as in every field of the engine.
+// Height maps read from files: PNG, RAW of 8, 16 and 32 bits, HGT, NPY and Esri ASCII grids. Row 0 is the south side, as in every
+// field of the engine.
 #pragma once
 #include "engine/compute/status.hpp"
 #include <cstdint>
@@ -16,10 +17,12 @@ inline constexpr int MAP_LIMIT = 16384;
 struct Map {
     int nx = 0;
     int ny = 0;
-    bool integer = false;      // values are grey 0 ... 1; otherwise as stored (NPY, ASC)
-    double cell_size = 0;      // as the file says (ASC) [m]; 0 where the format does not
-    std::int64_t filled = 0;   // cells of no known height (ASC), which took that of the nearest known one
-    std::vector<float> values; // row-major nx * ny, row 0 in the south
+    bool integer = false;           // values are grey 0 ... 1; otherwise as stored (NPY, ASC, HGT, floats)
+    bool corners = false;           // samples lie at the corners of cells, the outer ones on the rim, and not in their middles
+    double cell_size = 0;           // as the file says (ASC, HGT) [m]; 0 where the format does not
+    std::int64_t filled = 0;        // cells of no known height, which took that of the nearest known one
+    std::vector<std::string> notes; // what was guessed, and what looks odd
+    std::vector<float> values;      // row-major nx * ny, row 0 in the south
 };
 
 /// Values that the files of one level may hold together. Each file takes its own ahead of being decoded, so that small files
@@ -49,24 +52,35 @@ FileReader files_in(const std::string& folder, FilesFrom from);
 /// ok, or bad_file for a name that leads out of the folder of who names it: a path from the root or a drive on, or one with "..".
 Status check_below(const std::string& name);
 
-/// Reads a map by the ending of its name: .png, .r16 (or .raw), .npy and .asc. `size` (nx, ny) is what an r16 file holds, square
-/// when absent; for the other formats it must be absent. Errors: not_found, bad_file, bad_argument; the message names the
+/// Reads a map by the ending of its name: .png, .raw, .r16, .r32, .hgt, .npy and .asc. `size` (nx, ny) is what a raw file holds,
+/// square when absent; for the other formats it must be absent. Errors: not_found, bad_file, bad_argument; the message names the
 /// file.
 Result<Map> read_map(const std::string& path, std::optional<std::pair<int, int>> size, const FileReader& files, FileRoom& room);
 
 /// The same from bytes already read; `name` is used in messages. `room`: null = as large as a map may be.
 /// PNG with 8 or 16 bits: grey, or the luma of a colour image; alpha is ignored. The file's first row is the north.
 Result<Map> decode_png(const std::vector<std::uint8_t>& bytes, const std::string& name, FileRoom* room = nullptr);
-/// Little-endian 16-bit samples without a header. The file's first row is the north.
+/// 16-bit samples without a header: little-endian and unsigned, unless the map is far smoother otherwise, which a note says. The
+/// file's first row is the north.
 Result<Map> decode_r16(const std::vector<std::uint8_t>& bytes, const std::string& name, std::optional<std::pair<int, int>> size,
                        FileRoom* room = nullptr);
+/// Samples without a header of 8 or 16 bits, or floats of 32, by what its size leaves; a note says which, unless 16.
+Result<Map> decode_raw(const std::vector<std::uint8_t>& bytes, const std::string& name, std::optional<std::pair<int, int>> size,
+                       FileRoom* room = nullptr);
+/// Floats of 32 bits without a header, in the order of bytes that makes sense.
+Result<Map> decode_r32(const std::vector<std::uint8_t>& bytes, const std::string& name, std::optional<std::pair<int, int>> size,
+                       FileRoom* room = nullptr);
+/// A tile of SRTM: metres in big-endian signed 16 bits at the corners of a square degree, -32768 for holes. Its name says where
+/// it lies, N46E007.hgt, and so how wide its cells are: resampled to square ones.
+Result<Map> decode_hgt(const std::vector<std::uint8_t>& bytes, const std::string& name, FileRoom* room = nullptr);
 /// NumPy format 1 and 2, little-endian float32 or float64, C order, shape (ny, nx). The file's first row is the south.
 Result<Map> decode_npy(const std::vector<std::uint8_t>& bytes, const std::string& name, FileRoom* room = nullptr);
 
-/// Esri ASCII grid with square cells. The file's first row is the north.
+/// Esri ASCII grid; one whose cells are not square is resampled. The file's first row is the north.
 Result<Map> decode_asc(const std::vector<std::uint8_t>& bytes, const std::string& name, FileRoom* room = nullptr);
 
-/// Bilinear samples at the cell centres of an nx * ny grid over the same rectangle; an exact copy when the sizes are equal.
+/// Bilinear samples at the cell centres of an nx * ny grid over the same rectangle; an exact copy when the sizes are equal and
+/// the map's samples lie in the middles of cells.
 std::vector<float> resample(const Map& map, int nx, int ny);
 
 /// The whole of a regular file of at most `limit` bytes.

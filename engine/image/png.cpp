@@ -3,8 +3,24 @@
 #include <array>
 #include <climits>
 #include <cstddef>
+#include <cstdlib>
 #include <memory>
 
+namespace {
+// What stb_image may grow a buffer to while it decodes on this thread. It starts with what the header implies, grows only where
+// the data holds more, and would go on to 4 GiB.
+thread_local std::size_t grow_most = 0;
+thread_local bool grew_past = false;
+
+void* grow(void* memory, std::size_t bytes) {
+    grew_past = grew_past || bytes > grow_most;
+    return bytes > grow_most ? nullptr : std::realloc(memory, bytes);
+}
+} // namespace
+
+#define STBI_MALLOC(bytes) std::malloc(bytes)
+#define STBI_REALLOC(memory, bytes) grow(memory, bytes)
+#define STBI_FREE(memory) std::free(memory)
 #define STB_IMAGE_IMPLEMENTATION
 #define STB_IMAGE_STATIC
 #define STBI_ONLY_PNG
@@ -72,6 +88,7 @@ std::uint64_t channels_of(std::uint8_t color) {
 
 /// stb_image names no reason where it had no memory for what it inflates; it keeps that of an earlier failure of the thread.
 Status why_not(const std::string& name) {
+    if (grew_past) return error(Code::bad_file, name + ": damaged, its data holds more than the pixels of its header");
     const char* reason = stbi_failure_reason();
     if (reason == nullptr || std::string(reason) == "outofmem")
         return error(Code::out_of_memory, name + ": there is no memory to decode this PNG");
@@ -116,6 +133,10 @@ Result<Map> decode_png(const std::vector<std::uint8_t>& bytes, const std::string
     Map map;
     map.integer = true;
     stbi__g_failure_reason = nullptr;
+    // Chunks of data are put together first. Interlaced rows are more, shorter and padded; some writers pad the end.
+    constexpr std::size_t smallest = 4096;
+    grew_past = false;
+    grow_most = std::max(2 * bytes.size(), 4 * static_cast<std::size_t>(decoded)) + smallest;
     if (stbi_is_16_bit_from_memory(bytes.data(), size) != 0) {
         const std::unique_ptr<stbi_us, void (*)(void*)> samples(stbi_load_16_from_memory(bytes.data(), size, &nx, &ny, &found, 1),
                                                                 stbi_image_free);

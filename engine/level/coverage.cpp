@@ -6,7 +6,6 @@
 namespace wadi {
 namespace {
 
-constexpr int PARTS = 8;        // of a cell's side
 constexpr int BLOCK = 64;       // cells: where the search for edges begins
 constexpr double SLIVER = 1e-6; // of a cell's side, or share of a part: rounding of positions makes no film
 constexpr double NOWHERE = -std::numeric_limits<double>::infinity();
@@ -80,7 +79,7 @@ CellRange reach_of(const Layer& layer, const LevelGrid& grid, double lowest) {
             high(north + foot, height, grid.ny)};
 }
 
-std::vector<std::size_t> cut_cells(const std::vector<const Layer*>& layers, const LevelGrid& grid) {
+CutCells cut_cells(const std::vector<const Layer*>& layers, const LevelGrid& grid) {
     std::vector<std::size_t> found;
     for (const Layer* layer : layers) {
         if (!has_edges(*layer)) continue;
@@ -89,19 +88,28 @@ std::vector<std::size_t> cut_cells(const std::vector<const Layer*>& layers, cons
             for (int i = range.begin_x / BLOCK * BLOCK; i < range.end_x; i += BLOCK) search(*layer, grid, i, j, BLOCK, found);
     }
     std::sort(found.begin(), found.end());
-    found.erase(std::unique(found.begin(), found.end()), found.end());
-    return found;
+    CutCells cut;
+    for (const std::size_t cell : found) {
+        if (cut.cells.empty() || cut.cells.back() != cell) {
+            cut.cells.push_back(cell);
+            cut.edges.push_back(0);
+        }
+        ++cut.edges.back();
+    }
+    return cut;
 }
 
 CellSamples::CellSamples(std::vector<const Layer*> layers, const LevelGrid& grid)
     : layers_(std::move(layers)), grid_(grid), map_heights_(layers_.size()), noise_(layers_.size()), segments_(layers_.size()),
-      inside_(layers_.size()), covers_(layers_.size()) {}
+      inside_(layers_.size()), covers_(layers_.size()) {
+    for (const Layer* layer : layers_) reach_.push_back(reach_of(*layer, grid));
+}
 
 /// Edges of the parts along an axis, in cells from the cell's low side.
 void CellSamples::part_axis(std::size_t axis, int cell) {
     std::vector<double>& edges = edges_[axis];
     edges.clear();
-    for (int n = 0; n <= PARTS; ++n) edges.push_back(static_cast<double>(n) / PARTS);
+    for (int n = 0; n <= CELL_PARTS; ++n) edges.push_back(static_cast<double>(n) / CELL_PARTS);
     const double size = axis == 0 ? grid_.dx : grid_.dx / grid_.stretch_y;
     for (const std::size_t n : near_) {
         const Shape& shape = layers_[n]->shape;
@@ -151,6 +159,8 @@ void CellSamples::sample(int i, int j) {
     const double reach = half_diagonal(grid_, 1);
     for (std::size_t n = 0; n < layers_.size(); ++n) {
         const Layer& layer = *layers_[n];
+        const CellRange& range = reach_[n];
+        if (i < range.begin_x || i >= range.end_x || j < range.begin_y || j >= range.end_y) continue;
         if (!layer.map) segments_[n] = segments_near(layer.shape, middle, reach);
         const bool outside =
             has_edges(layer) && rim_distance(layer.shape, middle[0], middle[1], segments_[n]) > foot_of(layer) + reach;

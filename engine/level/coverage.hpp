@@ -20,8 +20,14 @@ inline double column_center(const LevelGrid& grid, int i) { return (i + 0.5) * g
 /// Middle of a cell, in the level's own coordinates.
 Point cell_center(const LevelGrid& grid, int i, int j);
 
+inline constexpr int CELL_PARTS = 8; // of a cell's side
+
 /// Cells, row-major and ascending, that an edge of these layers runs through or may touch: a rim, or the foot of a slope.
-std::vector<std::size_t> cut_cells(const std::vector<const Layer*>& layers, const LevelGrid& grid);
+struct CutCells {
+    std::vector<std::size_t> cells;
+    std::vector<int> edges; // how many layers have one in the cell
+};
+CutCells cut_cells(const std::vector<const Layer*>& layers, const LevelGrid& grid);
 
 /// The layers within one cell: its parts, each with a share of the area and what every layer is there. The cell is parted where
 /// sides of boxes run and at eighths; a part that the rim of a vertical cylinder or ridge cuts falls into slices, as if the
@@ -47,6 +53,7 @@ class CellSamples {
     void sample_part(const Point& center, const Point& size, double share);
 
     std::vector<const Layer*> layers_;
+    std::vector<CellRange> reach_;
     LevelGrid grid_;
     std::vector<double> map_heights_, noise_;
     std::vector<std::size_t> near_;

@@ -1,5 +1,7 @@
 #include "engine/image/map.hpp"
+#include "engine/image/plausible.hpp"
 #include "engine/level/coverage.hpp"
+#include "engine/level/draw_work.hpp"
 #include "engine/level/lakes.hpp"
 #include "engine/level/layers.hpp"
 #include "engine/settings/data/quanta.hpp"
@@ -41,8 +43,9 @@ inline double combined(double current, double value, Combine combine) {
     return current;
 }
 
-/// A layer's map as its file has it.
-Result<Map> open_map(const MapSource& source, const std::string& path, LevelFiles& files, std::vector<std::string>& warnings) {
+/// A layer's map as its file has it; of ground, odd values are noted.
+Result<Map> open_map(const MapSource& source, const std::string& path, LevelFiles& files, std::vector<std::string>& warnings,
+                     bool ground = false) {
     auto map = read_map(source.file, source.size, files.read, files.room);
     if (!map) // a bad argument of ours is a bad field of the level's author
         return error(map.status().code == Code::bad_argument ? Code::bad_file : map.status().code,
@@ -53,7 +56,14 @@ Result<Map> open_map(const MapSource& source, const std::string& path, LevelFile
     if (map->integer && !source.grey_range && !source.scale_given)
         return error(Code::bad_file,
                      path + ": " + source.file + " holds grey values; give min and max, what black and white stand for");
-    if (map->filled > 0) warnings.push_back(filled_warning(*map, path + ".file: " + source.file));
+    const bool own_size = map->nx == files.own_nx && map->ny == files.own_ny;
+    map->corners = source.corners.value_or(!own_size && looks_like_corners(map->nx, map->ny));
+    if (map->corners && !source.corners)
+        map->notes.push_back(std::to_string(map->nx) + " x " + std::to_string(map->ny) +
+                             " samples are taken for the corners of cells, as engines have them; \"samples\": \"cells\" or "
+                             "\"corners\" says which they are");
+    if (ground) note_odd_ground(*map);
+    add_map_notes(*map, path + ".file: " + source.file, warnings);
     return map;
 }
 
@@ -122,6 +132,10 @@ class Drawing {
           cut_(cut_cells(pointers(lists.sand, lists.water), grid)), map_heights_(lists.sand.size() + lists.water.size()) {}
 
     Status draw() {
+        // Sand's samples are taken again with those of water.
+        const std::int64_t times = lists_.sand.empty() || lists_.water.empty() ? 1 : 2;
+        const auto work = sampling_work(pointers(lists_.sand, lists_.water), grid_, cut_, files_.work_most);
+        if (Status status = files_.take_work(times * work); !status) return status;
         if (Status status = draw_terrain(); !status) return status;
         if (Status status = draw_sand(); !status) return status;
         return draw_water();
@@ -134,6 +148,7 @@ class Drawing {
             auto changed = draw_centers(layer, LayerTarget::terrain, fields_.terrain, nullptr);
             if (!changed) return changed.status();
             warn_unchanged(layer, *changed);
+            if (*changed) warn_thin(layer);
         }
         lowest_ = lowest_terrain();
         return ok_status();
@@ -153,7 +168,7 @@ class Drawing {
     Status draw_sand() {
         std::vector<char> changed;
         if (Status status = draw_list(lists_.sand, LayerTarget::sand, fields_.sand, 0, changed); !status) return status;
-        const auto cells = cut_cells(pointers(lists_.sand), grid_);
+        const auto cells = cut_cells(pointers(lists_.sand), grid_).cells;
         in_cut_cells(cells, pointers(lists_.sand), changed, [&](CutCell& at) {
             const Below below = below_of(at.cell, false);
             for (std::size_t n = 0; n < at.values.size(); ++n)
@@ -169,7 +184,7 @@ class Drawing {
         if (Status status = draw_list(lists_.water, LayerTarget::water, fields_.water, lists_.sand.size(), changed); !status)
             return status;
         if (lists_.water.empty()) return ok_status();
-        in_cut_cells(cut_, pointers(lists_.sand, lists_.water), changed, [&](CutCell& at) {
+        in_cut_cells(cut_.cells, pointers(lists_.sand, lists_.water), changed, [&](CutCell& at) {
             at.sand_changed.resize(lists_.sand.size());
             at.sand.assign(at.samples.count(), 0.0);
             for (std::size_t n = 0; n < at.sand.size(); ++n)
@@ -204,11 +219,11 @@ class Drawing {
         std::mutex collecting;
         in_bands(cells.size(), band, [&](std::size_t, std::size_t begin, std::size_t end) {
             CutCell at{CellSamples(layers, grid_), 0, std::vector<char>(changed.size()), {}, {}, {}, {}};
-            auto place = std::lower_bound(cut_.begin(), cut_.end(), cells[begin]);
+            auto place = std::lower_bound(cut_.cells.begin(), cut_.cells.end(), cells[begin]);
             for (std::size_t n = begin; n < end; ++n) {
-                place = std::find(place, cut_.end(), cells[n]);
+                place = std::find(place, cut_.cells.end(), cells[n]);
                 at.cell = cells[n];
-                sample_cell(at.samples, static_cast<std::size_t>(place - cut_.begin()));
+                sample_cell(at.samples, static_cast<std::size_t>(place - cut_.cells.begin()));
                 at.values.assign(at.samples.count(), 0.0);
                 draw(at);
             }
@@ -239,7 +254,7 @@ class Drawing {
     Result<bool> draw_centers(const Layer& layer, LayerTarget target, std::vector<float>& field, std::vector<float>* at_cut) {
         std::vector<float> heights;
         if (layer.map) {
-            const auto map = open_map(*layer.map, layer.path, files_, warnings_);
+            const auto map = open_map(*layer.map, layer.path, files_, warnings_, target == LayerTarget::terrain);
             if (!map) return map.status();
             auto values = values_of(*map, *layer.map, layer.path, grid_.nx, grid_.ny);
             if (!values) return values.status();
@@ -248,7 +263,7 @@ class Drawing {
             if (other_size && target == LayerTarget::water && layer.amount == Amount::height)
                 if (Status status = level_lakes_of(layer, *map, heights); !status) return status;
             if (at_cut != nullptr)
-                for (const std::size_t cell : cut_) at_cut->push_back(heights[cell]);
+                for (const std::size_t cell : cut_.cells) at_cut->push_back(heights[cell]);
         }
         const CellRange range = reach_of(layer, grid_, lowest_);
         const auto rows = static_cast<std::size_t>(std::max(range.end_y - range.begin_y, 0));
@@ -320,7 +335,7 @@ class Drawing {
         for (std::size_t n = 0; n < samples.map_heights().size(); ++n)
             if (!map_heights_[n].empty()) samples.map_heights()[n] = static_cast<double>(map_heights_[n][at]);
         const auto width = static_cast<std::size_t>(grid_.nx);
-        samples.sample(static_cast<int>(cut_[at] % width), static_cast<int>(cut_[at] / width));
+        samples.sample(static_cast<int>(cut_.cells[at] % width), static_cast<int>(cut_.cells[at] / width));
     }
 
     /// The layers' result in a sample of a cell. `first`: number of the first layer in the samples.
@@ -341,6 +356,24 @@ class Drawing {
         field[cell] = static_cast<float>(nearest_quantum(height, grid_.quantum, Halves::away));
     }
 
+    /// Terrain is drawn at the middles of cells: a wall holds where its cells touch by their sides.
+    void warn_thin(const Layer& layer) {
+        const Shape& shape = layer.shape;
+        const bool raises = layer.top > 0 && layer.combine != Combine::subtract && layer.combine != Combine::min;
+        if (layer.map || !raises || (shape.kind != ShapeKind::ridge && shape.kind != ShapeKind::box)) return;
+        double width = shape.width, least = grid_.dx;
+        if (shape.kind == ShapeKind::box)
+            width = std::min(shape.to[0] - shape.from[0], (shape.to[1] - shape.from[1]) * grid_.stretch_y);
+        for (std::size_t n = 1; n < shape.points.size(); ++n) {
+            const Point &a = shape.points[n - 1], &b = shape.points[n];
+            if (a[0] != b[0] && a[1] != b[1]) least = std::sqrt(2.0) * grid_.dx; // its cells may touch by their corners alone
+        }
+        if (width >= least * (1 - 1e-9)) return;
+        warnings_.push_back(layer.path + ": too thin to hold water back on this grid: a width of " + number_text(width) +
+                            " m on cells of " + number_text(grid_.dx) + " m leaves gaps, through which water passes; from " +
+                            number_text(least) + " m on there are none");
+    }
+
     void warn_unchanged(const std::vector<Layer>& layers, const std::vector<char>& changed) {
         for (std::size_t n = 0; n < layers.size(); ++n) warn_unchanged(layers[n], changed[n] != 0);
     }
@@ -358,21 +391,39 @@ class Drawing {
     LevelFiles& files_;
     InitialFields& fields_;
     std::vector<std::string>& warnings_;
-    const std::vector<std::size_t> cut_;                       // by the edges of sand and water
+    const CutCells cut_;                                       // by the edges of sand and water
     double lowest_ = -std::numeric_limits<double>::infinity(); // terrain, once it is drawn [m]
     std::vector<std::vector<float>> map_heights_;              // of the maps among sand's layers, then water's, in cut_
 };
 
 } // namespace
 
-std::string filled_warning(const Map& map, const std::string& path) {
-    return path + ": " + std::to_string(map.filled) + " of " + std::to_string(std::int64_t{map.nx} * map.ny) +
-           " cells hold NODATA_value; they take the height of the nearest cell that has one";
+void add_map_notes(const Map& map, const std::string& path, std::vector<std::string>& warnings) {
+    if (map.filled > 0)
+        warnings.push_back(path + ": " + std::to_string(map.filled) + " of " + std::to_string(std::int64_t{map.nx} * map.ny) +
+                           " cells hold NODATA_value; they take the height of the nearest cell that has one");
+    for (const std::string& note : map.notes) warnings.push_back(path + ": " + note);
+}
+
+bool looks_like_corners(int nx, int ny) {
+    constexpr int least = 32; // cells: smaller maps are drawn by hand
+    const auto power = [](int n) { return n >= least && (n & (n - 1)) == 0; };
+    return power(nx - 1) && power(ny - 1);
 }
 
 Status draw_layers(const LayerLists& lists, const LevelGrid& grid, LevelFiles& files, InitialFields& fields,
                    std::vector<std::string>& warnings) {
+    for (const auto* list : {&lists.terrain, &lists.sand, &lists.water})
+        if (Status status = files.take_work(drawing_work(pointers(*list), grid, files.work_most)); !status) return status;
     return Drawing(lists, grid, files, fields, warnings).draw();
+}
+
+Status LevelFiles::take_work(std::int64_t more) {
+    work += more;
+    if (work <= work_most) return ok_status();
+    return error(Code::bad_file, "the level's layers ask for " + number_text(static_cast<double>(work)) +
+                                     " looks at shapes, or more (cells by octaves of noise or segments of ridges); allowed are " +
+                                     number_text(static_cast<double>(work_most)));
 }
 
 Status draw_roughness(std::vector<Layer> layers, const LevelGrid& grid, LevelFiles& files, std::vector<float>& roughness,
@@ -391,6 +442,7 @@ Status draw_velocities(const std::vector<VelocityLayer>& layers, bool of_sand, c
                        std::vector<float>& x, std::vector<float>& y, std::vector<std::string>& warnings) {
     for (const VelocityLayer& layer : layers) {
         if (layer.of_sand != of_sand) continue;
+        if (Status status = files.take_work(static_cast<std::int64_t>(cell_count(grid))); !status) return status;
         x.resize(cell_count(grid), 0.0f);
         y.resize(cell_count(grid), 0.0f);
         std::atomic<bool> changed = false;

@@ -44,7 +44,8 @@ struct MapMeaning {
 struct MapSource {
     std::string file;
     MapMeaning meaning;
-    std::optional<std::pair<int, int>> size; // of an r16 map
+    std::optional<std::pair<int, int>> size; // of a raw map
+    std::optional<bool> corners;             // where samples lie; guessed when absent
     bool grey_range = false;                 // grey 0 ... 1 becomes min ... max; otherwise value * scale + offset
     double min = 0;
     double max = 1;
@@ -64,8 +65,11 @@ struct Layer {
     bool only_present = false; // only cells where the field is above zero
 };
 
-/// Advice for a map with cells of no known height, Map::filled.
-std::string filled_warning(const Map& map, const std::string& path);
+/// Advice for a map with cells of no known height, Map::filled, and its notes.
+void add_map_notes(const Map& map, const std::string& path, std::vector<std::string>& warnings);
+
+/// Maps of 2^n + 1 samples come from engines whose samples lie at the corners of cells.
+bool looks_like_corners(int nx, int ny);
 
 /// Where water or sand starts with a velocity: a shape has both components, a map one.
 struct VelocityLayer {

@@ -90,10 +90,14 @@ Result<Level> parse(const std::string& text, const FileReader& read, LevelOverri
     if (overrides.variant) level.name += ", " + *overrides.variant;
     if (Status status = validate(level.settings); !status) return error(Code::bad_file, status.message);
     const std::int64_t own_cells = cells_of(level.settings.grid);
+    files.own_nx = level.settings.grid.nx;
+    files.own_ny = level.settings.grid.ny;
     auto grid = apply_overrides(overrides, level.settings);
     if (!grid) return grid.status();
     if (Status status = validate(level.settings); !status) return error(Code::bad_argument, status.message);
-    files.room.add(LEVEL_VALUES_PER_CELL * std::max(own_cells, cells_of(level.settings.grid)));
+    const std::int64_t cells = std::max(own_cells, cells_of(level.settings.grid));
+    files.room.add(LEVEL_VALUES_PER_CELL * cells);
+    files.work_most += LEVEL_WORK_PER_CELL * cells;
     if (Status status = draw(layers, *grid, files, level); !status) return status;
     if (Status status = validate(level.fields, level.settings); !status) return error(Code::bad_file, status.message);
     for (std::string& warning : level_warnings(level.settings, level.fields)) level.warnings.push_back(std::move(warning));

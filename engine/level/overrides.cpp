@@ -64,7 +64,7 @@ Status check_memory(const Grid& grid) {
     if (available == 0 || bytes <= available / 10 * 9) return ok_status();
     return error(Code::out_of_memory, "grid: " + std::to_string(grid.nx) + " x " + std::to_string(grid.ny) + " cells need " +
                                           std::to_string(bytes >> 20) + " MiB while they are drawn; " +
-                                          std::to_string(available >> 20) + " MiB are available");
+                                          "9/10 of the " + std::to_string(available >> 20) + " MiB that are available are fewer");
 }
 
 } // namespace

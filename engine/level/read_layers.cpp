@@ -139,6 +139,9 @@ MapSource read_map_source(ObjectReader& reader, const MapMeaning& meaning) {
         map.size = {static_cast<int>(size[0]), static_cast<int>(size[1])};
         if (size[0] != map.size->first || size[1] != map.size->second) reader.fail("size", "must be whole numbers");
     }
+    int samples = -1;
+    reader.choice("samples", {"cells", "corners"}, samples);
+    if (samples >= 0) map.corners = samples == 1;
     return map;
 }
 

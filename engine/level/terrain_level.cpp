@@ -1,4 +1,5 @@
 #include "engine/image/map.hpp"
+#include "engine/image/plausible.hpp"
 #include "engine/level/layers.hpp"
 #include "engine/level/level.hpp"
 #include "engine/level/overrides.hpp"
@@ -61,6 +62,16 @@ Result<Level> build(const std::string& map_path, const LevelOverrides& overrides
     FileRoom room(std::int64_t{MAP_LIMIT} * MAP_LIMIT);
     auto map = read_map(map_path, std::nullopt, files_in("", FilesFrom::anywhere), room); // named by the host
     if (!map) return map.status();
+    map->corners = looks_like_corners(map->nx, map->ny);
+    note_odd_ground(*map);
+    if (map->corners) {
+        map->notes.push_back(std::to_string(map->nx) + " x " + std::to_string(map->ny) +
+                             " samples are taken for the corners of cells, as engines have them");
+        map->values = resample(*map, map->nx - 1, map->ny - 1);
+        --map->nx;
+        --map->ny;
+        map->corners = false;
+    }
     if (Status status = scale_heights(*map, map_path); !status) return status;
 
     const double cell = map->cell_size > 0 ? map->cell_size : CELL;
@@ -90,7 +101,7 @@ Result<Level> build(const std::string& map_path, const LevelOverrides& overrides
     if (Status status = validate(settings); !status) return status;
     if (Status status = validate(level.fields, settings); !status) return status;
     level.warnings = level_warnings(settings, level.fields);
-    if (map->filled > 0) level.warnings.push_back(filled_warning(*map, map_path));
+    add_map_notes(*map, map_path, level.warnings);
     if (cell < DEGREES)
         level.warnings.push_back(map_path + ": a cellsize of " + number_text(cell) +
                                  " looks like degrees; it is read as metres: project the map first");

@@ -219,6 +219,28 @@ Result<std::uint64_t> StateReader::hash() {
     return status ? hash_fields(nullptr) : Result<std::uint64_t>(status);
 }
 
+Result<std::uint64_t> StateReader::high_columns() {
+    const auto& layout = state_.layout();
+    const double limit = state_.settings().method.largest_height;
+    const std::size_t width = static_cast<std::size_t>(layout.nx), height = static_cast<std::size_t>(layout.ny),
+                      most = std::min(rows_at_once(layout), height);
+    std::vector<float> sums(width * most), values(width * most);
+    std::uint64_t count = 0;
+    for (std::size_t first = 0; first < height; first += most) {
+        const Region rows{0, static_cast<int>(first), layout.nx, static_cast<int>(std::min(most, height - first))};
+        const std::size_t cells = rows.cells();
+        if (auto status = read("terrain", rows, std::span(sums).first(cells)); !status) return status;
+        for (const char* layer : {"sand_height", "water_height"}) {
+            if (state_.plan().find(layer) == nullptr) continue;
+            if (auto status = read(layer, rows, std::span(values).first(cells)); !status) return status;
+            for (std::size_t n = 0; n < cells; ++n) sums[n] += values[n];
+        }
+        count += static_cast<std::uint64_t>(std::count_if(sums.begin(), sums.begin() + static_cast<std::ptrdiff_t>(cells),
+                                                          [&](float sum) { return static_cast<double>(sum) > limit; }));
+    }
+    return count;
+}
+
 Result<WorldStats> StateReader::stats() {
     if (auto status = stepper_.finish_step(); !status) return status;
     WorldStats s;
@@ -249,6 +271,9 @@ Result<WorldStats> StateReader::stats() {
     s.clamped_faces = marks.clamped_faces;
     s.capped_faces = marks.capped_faces;
     s.limited_cells = marks.limited_cells;
+    auto high = high_columns();
+    if (!high) return high.status();
+    s.high_columns = *high;
     return s;
 }
 

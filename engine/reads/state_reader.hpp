@@ -15,6 +15,7 @@ struct WorldStats {
     Ledger ledger;
     double quantum = 0;
     double largest_sand = 0, largest_water = 0, largest_water_speed = 0, largest_sand_speed = 0, smallest_height = 0;
+    std::uint64_t high_columns = 0; // above method.largest_height
     std::uint64_t not_finite = 0, clamped_faces = 0, capped_faces = 0, limited_cells = 0, hash = 0;
     std::uint64_t tiles = 0, active_tiles = 0,
                   active_sand_tiles = 0; // of the newest step, in the longer of its lists and in the sand's; 0 without
@@ -51,6 +52,9 @@ class StateReader {
     Status look_at(const Rows& rows_from, int nx, int ny, const Look& look, Figures& figures);
     /// Reads every hashed field; returns the hash, and adds the other figures to `stats` if there is one.
     Result<std::uint64_t> hash_fields(WorldStats* stats);
+
+    /// Columns of terrain, sand and water above method.largest_height.
+    Result<std::uint64_t> high_columns();
 
     WorldState& state_;
     Stepper& stepper_;

@@ -11,8 +11,8 @@ namespace wadi {
 /// Closed whatever happens. errno says why a call failed.
 class DiskFile {
   public:
-    enum class Open { to_read, to_write_anew };
-    /// To read: a pipe is opened without waiting for its writer. To write: made or emptied, never through a symbolic link.
+    enum class Open { to_read, to_make };
+    /// To read: a pipe is opened without waiting for its writer. To write: made, where nothing has the name.
     DiskFile(const std::string& path, Open how);
     ~DiskFile();
     DiskFile(const DiskFile&) = delete;
@@ -23,6 +23,8 @@ class DiskFile {
     bool read_all(std::span<std::byte> bytes) const;
     /// Nothing where it is a folder, pipe or device.
     std::optional<std::uint64_t> regular_bytes() const;
+    /// Gives it the permissions and, where the system lets it, the owner of another file, if there is one.
+    void take_rights_of(const std::string& path) const;
     /// On the disk itself, so that a power cut after it takes nothing back.
     bool synchronise() const;
 

@@ -8,8 +8,8 @@ namespace wadi {
 
 DiskFile::DiskFile(const std::string& path, Open how)
     : number_(open(path.c_str(),
-                   (how == Open::to_read ? O_RDONLY | O_NONBLOCK : O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW) | O_CLOEXEC,
-                   0666)) {}
+                   (how == Open::to_read ? O_RDONLY | O_NONBLOCK : O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW) | O_CLOEXEC, 0666)) {
+}
 
 DiskFile::~DiskFile() {
     if (number_ >= 0) close(number_);
@@ -39,6 +39,13 @@ std::optional<std::uint64_t> DiskFile::regular_bytes() const {
     struct stat about {};
     if (fstat(number_, &about) != 0 || !S_ISREG(about.st_mode)) return std::nullopt;
     return static_cast<std::uint64_t>(about.st_size);
+}
+
+void DiskFile::take_rights_of(const std::string& path) const {
+    struct stat about {};
+    if (stat(path.c_str(), &about) != 0) return;
+    [[maybe_unused]] const int owner = fchown(number_, about.st_uid, about.st_gid); // may take set-id bits away: first
+    fchmod(number_, about.st_mode & 07777);
 }
 
 bool DiskFile::synchronise() const { return fsync(number_) == 0; }

@@ -13,7 +13,7 @@ unsigned piece(std::size_t bytes) { return static_cast<unsigned>(std::min(bytes,
 } // namespace
 
 DiskFile::DiskFile(const std::string& path, Open how)
-    : number_(_open(path.c_str(), (how == Open::to_read ? _O_RDONLY : _O_WRONLY | _O_CREAT | _O_TRUNC) | _O_BINARY | _O_NOINHERIT,
+    : number_(_open(path.c_str(), (how == Open::to_read ? _O_RDONLY : _O_WRONLY | _O_CREAT | _O_EXCL) | _O_BINARY | _O_NOINHERIT,
                     _S_IREAD | _S_IWRITE)) {}
 
 DiskFile::~DiskFile() {
@@ -43,6 +43,8 @@ std::optional<std::uint64_t> DiskFile::regular_bytes() const {
     if (_fstat64(number_, &about) != 0 || (about.st_mode & _S_IFMT) != _S_IFREG) return std::nullopt;
     return static_cast<std::uint64_t>(about.st_size);
 }
+
+void DiskFile::take_rights_of(const std::string&) const {} // a replaced file's are the folder's
 
 bool DiskFile::synchronise() const { return _commit(number_) == 0; }
 

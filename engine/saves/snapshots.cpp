@@ -1,4 +1,6 @@
 #include "engine/saves/snapshots.hpp"
+#include "engine/saves/snapshot_checks.hpp"
+#include "engine/step/plan/world_params.hpp"
 #include <algorithm>
 #include <cstring>
 #include <new>
@@ -9,6 +11,14 @@ namespace {
 
 // What a world with these effects may hold.
 Content content_under(std::uint32_t effects) { return {(effects & EFFECT_SAND) != 0, (effects & EFFECT_WATER) != 0}; }
+
+// What is loaded but for this, and nobody but the host can know why.
+std::string unbooked_text(const Drift& drift, const Method& method) {
+    if (height_quantum(method) <= 0 || (drift.sand == 0 && drift.water == 0)) return "";
+    return "load: the snapshot holds " + std::to_string(drift.sand) + " quanta of sand and " + std::to_string(drift.water) +
+           " of water that its books do not say: columns had passed method.largest_height, or its bytes were changed and sealed "
+           "anew";
+}
 
 Content operator|(Content a, Content b) { return {a.sand || b.sand, a.water || b.water}; }
 
@@ -121,10 +131,13 @@ Status Snapshots::load(std::span<const std::byte> from) {
     auto header = read_header(from);
     if (!header) return header.status();
     if (auto status = check(*header); !status) return status;
+    if (auto status = check_contents(*header, from, state_.settings()); !status) return status;
+    const std::string unbooked = unbooked_text(drift_of(*header, from, state_.settings()), state_.settings().method);
     const std::string no_roll_back = "load: no memory to keep the state for roll-back";
     const auto write = [&] { return write_fields(*header, from); };
     if (auto status = stepper_.change(header->material, content_for(*header), write); !status) return status;
     if (auto status = stepper_.go_to(header->totals); !status) return status;
+    if (!unbooked.empty()) state_.tell(1, unbooked);
     keep_for_roll_back(no_roll_back);
     return state_.lost();
 }

@@ -21,9 +21,10 @@ class Snapshots {
     Status save(std::span<std::byte> to);
     /// Goes back (or on) to a snapshot of a world of the same level. The world is promoted to the snapshot's effects; what those
     /// lacked is zero, as it was there. Edits and commands that wait and states kept for roll-back are forgotten. Waits. Errors:
-    /// bad_file (not a whole, unchanged snapshot of a known version), bad_argument (of another level, or with effects that this
-    /// world's level forces off), out_of_memory; the world is then unchanged, as it is where std::bad_alloc is thrown between two
-    /// steps. Where only the first state for roll-back could not be kept, none is and the log says so.
+    /// bad_file (not a whole, unchanged snapshot of a known version, or contents that no world reaches), bad_argument (of another
+    /// level, or with effects that this world's level forces off), out_of_memory; the world is then unchanged, as it is where
+    /// std::bad_alloc is thrown between two steps. Where only the first state for roll-back could not be kept, none is and the
+    /// log says so.
     Status load(std::span<const std::byte> from);
 
     /// Has the device copy the state as it is after the steps asked for so far; never waits but allocates at its first call.

@@ -9,13 +9,20 @@
 #include <cstring>
 #include <cxxabi.h>
 #include <new>
+#include <span>
 #include <string>
+#include <string_view>
 
 namespace wadi::plugin {
 
 /// Keeps the message for wadi_get_last_error() of this thread.
 wadi_result report(const Status& status);
 const char* last_error();
+
+/// The most bytes, up to `most_bytes`, of whole characters of a text in UTF-8.
+std::size_t whole_characters(std::string_view text, std::size_t most_bytes);
+/// Blanks for line ends and other control characters: hosts show texts in which files had a word, in terminals, too.
+void make_printable(std::span<char> text);
 
 /// WADI_ERROR_OUT_OF_MEMORY, with a text where there is memory for one.
 wadi_result report_out_of_memory(const char* function) noexcept;
@@ -87,8 +94,9 @@ template <class Call> wadi_result or_unchanged(const char* function, Call call) 
 }
 
 template <std::size_t N> void copy_text(char (&to)[N], const std::string& text) {
-    const std::size_t n = std::min(text.size(), N - 1);
+    const std::size_t n = whole_characters(text, N - 1);
     std::memcpy(to, text.data(), n);
+    make_printable({to, n});
     std::memset(to + n, 0, N - n);
 }
 

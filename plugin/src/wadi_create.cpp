@@ -17,7 +17,9 @@ compute::Log to_log(const wadi_device_options& options) {
     return [log = options.log, user = options.log_user](int severity, const std::string& message) {
         const compute::DefaultFloats kept; // whatever the host's code sets
         try {
-            log(user, static_cast<wadi_log_level>(severity), message.c_str());
+            std::string text = message;
+            make_printable(text);
+            log(user, static_cast<wadi_log_level>(severity), text.c_str());
         } catch (const ThreadCancelled&) {
             throw;
         } catch (...) {
@@ -136,6 +138,7 @@ struct Asked {
 
 wadi_result host(Result<Level> level, const wadi_device_options& options, wadi_world_id* id) {
     if (!level) return report(level.status());
+    for (auto& warning : level->warnings) make_printable(warning);
     const auto log = to_log(options);
     auto device = open(options, log);
     if (!device) return report(device.status());

@@ -82,6 +82,7 @@ wadi_result wadi_world_get_stats(wadi_world_id id, wadi_world_stats* stats) {
         own.tiles = now->tiles;
         own.active_tiles = now->active_tiles;
         own.hash = now->hash;
+        own.high_columns = now->high_columns;
         give(stats, own);
         return report(ok_status());
     });

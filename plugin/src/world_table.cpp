@@ -1,6 +1,7 @@
 #include "plugin/src/world_table.hpp"
 #include <atomic>
 #if !defined(_WIN32)
+#include <pthread.h>
 #include <unistd.h>
 #endif
 
@@ -12,9 +13,15 @@ namespace {
 std::atomic<std::uint32_t> newest_generation{0};
 
 #if defined(_WIN32)
-long this_process() { return 0; } // never forks
+std::pair<long, long> this_process() { return {0, 0}; } // never forks
 #else
-long this_process() { return getpid(); }
+std::atomic<long> forks{0}; // of this process and those that it came from
+
+/// Counts forks as well: in a pid namespace of its own a child may have its parent's number.
+std::pair<long, long> this_process() {
+    [[maybe_unused]] static const int counting = pthread_atfork(nullptr, nullptr, [] { ++forks; });
+    return {getpid(), forks};
+}
 #endif
 
 } // namespace

@@ -6,6 +6,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace wadi::plugin {
@@ -26,9 +27,9 @@ enum class Entry { entered, unknown, busy };
 class WorldTable {
   public:
     /// `inherited`: that of the parent process, or null.
-    WorldTable(long process, WorldTable* inherited) : process_(process), inherited_(inherited) {}
+    WorldTable(std::pair<long, long> process, WorldTable* inherited) : process_(process), inherited_(inherited) {}
     /// Whose worlds these are.
-    long process() const { return process_; }
+    std::pair<long, long> process() const { return process_; }
     wadi_world_id add(HostedWorld hosted);
     /// Only one caller is inside a world at a time; one that entered must leave.
     Entry enter(wadi_world_id id, HostedWorld*& hosted);
@@ -44,7 +45,7 @@ class WorldTable {
     /// Null when the id is not of a living world. The mutex must be held.
     Slot* find(wadi_world_id id);
 
-    const long process_;
+    const std::pair<long, long> process_;
     [[maybe_unused]] WorldTable* const inherited_; // kept for tools that look for lost memory
     std::mutex mutex_;                             // held to look worlds up, not while one is used
     std::vector<Slot> slots_;

@@ -23,6 +23,12 @@ run "$attack" files
 run "$attack" hosts "$seconds"
 run "$attack" soak cpu "$steps"
 run "$attack" cycles cpu "$count"
+# A library with the name of Vulkan's loader that is none.
+none=$(mktemp -d)
+echo | cc -shared -x c - -o "$none/libvulkan.so.1"
+LD_LIBRARY_PATH=$none "$attack" has vulkan
+[ $? = 1 ] || { failed=1; echo "FAILED: a Vulkan loader without an entry point" >&2; }
+rm -r "$none"
 for backend in vulkan cuda; do
     if ! "$attack" has "$backend"; then
         echo "$backend: no device"
@@ -36,7 +42,7 @@ if [ "$full" = --full ]; then # ctest runs each of these by itself
     run "$bin/wadi-test-faults" memory
     run "$bin/wadi-test-faults" load 1
     for what in save disk; do run "$bin/wadi-test-faults" "$what"; done
-    for what in snapshots savers memory; do run "$bin/wadi-test-files" "$what"; done
+    for what in snapshots rights savers memory; do run "$bin/wadi-test-files" "$what"; done
     for what in threads exit fork; do run "$bin/wadi-test-process" "$what"; done
     run "$bin/wadi-test-plugin" -tc='*rounding*,*traps*,*thread*,*handle*,*snapshot*'
 fi

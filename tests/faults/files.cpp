@@ -1,5 +1,5 @@
 // wadi-test-files: files that do harm. Snapshots that are no files, too large or saved twice at once; maps that do not fit into
-// memory. Usage: wadi-test-files snapshots | savers | memory.
+// memory. Usage: wadi-test-files snapshots | rights | savers | memory.
 #include "tests/unit/map_files.hpp"
 #include <atomic>
 #include <cstdio>
@@ -91,6 +91,37 @@ int snapshots() {
     return wrong;
 }
 
+/// A save keeps what the file that it replaces was: its permissions, and that a link leads to it; any name that the disk takes.
+int rights() {
+    const Folder folder;
+    const auto world = make_world();
+    const auto mode_of = [](const std::string& path) {
+        struct stat about {};
+        return stat(path.c_str(), &about) == 0 ? about.st_mode & 07777 : 0U;
+    };
+    const auto saves = [&](const std::string& path) {
+        expect(wadi_world_save_file(world, path.c_str()) == WADI_OK, path + ": save");
+        expect(wadi_world_load_file(world, path.c_str()) == WADI_OK, path + ": load");
+    };
+    const std::string secret = folder.write("secret", std::string("old"));
+    expect(chmod(secret.c_str(), 0600) == 0, "chmod");
+    saves(secret);
+    expect(mode_of(secret) == 0600, "a private file stays private");
+    const std::string link = folder.file("link"), dangling = folder.file("dangling"), new_file = folder.file("new");
+    std::filesystem::create_symlink("secret", link);
+    std::filesystem::create_symlink("new", dangling);
+    saves(link);
+    expect(std::filesystem::is_symlink(link), "a link stays a link");
+    expect(mode_of(secret) == 0600, "and what it leads to is private");
+    saves(dangling);
+    expect(std::filesystem::is_symlink(dangling) && std::filesystem::is_regular_file(new_file),
+           "a link to what is not there yet");
+    for (const std::size_t length : {200U, 230U, 231U, 255U}) saves(folder.file(std::string(length, 'n')));
+    expect(files_in(folder) == 4 + 4, "no other file is left");
+    wadi_destroy_world(world);
+    return wrong;
+}
+
 /// Two worlds save to one path, a third loads it: whole snapshots alone, and no other file is left.
 int savers() {
     const Folder folder;
@@ -159,11 +190,11 @@ int memory() {
 int main(int argc, char** argv) {
     alarm(300); // a load that waits for ever fails
     const std::string what = argc > 1 ? argv[1] : "";
-    if (what != "snapshots" && what != "savers" && what != "memory") {
-        std::fprintf(stderr, "wadi-test-files snapshots | savers | memory\n");
+    if (what != "snapshots" && what != "rights" && what != "savers" && what != "memory") {
+        std::fprintf(stderr, "wadi-test-files snapshots | rights | savers | memory\n");
         return 2;
     }
-    const int failures = what == "snapshots" ? snapshots() : what == "savers" ? savers() : memory();
+    const int failures = what == "snapshots" ? snapshots() : what == "rights" ? rights() : what == "savers" ? savers() : memory();
     std::puts(failures == 0 ? "passed" : "FAILED");
     return failures == 0 ? 0 : 1;
 }

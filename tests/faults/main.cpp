@@ -96,7 +96,9 @@ bool session(long fail = 0) {
     note(wadi_world_set_command_log(world, 1), "set_command_log");
     note(wadi_world_set_rollback(world, 2, 1), "set_rollback");
     note(wadi_world_set_outputs(world, 1), "set_outputs");
+    note(wadi_world_set_profiling(world, 1), "set_profiling"); // what times steps is the device's thread
     note(wadi_world_step(world, 2), "step");
+    note(wadi_world_set_profiling(world, 0), "end of profiling");
     auto edit = wadi_default_edit();
     edit.layer = WADI_LAYER_SAND;
     edit.x0 = edit.y0 = 1.2;
@@ -113,8 +115,15 @@ bool session(long fail = 0) {
     const auto saved = wadi_world_save(world, snapshot, &room);
     note(saved, "save");
     if (saved == WADI_OK) note(wadi_world_load(world, snapshot, room), "load");
-    const float xy[4] = {1, 1, 2, 2};
     uint64_t ticket = 0;
+    const auto begun = wadi_world_begin_save(world, &ticket);
+    note(begun, "begin_save");
+    for (auto ended = WADI_NOT_READY; begun == WADI_OK && ended == WADI_NOT_READY;) { // put together by a thread of its own
+        room = sizeof snapshot;
+        ended = wadi_world_end_save(world, ticket, snapshot, &room);
+        note(ended, "end_save");
+    }
+    const float xy[4] = {1, 1, 2, 2};
     note(wadi_world_query(world, xy, 2, &ticket), "query");
     static float cells[30];
     note(wadi_world_read_field(world, WADI_FIELD_TOTAL_WATER_DEPTH, cells, 30), "read_field");

@@ -8,6 +8,7 @@
 #include <dlfcn.h>
 #include <functional>
 #include <pthread.h>
+#include <sched.h>
 #include <string>
 #include <sys/wait.h>
 #include <thread>
@@ -216,6 +217,29 @@ int forks() {
     expect(ended.empty(), "a child with a world of its own " + ended);
     ended = run_child([] {}, 10);
     expect(ended.empty(), "a child that only leaves " + ended);
+    // The first process of a pid namespace, and the first of another within: both have the number 1.
+    ended = run_child(
+        [&] {
+            if (unshare(CLONE_NEWPID) != 0) return void(std::puts("pid namespaces: not for this user"));
+            const std::string first = run_child(
+                [&] {
+                    wadi_world_id own{};
+                    expect(getpid() == 1 && make(40, own) == WADI_OK, "a world of process 1");
+                    expect(unshare(CLONE_NEWPID) == 0, "a namespace within");
+                    const std::string second = run_child(
+                        [&] {
+                            expect(getpid() == 1, "process 1 again");
+                            expect(wadi_world_step(own, 1) == WADI_ERROR_BAD_ARGUMENT,
+                                   "step of a world inherited under the same number");
+                        },
+                        20);
+                    expect(second.empty(), "its child of the same number " + second);
+                },
+                40);
+            expect(first.empty(), "a child in a pid namespace " + first);
+        },
+        60);
+    expect(ended.empty(), "children with equal numbers " + ended);
     expect(wadi_world_get_hash(world, &later) == WADI_OK && later == hash, "the parent's world is as it was");
     expect(wadi_world_step(world, 2) == WADI_OK && wadi_destroy_world(world) == WADI_OK, "and runs on");
     return wrong;

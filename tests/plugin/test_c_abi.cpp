@@ -296,3 +296,30 @@ TEST_CASE("a device below -1 is refused, -1 is the best") {
         CHECK(std::string(wadi_get_last_error()).find("below -1") != std::string::npos);
     }
 }
+
+TEST_CASE("texts hold words of files as a terminal may show them, and whole characters") {
+    const auto device = cpu_device();
+    const auto message = [&](const std::string& key) {
+        wadi_world_id world{};
+        const std::string level = "{\"format_version\": 1, \"name\": \"x\", \"" + key + "\": 1}";
+        CHECK(wadi_create_world_from_level_text(level.c_str(), nullptr, nullptr, nullptr, &device, &world) ==
+              WADI_ERROR_BAD_FILE);
+        return std::string(wadi_get_last_error());
+    };
+    for (const char c : message("a\\n\\u001b[2Jb\\u009b\\u007f")) CHECK(static_cast<unsigned char>(c) >= 0x20);
+    CHECK(message("a\\u001b[2Jb").find("a [2Jb") != std::string::npos);
+    CHECK(message("a\\u009bb").find("\xc2\x9b") == std::string::npos);
+    for (std::size_t length = 2000; length < 2004; ++length) {
+        const std::string text = message(std::string(length % 4, 'x') + [] {
+            std::string many;
+            for (int n = 0; n < 700; ++n) many += "\xe2\x82\xac"; // a character of three bytes
+            return many;
+        }());
+        CHECK(text.size() > 900);
+        const auto continues = [&](std::size_t at) { return (static_cast<unsigned char>(text[at]) & 0xc0U) == 0x80U; };
+        for (std::size_t at = 0; at < text.size(); ++at)
+            if (text[at] == '\xe2') REQUIRE((at + 2 < text.size() && continues(at + 1) && continues(at + 2)));
+        for (std::size_t at = 0; at < text.size(); ++at)
+            if (continues(at)) REQUIRE((at > 0 && (text[at - 1] == '\xe2' || (at > 1 && text[at - 2] == '\xe2'))));
+    }
+}

@@ -189,3 +189,89 @@ TEST_CASE("a pipeline for effects that no world has together is refused by the C
     CHECK((*device)->create_pipeline(stage, EFFECT_ROUGHNESS | EFFECT_BED_FRICTION, {}));
     CHECK((*device)->create_pipeline(stage, EFFECT_SECOND_ORDER_WATER, {}));
 }
+
+TEST_CASE("a written region or a trim that fails half way changes nothing: state and books are what they were") {
+    for (const auto& backend : available_backends()) {
+        CAPTURE(backend);
+        auto device = backends::open_device(backend, -1, {});
+        REQUIRE(device);
+        auto scene = mixed_scene(24, 19);
+        scene.settings.sides[SIDE_EAST] = {SideKind::outflow, 0, 1e30, {}};
+        const std::vector<float> heights(12, 0.75F);
+        const Region region{5, 4, 4, 3};
+        const auto drift = [](World& world) {
+            const auto stats = world.reader().stats();
+            REQUIRE(stats);
+            const auto off = [](std::int64_t held, std::int64_t initial, std::int64_t in, std::int64_t out) {
+                return held - initial - in + out;
+            };
+            return std::pair{off(stats->sand_quanta, stats->sand_initial, stats->ledger.sand_in, stats->ledger.sand_out),
+                             off(stats->water_quanta, stats->water_initial, stats->ledger.water_in, stats->ledger.water_out)};
+        };
+        const auto run = [&](FaultyDevice::Plan& plan, int what, int fail_at) {
+            auto made = World::create(scene.settings, scene.fields, std::make_unique<FaultyDevice>(**device, plan), {});
+            REQUIRE(made);
+            World& world = **made;
+            step(world, 3);
+            const auto before = state_of(world);
+            const int first = plan.calls;
+            plan.fail_at = fail_at == 0 ? 0 : plan.calls + fail_at;
+            const auto layer = what == 0 ? EditLayer::terrain : what == 1 ? EditLayer::sand : EditLayer::water;
+            const auto status = what == 3 ? world.commands().trim() : world.commands().write_region(layer, region, heights);
+            plan.fail_at = 0;
+            const int calls = plan.calls - first;
+            CHECK(drift(world) == std::pair<std::int64_t, std::int64_t>{0, 0});
+            if (!status) CHECK(state_of(world) == before);
+            if (fail_at == 0 && what < 3) CHECK(state_of(world) != before); // negative control
+            CHECK(static_cast<bool>(status) == (fail_at == 0));
+            REQUIRE(world.stepper().steps(2));
+            return calls;
+        };
+        for (int what = 0; what < 4; ++what) {
+            CAPTURE(what);
+            FaultyDevice::Plan whole;
+            const int calls = run(whole, what, 0);
+            CHECK(calls >= 4);
+            for (int n = 1; n <= calls; n += backend == "cpu" ? 1 : 7) {
+                CAPTURE(n);
+                FaultyDevice::Plan plan;
+                run(plan, what, n);
+            }
+        }
+    }
+}
+
+TEST_CASE("an update that fails has not taken the time: repeated, it takes what steps are left of it") {
+    auto device = backends::open_device("cpu", -1, {});
+    REQUIRE(device);
+    auto scene = flat_scene(9, 7, 0.25, 0.01);
+    scene.fill(scene.fields.water, [](double x, double) { return x < 1 ? 0.6 : 0.1; });
+    const auto run = [&](FaultyDevice::Plan& plan, int fail_at) {
+        auto made = World::create(scene.settings, scene.fields, std::make_unique<FaultyDevice>(**device, plan), {});
+        REQUIRE(made);
+        World& world = **made;
+        REQUIRE(world.outputs().set_mask(1));
+        const Edit edits[] = {pour(EditLayer::sand)}; // promotes the world in the first step
+        REQUIRE(world.commands().edit(edits));
+        const int first = plan.calls;
+        plan.fail_at = fail_at == 0 ? 0 : first + fail_at;
+        Frame frame;
+        const auto status = world.update(35'000'000, frame);
+        plan.fail_at = 0;
+        const int calls = plan.calls - first;
+        if (!status) REQUIRE(world.update(35'000'000, frame));
+        CHECK(world.steps() == 3);
+        REQUIRE(world.update(5'000'000, frame)); // 40 ms in all
+        CHECK(world.steps() == 4);
+        CHECK(static_cast<bool>(status) == (fail_at == 0));
+        return calls;
+    };
+    FaultyDevice::Plan whole;
+    const int calls = run(whole, 0);
+    CHECK(calls > 4);
+    for (int n = 1; n <= calls; ++n) {
+        CAPTURE(n);
+        FaultyDevice::Plan plan;
+        run(plan, n);
+    }
+}

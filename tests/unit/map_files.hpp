@@ -70,10 +70,11 @@ inline Bytes png(std::uint32_t nx, std::uint32_t ny, std::uint8_t depth, std::ui
     return file;
 }
 
-/// A PNG of zeros whose data is one deflate block of repeats: some 1/159 of what it decodes to.
-inline Bytes png_of_zeros(std::uint32_t nx, std::uint32_t ny, std::uint8_t depth, std::uint8_t color) {
+/// A PNG of zeros whose data is one deflate block of repeats: some 1/159 of what it decodes to. `bytes`: what that is, by default
+/// what the header implies.
+inline Bytes png_of_zeros(std::uint32_t nx, std::uint32_t ny, std::uint8_t depth, std::uint8_t color, std::uint64_t bytes = 0) {
     const std::uint64_t channels = color == 2 ? 3 : color == 4 ? 2 : color == 6 ? 4 : 1;
-    std::uint64_t left = (nx * channels * depth / 8 + 1) * ny;
+    std::uint64_t left = bytes > 0 ? bytes : (nx * channels * depth / 8 + 1) * ny;
     Bytes zlib = {0x78, 0x01};
     std::uint32_t bits = 0;
     int filled = 0;

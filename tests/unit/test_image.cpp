@@ -1,9 +1,12 @@
 // engine/image: PNG, r16, NPY and ASC maps, their errors, and resampling.
 #include "engine/image/map.hpp"
+#include "engine/image/plausible.hpp"
 #include "tests/unit/level_text.hpp"
 #include "tests/unit/map_files.hpp"
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <doctest/doctest.h>
 #include <limits>
 #include <numeric>
@@ -63,6 +66,12 @@ TEST_CASE("image: damaged PNG files") {
     // A header that asks for 512 MB in a file of 80 bytes.
     CHECK(says(message(decode_png(png(16384, 16384, 16, 0, {}), "a.png")), "cannot hold"));
     CHECK(says(message(decode_png(png(8, 8, 16, 0, {1, 2, 3, 4, 5, 6, 7, 8}), "a.png")), "cannot be decoded"));
+}
+
+TEST_CASE("image: a PNG's data may not go far beyond its header's pixels") {
+    const auto bomb = decode_png(png_of_zeros(8, 8, 8, 0, 20'000'000), "bomb.png");
+    CHECK(says(message(bomb), "bomb.png: damaged, its data holds more than the pixels of its header"));
+    CHECK(decode_png(png_of_zeros(8, 8, 8, 0, 200), "padded.png")); // as some writers leave the end
 }
 
 TEST_CASE("image: a PNG counts with all its channels") {
@@ -182,9 +191,191 @@ TEST_CASE("image: cells of an ASCII grid without data take the nearest height") 
     for (const float value : map->values) CHECK((value == 4 || value == 9));
     CHECK(decode_asc(asc(ASC_HEADER + "nodata_value nan\n", "4 nan 6 NaN 8 9"), "a.asc")->filled == 2);
     CHECK(decode_asc(asc(ASC_HEADER, "4 -9999 6 7 8 9"), "a.asc")->filled == 1); // the format's own value
-    CHECK(decode_asc(asc(ASC_HEADER + "NODATA_value 0\n", "4 -9999 6 7 8 9"), "a.asc")->filled == 0);
+    CHECK(decode_asc(asc(ASC_HEADER + "NODATA_value 0\n", "4 -999 6 7 8 9"), "a.asc")->filled == 0);
     CHECK(says(message(decode_asc(asc(ASC_HEADER, "-9999 -9999 -9999\n-9999 -9999 -9999\n"), "a.asc")),
                "every value is NODATA_value"));
+}
+
+TEST_CASE("image: ASCII grids as programs write them") {
+    const auto loads = [](const std::string& header, const std::string& values) {
+        const auto map = decode_asc(asc(header, values), "a.asc");
+        REQUIRE_MESSAGE(map, message(map));
+        return *map;
+    };
+    const std::string six = "4 5 6\n1.5 -2 3e0\n", origin = "ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\n";
+    CHECK(loads("\xef\xbb\xbf" + ASC_HEADER, six).values == VALUES);
+    CHECK(loads("# a comment\n// another 7 8\n" + ASC_HEADER + "# of the header\n", six).values == VALUES);
+    const Map square = loads(origin + "dx 2\ndy 2\n", six);
+    CHECK(square.cell_size == 2);
+    CHECK(square.notes.empty());
+    CHECK(square.values == VALUES);
+    const Map oblong = loads(origin + "dx 1\ndy 3\n", "9 9 9\n0 0 0");
+    CHECK(oblong.ny == 6);
+    CHECK(oblong.values.front() == 0);
+    CHECK(oblong.values.back() == 9);
+    REQUIRE(oblong.notes.size() == 1);
+    CHECK(oblong.notes[0] == "cells of 1 by 3 m: its 2 rows are resampled to 6");
+    for (const char* nodata : {"null", "NaN", "-", "-3.4028234663852886e+38", "NODATA"}) {
+        const std::string value = std::string(nodata) == "-3.4028234663852886e+38" ? "-3.4028235e+38" : nodata;
+        CHECK_MESSAGE(loads(ASC_HEADER + "NODATA_value " + nodata + "\n", "4 " + value + " 6 7 8 9").filled == 1, nodata);
+    }
+    CHECK(loads(ASC_HEADER, "null 5 6 7 8 9").filled == 1);
+    CHECK(loads(ASC_HEADER, "1 2 3\n4 nan 6").filled == 1);
+    const Map other = loads(ASC_HEADER + "NODATA_value -32768\n", "4 -9999 6 7 8 9");
+    CHECK(other.filled == 1);
+    REQUIRE(other.notes.size() == 1);
+    CHECK(other.notes[0] == "1 cells hold -9999, which is no ground beside 4 ... 9 m: taken for holes");
+    // A trench that goes down there is ground.
+    CHECK(loads(ASC_HEADER + "NODATA_value -32768\n", "-9500 -9999 -9000 -5000 -2000 0").filled == 0);
+}
+
+namespace {
+/// 32 x 32 of a smooth hill.
+std::vector<double> hill(double most) {
+    std::vector<double> values;
+    for (int j = 0; j < 32; ++j)
+        for (int i = 0; i < 32; ++i) values.push_back(most * std::sin(0.09 * (i + 1)) * std::sin(0.09 * (j + 1)));
+    return values;
+}
+Bytes bytes_of_16(const std::vector<double>& values, bool swapped) {
+    std::vector<std::uint16_t> words;
+    for (const double value : values) words.push_back(static_cast<std::uint16_t>(static_cast<std::int32_t>(value)));
+    return map_files::words(words, swapped);
+}
+Bytes bytes_of_32(const std::vector<double>& values, bool swapped) {
+    Bytes bytes;
+    for (const double value : values) {
+        const auto number = static_cast<float>(value);
+        std::uint8_t each[4];
+        std::memcpy(each, &number, 4);
+        if (swapped) std::reverse(each, each + 4);
+        bytes.insert(bytes.end(), each, each + 4);
+    }
+    return bytes;
+}
+bool noted(const Map& map, const char* part) {
+    for (const std::string& note : map.notes)
+        if (note.find(part) != std::string::npos) return true;
+    return false;
+}
+} // namespace
+
+TEST_CASE("image: raw samples of 8, 16 and 32 bits, in either order, signed or not, by size and smoothness") {
+    Bytes eight;
+    for (const double value : hill(250)) eight.push_back(static_cast<std::uint8_t>(value));
+    const auto of_8 = decode_raw(eight, "a.raw", std::nullopt);
+    REQUIRE_MESSAGE(of_8, message(of_8));
+    CHECK(of_8->nx == 32);
+    CHECK(of_8->integer);
+    CHECK(noted(*of_8, "read as 32 x 32 samples of 8 bits, by its 1024 bytes"));
+    const auto of_16 = decode_raw(bytes_of_16(hill(60000), false), "a.raw", std::nullopt);
+    REQUIRE_MESSAGE(of_16, message(of_16));
+    CHECK(of_16->notes.empty());
+    const auto swapped = decode_r16(bytes_of_16(hill(60000), true), "a.r16", std::nullopt);
+    REQUIRE_MESSAGE(swapped, message(swapped));
+    CHECK(noted(*swapped, "its bytes are swapped"));
+    CHECK(swapped->values == of_16->values);
+    std::vector<double> both = hill(3000);
+    for (double& value : both) value -= 900;
+    const auto is_signed = decode_r16(bytes_of_16(both, false), "a.r16", std::nullopt);
+    REQUIRE_MESSAGE(is_signed, message(is_signed));
+    CHECK(noted(*is_signed, "its 16-bit samples are signed"));
+    std::vector<double> ramp; // whose low bytes are all 0: as smooth in either order
+    for (int n = 0; n < 65 * 65; ++n) ramp.push_back(std::min(65535, n % 65 * 1024));
+    CHECK(decode_r16(bytes_of_16(ramp, false), "a.r16", std::nullopt)->notes.empty());
+    std::vector<double> mask(1024);
+    for (std::size_t n = 0; n < 512; ++n) mask[n] = 65535;
+    CHECK(decode_r16(bytes_of_16(mask, false), "a.r16", std::nullopt)->notes.empty());
+    for (const bool turned : {false, true}) {
+        const auto floats = decode_raw(bytes_of_32(hill(812.5), turned), "a.raw", std::nullopt);
+        REQUIRE_MESSAGE(floats, message(floats));
+        CHECK(!floats->integer);
+        CHECK(floats->nx == 32);
+        CHECK(floats->values.back() == static_cast<float>(hill(812.5)[31]));
+        CHECK(noted(*floats, "32 bits, floats"));
+        CHECK(noted(*floats, "swapped") == turned);
+    }
+    std::vector<double> holes = hill(10);
+    holes[40] = -9999;
+    holes[50] = static_cast<double>(std::numeric_limits<float>::lowest());
+    const auto r32 = decode_r32(bytes_of_32(holes, false), "a.r32", std::nullopt);
+    REQUIRE_MESSAGE(r32, message(r32));
+    CHECK(r32->filled == 2);
+    CHECK(says(message(decode_raw({1, 2, 3}, "a.raw", std::nullopt)), "3 bytes is not a square map"));
+    CHECK(decode_raw({1, 2, 3, 4, 5, 6}, "a.raw", std::pair{3, 2})->values[0] == 4.0f / 255);
+    CHECK(says(message(decode_raw({1, 2, 3, 4, 5, 6}, "a.raw", std::pair{2, 2})), "truncated, 6 bytes where 2 x 2 16-bit"));
+}
+
+TEST_CASE("image: whatever raw bytes hold, a map that is read holds numbers") {
+    std::mt19937 random(11);
+    int read = 0;
+    for (int trial = 0; trial < 600; ++trial) {
+        Bytes bytes(std::size_t{4} * (1 + random() % 20) * (1 + random() % 20));
+        const unsigned mask = trial % 3 == 0 ? 0xffU : trial % 3 == 1 ? 0x7fU : 0x43U;
+        for (auto& byte : bytes) byte = static_cast<std::uint8_t>(random() & mask);
+        for (const auto& map : {decode_raw(bytes, "a.raw", std::nullopt), decode_r32(bytes, "a.r32", std::nullopt),
+                                decode_r16(bytes, "a.r16", std::nullopt), decode_hgt(bytes, "N60E007.hgt")}) {
+            if (!map) continue;
+            ++read;
+            REQUIRE(std::all_of(map->values.begin(), map->values.end(), [](float value) { return std::isfinite(value); }));
+        }
+    }
+    CHECK(read > 50);
+}
+
+TEST_CASE("image: tiles of SRTM") {
+    std::vector<double> heights;
+    for (int j = 0; j < 33; ++j)
+        for (int i = 0; i < 33; ++i) heights.push_back(100 + 10 * i - 5 * j); // rows from the north
+    heights[5] = -32768;
+    const auto tile = decode_hgt(bytes_of_16(heights, true), "some/N46E007.hgt");
+    REQUIRE_MESSAGE(tile, message(tile));
+    CHECK(tile->nx == 32);
+    CHECK(tile->ny == 46); // a degree of latitude over one of longitude at 46.5 degrees
+    CHECK(tile->cell_size == doctest::Approx(111320 * std::cos(46.5 * 3.14159265358979 / 180) / 32));
+    CHECK(tile->filled == 1);
+    CHECK(tile->values[0] == doctest::Approx(100 + 5 - 5 * 32 + 5 * 32 / 46.0 / 2));
+    CHECK(noted(*tile, "at latitude 46: 32 x 46 square cells"));
+    CHECK(noted(*decode_hgt(bytes_of_16(heights, true), "tile.hgt"), "its name says no latitude"));
+    CHECK(says(message(decode_hgt({1, 2, 3}, "a.hgt")), "not a square map"));
+    CHECK(says(message(decode_hgt({1, 2}, "a.hgt")), "one sample is no tile"));
+}
+
+TEST_CASE("image: odd ground is noted with numbers; ground as it is, is not") {
+    const auto notes_of = [](const std::vector<double>& values, bool integer = false) {
+        Map map;
+        map.nx = map.ny = 32;
+        map.integer = integer;
+        for (const double value : values) map.values.push_back(static_cast<float>(value));
+        note_odd_ground(map);
+        return map;
+    };
+    CHECK(notes_of(hill(300)).notes.empty());
+    std::vector<double> pit = hill(300);
+    pit[33] = -7000;
+    CHECK(noted(notes_of(pit), "its value -7000 in column 2, row 2 from the south lies"));
+    std::mt19937 random(3);
+    std::vector<double> noise(1024);
+    for (double& value : noise) value = static_cast<double>(random() % 65536);
+    CHECK(noted(notes_of(noise), "as in noise"));
+    std::vector<double> terraces = hill(200);
+    for (double& value : terraces) value = std::floor(value / 12) * 12;
+    CHECK(noted(notes_of(terraces), "17 different values alone: terraces of 12 m"));
+    std::vector<double> sea = hill(300);
+    for (std::size_t n = 0; n < 300; ++n) sea[n] = 0;
+    CHECK(noted(notes_of(sea), "29 % of it is exactly 0"));
+}
+
+TEST_CASE("image: samples at corners of cells are read between them") {
+    Map map;
+    map.nx = 5;
+    map.ny = 3;
+    map.corners = true;
+    for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < 5; ++i) map.values.push_back(static_cast<float>(i + 10 * j));
+    CHECK(resample(map, 4, 2) == std::vector<float>{5.5f, 6.5f, 7.5f, 8.5f, 15.5f, 16.5f, 17.5f, 18.5f});
+    CHECK(resample(map, 2, 1) == std::vector<float>{11, 13});
+    CHECK(resample(map, 8, 4)[0] == 0.25f + 2.5f);
 }
 
 TEST_CASE("image: damaged ASCII grids are refused with their line") {
@@ -196,16 +387,18 @@ TEST_CASE("image: damaged ASCII grids are refused with their line") {
     refuses(ASC_HEADER, "1 2 3\n4 5", "7: the file ends after 5 values where ncols x nrows, 3 x 2, are 6");
     refuses(ASC_HEADER, "", "6: the file ends after 0 values");
     refuses(ASC_HEADER, six + "\n7", "9: more values than ncols x nrows, 3 x 2");
-    refuses(ASC_HEADER, "1 2 3\n4 nan 6", "7: the value in column 2 of row 2 is NaN");
     refuses(ASC_HEADER, "1 2 inf\n4 5 6", "6: the value in column 3 of row 1 is infinite");
     refuses(ASC_HEADER, "1 2 3\n4 1e39 6", "7: the value in column 2 of row 2 is infinite or too large");
-    refuses(ASC_HEADER, "1 2 3\n4 5,0 6", "7: the value in column 2 of row 2: \"5,0\" is not a number");
+    refuses(ASC_HEADER, "1 2 3\n4 5,0 6", "7: the value in column 2 of row 2: \"5,0\" has a decimal comma");
+    refuses(ASC_HEADER, "1 2 3\n4 5x 6", "7: the value in column 2 of row 2: \"5x\" is not a number");
+    refuses("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 0,5\n", six, "5: cellsize: \"0,5\" has a decimal comma");
     refuses("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\n", six, "5: the header ends without cellsize");
     refuses("nrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n", six, "5: the header ends without ncols");
     refuses("ncols 3\nnrows 2\nxllcorner 0\ncellsize 1\n", six, "5: the header ends without yllcorner or yllcenter");
     refuses(ASC_HEADER + "ncols 3\n", six, "6: ncols is given twice");
     refuses("ncols 3\nnrows 2\nxllcorner 0\nxllcenter 0\n", six, "4: xllcenter is given twice");
-    refuses("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ndx 1\ndy 2\n", six, "5: \"dx\" is no key of an Esri ASCII grid");
+    refuses("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\nwidth 1\n", six, "5: \"width\" is no key of an Esri ASCII grid");
+    refuses("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\ndx 1\n", six, "6: dx is given twice");
     refuses("ncols 3.5\n", six, "1: ncols: 3.5 is not a whole number in 1 ... 16384");
     refuses("ncols 3\nnrows 0\n", six, "2: nrows: 0 is not a whole number");
     refuses("ncols 16385\n", six, "1: ncols: 16385");
@@ -232,8 +425,8 @@ TEST_CASE("image: files by the ending of their name") {
 
     CHECK(read_any(folder.file("none.png"), std::nullopt).status().code == Code::not_found);
     CHECK(says(message(read_any(folder.file("none.png"), std::nullopt)), "none.png: no such file"));
-    CHECK(says(message(read_any(folder.file("a.jpg"), std::nullopt)), "end in .png, .r16, .raw, .npy or .asc"));
-    CHECK(says(message(read_any(folder.file("a.PNG"), std::pair{1, 1})), "only .r16 and .raw maps are given a size"));
+    CHECK(says(message(read_any(folder.file("a.jpg"), std::nullopt)), "end in .png, .r16, .r32, .raw, .hgt, .npy or .asc"));
+    CHECK(says(message(read_any(folder.file("a.PNG"), std::pair{1, 1})), "only .r16, .r32 and .raw maps are given a size"));
     std::filesystem::create_directory(folder.file("folder.png"));
     CHECK(says(message(read_any(folder.file("folder.png"), std::nullopt)), "not a regular file"));
     CHECK(says(message(read_file_bytes(folder.file("a.npy"), 10)), "more than the largest accepted file, 10 bytes"));

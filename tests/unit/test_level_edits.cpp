@@ -184,3 +184,25 @@ TEST_CASE("level edits: snapshots and logs know a level by its edits too") {
     CHECK(level_digest(one) != level_digest(other));
     CHECK(level_digest(one) == level_digest(settings_of(brush(R"(, "time": 1)"))));
 }
+
+TEST_CASE("level edits: no step is brought more than 256") {
+    const auto often = [](const char* times, int count, const LevelOverrides& overrides = {}) {
+        std::string list;
+        for (int n = 0; n < count; ++n)
+            list += (n > 0 ? "," : "") + std::string(R"({"layer": "sand", "amount": 0.5, )") + DISC + times + "}";
+        return message(parse("\"edits\": [" + list + "]", "", overrides));
+    };
+    LevelOverrides slow;
+    slow.dt = 100;
+    CHECK(says(often(R"(, "time": 0, "every": 0.001, "until": 1e9)", 1, slow), "edits: they bring up to 100001 into one step"));
+    CHECK(says(often(R"(, "time": 3)", 1000), "edits: they bring up to 1000 into one step, at 3 s; allowed are 256"));
+    CHECK(often(R"(, "time": 3)", 256) == "no error");
+    CHECK(often(R"(, "time": 0, "every": 0.001, "until": 1e9)", 23) == "no error"); // 11 at most of each in 0.01 s
+    CHECK(says(often(R"(, "time": 0, "every": 0.001, "until": 1e9)", 24), "up to 264 into one step"));
+    // Seldom ones that could meet in a step, and do not.
+    std::string list;
+    for (int n = 0; n < 1000; ++n)
+        list += (n > 0 ? "," : "") + std::string(R"({"layer": "sand", "amount": 0.5, )") + DISC + R"(, "time": )" +
+                std::to_string(n * 0.02) + R"(, "every": 20, "until": 100})";
+    CHECK(message(parse("\"edits\": [" + list + "]")) == "no error");
+}

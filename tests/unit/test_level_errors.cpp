@@ -3,6 +3,7 @@
 #include "tests/unit/level_text.hpp"
 #include "tests/unit/map_files.hpp"
 #include <chrono>
+#include <cmath>
 #include <doctest/doctest.h>
 #include <fstream>
 #include <iterator>
@@ -238,7 +239,7 @@ TEST_CASE("level errors: maps") {
     map(R"("file": "good.png")", "good.png holds grey values; give min and max");
     map(R"("file": "good.png", "min": 1)", "terrain[0].max: missing");
     map(R"("file": "good.png", "max": 1, "scale": 2)", "give either min and max, or scale and offset");
-    map(R"("file": "good.png", "max": 1, "size": [2, 2])", "only .r16 and .raw maps are given a size");
+    map(R"("file": "good.png", "max": 1, "size": [2, 2])", "only .r16, .r32 and .raw maps are given a size");
     map(R"("file": "good.png", "max": 1, "absolute": true)", "terrain[0].absolute: unknown key");
     map(R"("file": "good.png", "maxx": 1)", "terrain[0].maxx: unknown key, did you mean \"max\"?");
     map(R"("file": "cut.png", "max": 1)", "cut.png: truncated");
@@ -265,6 +266,11 @@ TEST_CASE("level errors: sides, sources, series") {
             "sides.west.value[1]: the time 0 s does not come after 0 s");
     refuses(R"("sides": {"west": {"kind": "level", "value": [[0, 1], [1]]}})", "sides.west.value[1]: expected two numbers");
     refuses(R"("sides": {"west": {"kind": "level", "value": "high"}})", "sides.west.value: expected a number, a list");
+    refuses(R"("sides": {"west": {"kind": "level", "value": [[0, 1], [5, 969]]}})",
+            "sides.west.value[1]: 969 is outside -16 ... 16 (method.largest_height)");
+    refuses(R"("sides": {"west": {"kind": "discharge", "value": 2000}})", "sides.west.value: 2000 is outside 0 ... 1603.63");
+    CHECK(parse(R"("sides": {"west": {"kind": "discharge", "value": 1600}})"));
+    refuses(R"("sides": {"west": {"kind": "discharge", "value": 600, "from": 1, "to": 3}})", "outside 0 ... 400.9");
     refuses(R"("sources": [{"shape": "disc", "center": [1, 1], "rate": 1}])", "sources[0].radius: missing");
     refuses(R"("sources": [{"shape": "disc", "center": [99, 1], "radius": 1, "rate": 1}])",
             "sources[0]: lies outside the grid, which spans 0 ... 10 m in x");
@@ -330,4 +336,49 @@ TEST_CASE("level errors: damaged shipped levels never crash the loader") {
     }
     CHECK(loaded > 20);
     CHECK(refused > 2000);
+}
+
+namespace {
+/// "key": layers, `count` times the same.
+std::string layers_of(const char* key, const std::string& layer, int count) {
+    std::string list;
+    for (int n = 0; n < count; ++n) list += (n > 0 ? "," : "") + layer;
+    return std::string("\"") + key + "\": [" + list + "]";
+}
+std::string ridge(int points) {
+    std::string list;
+    for (int n = 0; n < points; ++n)
+        list += (n > 0 ? ",[" : "[") + std::to_string(1e9 * std::cos(n * 0.01)) + "," + std::to_string(1e9 * std::sin(n * 0.01)) +
+                "]";
+    return R"({"shape": "ridge", "height": 1, "width": 1e9, "side_slope": 0.001, "points": [)" + list + "]}";
+}
+} // namespace
+
+TEST_CASE("level errors: what layers ask for has a budget, which grows with the grid") {
+    const auto of = [](const std::string& rest, int nx) {
+        const auto start = std::chrono::steady_clock::now();
+        const std::string size = std::to_string(nx);
+        const auto made = parse_level(level(rest, R"({"nx": )" + size + R"(, "ny": )" + size + R"(, "dx": 1})"), "", {});
+        const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        CHECK_MESSAGE(seconds < 20, seconds << " s"); // seconds on a machine of its own
+        return message(made);
+    };
+    const std::string noise = R"({"shape": "noise", "amplitude": 0.01, "wavelength": 9, "octaves": 12})";
+    CHECK(says(of(layers_of("terrain", noise, 256), 1024), "looks at shapes, or more"));
+    CHECK(says(of(layers_of("terrain", noise, 256), 1024), "allowed are 4.68435e+08"));
+    CHECK(of(layers_of("terrain", noise, 40), 256) == "no error");
+    CHECK(says(of(layers_of("sand", ridge(256), 64), 256), "looks at shapes"));
+    // Rims of 255 cylinders through the same cells: samples of samples.
+    const std::string rims =
+        layers_of("sand", R"({"shape": "cylinder", "center": [-1e6, 0], "radius": 1000100, "height": 0.01})", 256);
+    CHECK(says(of(rims + "," +
+                      layers_of("water", R"({"shape": "cylinder", "center": [0, -1e6], "radius": 1000100, "height": 0.01})", 256),
+                  4096),
+               "looks at shapes"));
+    // A river of 256 points that winds over the grid is none too many.
+    std::string river;
+    for (int n = 0; n < 256; ++n)
+        river += (n > 0 ? ",[" : "[") + std::to_string(4 * n) + "," + std::to_string(500 + 300 * std::sin(n * 0.1)) + "]";
+    CHECK(of(layers_of("sand", R"({"shape": "ridge", "height": 0.001, "width": 9, "points": [)" + river + "]}", 4), 1024) ==
+          "no error");
 }

@@ -2,6 +2,7 @@
 #include "engine/level/level.hpp"
 #include "tests/unit/level_text.hpp"
 #include "tests/unit/map_files.hpp"
+#include <algorithm>
 #include <doctest/doctest.h>
 
 using namespace wadi;
@@ -158,4 +159,54 @@ TEST_CASE("level: from a terrain map alone") {
 
     const auto huge = folder.write("huge.npy", map_files::npy(map_files::dictionary("<f4", "(1, 1)"), std::vector<float>{1e30f}));
     CHECK(says(message(level_from_terrain(huge, {})), "more than a world holds"));
+}
+
+TEST_CASE("level maps: samples at corners, as said or guessed for 2^n + 1, keep a slope to its rims") {
+    const Folder folder;
+    std::vector<std::uint16_t> samples;
+    for (int j = 0; j < 65; ++j)
+        for (int i = 0; i < 65; ++i) samples.push_back(static_cast<std::uint16_t>(i * 1000));
+    folder.write("z.r16", map_files::words(samples, false));
+    const auto ground = [&](const std::string& more, int nx, const LevelOverrides& overrides = {}) {
+        const std::string size = std::to_string(nx);
+        return must(parse_level(level(R"("terrain": [{"file": "z.r16", "max": 8.1919375)" + more + "}]",
+                                      R"({"nx": )" + size + R"(, "ny": )" + size + R"(, "dx": 1})"),
+                                folder.path(), overrides));
+    };
+    const Level guessed = ground("", 64);
+    for (const int i : {0, 31, 63})
+        CHECK(at(guessed, guessed.fields.terrain, i, 5) == doctest::Approx(0.125 * (i + 0.5)).epsilon(1e-5));
+    REQUIRE(guessed.warnings.size() == 1);
+    CHECK(says(guessed.warnings[0], "terrain[0].file: z.r16: 65 x 65 samples are taken for the corners of cells"));
+    const Level said = ground(R"(, "samples": "corners")", 64);
+    CHECK(said.fields.terrain == guessed.fields.terrain);
+    CHECK(said.warnings.empty());
+    const Level cells = ground(R"(, "samples": "cells")", 64);
+    CHECK(at(cells, cells.fields.terrain, 0, 5) < 0.9 * 0.0625); // negative control
+    CHECK(cells.warnings.empty());
+    const Level own = ground("", 65); // a map of the level's own grid
+    CHECK(at(own, own.fields.terrain, 64, 5) == doctest::Approx(8));
+    CHECK(own.warnings.empty());
+    LevelOverrides coarse;
+    coarse.size = {13, 13};
+    CHECK(ground("", 65, coarse).warnings.empty());
+    CHECK(
+        says(message(parse_level(level(R"("terrain": [{"file": "z.r16", "max": 1, "samples": "vertices"}])"), folder.path(), {})),
+             "terrain[0].samples: \"vertices\" is not known"));
+}
+
+TEST_CASE("level maps: a wall that is thinner than its cells is named with its width, on the grid that it is drawn on") {
+    const auto warned = [](const std::string& shape, std::optional<std::pair<int, int>> size = {}) {
+        LevelOverrides overrides;
+        overrides.size = size;
+        const auto made = must(parse_level(level(R"("terrain": [{"height": 2, )" + shape + "}]"), "", overrides));
+        return std::any_of(made.warnings.begin(), made.warnings.end(), [](const auto& w) { return says(w, "too thin"); });
+    };
+    const std::string slanting = R"("shape": "ridge", "points": [[0, 2], [10, 6]], "width": )";
+    CHECK(!warned(slanting + "1.5"));
+    CHECK(warned(slanting + "1.3"));
+    CHECK(warned(slanting + "1.5", std::pair{5, 4}));
+    CHECK(!warned(R"("shape": "ridge", "points": [[0, 2], [10, 2]], "width": 1)"));
+    CHECK(warned(R"("shape": "box", "from": [2, 0], "to": [2.9, 8])"));
+    CHECK(!warned(R"("shape": "box", "from": [2, 0], "to": [2.9, 8], "combine": "subtract")"));
 }

@@ -26,6 +26,30 @@ TEST_CASE("steps are floor(total / dt) for any dt and any frames") {
     }
 }
 
+TEST_CASE("time taken back is as if it had not come, whatever steps it had brought") {
+    StepClock clock(0.01), other(0.01);
+    CHECK(clock.add(14'000'000) + other.add(14'000'000) == 0);
+    clock.take();
+    other.take();
+    clock.take_back(3'000'000); // less than is held
+    CHECK(clock.add(3'000'000) == 0);
+    CHECK(clock.share_of_step() == other.share_of_step());
+    CHECK(clock.add(27'000'000) == 0); // 31 ms: three steps, of which one was taken when the update failed
+    clock.take();
+    clock.take_back(27'000'000);
+    CHECK_FALSE(clock.due());
+    CHECK(clock.add(27'000'000) == 0);
+    CHECK(other.add(27'000'000) == 0);
+    other.take();
+    int left = 0;
+    for (; clock.due(); ++left) {
+        clock.take();
+        other.take();
+    }
+    CHECK(left == 2);
+    CHECK(clock.share_of_step() == other.share_of_step());
+}
+
 TEST_CASE("dropped time leaves the clock a nanosecond before the next step") {
     StepClock clock(1.0 / 60);
     CHECK(clock.add(100000000) == 0);

@@ -77,6 +77,7 @@ inline constexpr double MANNING_MOST = 1;               // n of a material, of a
 inline constexpr double SPEED_MOST = 1e4;               // set by a source or as an initial velocity [m/s]
 inline constexpr double DISCHARGE_MOST = 1e9;           // through a side [m3/s]
 inline constexpr std::size_t EDITS_MOST = 1000;         // of a level
+inline constexpr std::uint64_t STEP_EDITS_MOST = 256;   // that a level brings into one step
 inline constexpr double EDIT_TIME_MOST = 1e9;           // of a level's edit [s]
 inline constexpr double EDIT_EVERY_LEAST = 1e-3;        // [s]
 inline constexpr double SATURATION_GAP = 1e-3;          // least distance of 0, phi1, phi2 and phi3

@@ -15,7 +15,6 @@
 namespace wadi {
 namespace {
 
-constexpr double LEVEL_MOST = 1e6; // [m], as largest_height
 constexpr const char* HEIGHT_LIMIT = " (method.largest_height)";
 constexpr double COORDINATE_MOST = double{GRID_MOST} * DX_MOST;
 
@@ -41,7 +40,7 @@ Status check_rows(const Settings& settings, std::optional<std::string_view> obje
     return ok_status();
 }
 
-Status check_series(const std::string& path, const TimeSeries& series, double least, double most) {
+Status check_series(const std::string& path, const TimeSeries& series, double least, double most, const char* limit = "") {
     for (std::size_t n = 0; n < series.samples.size(); ++n) {
         const std::string at = series.samples.size() == 1 ? path : path + "[" + std::to_string(n) + "]";
         const auto [time, value] = series.samples[n];
@@ -49,7 +48,7 @@ Status check_series(const std::string& path, const TimeSeries& series, double le
         if (n > 0 && !(time > series.samples[n - 1].first))
             return refuse(at + ": the time " + number_text(time) + " s does not come after " +
                           number_text(series.samples[n - 1].first) + " s");
-        if (Status status = check_range(at, value, least, most); !status) return status;
+        if (!(value >= least && value <= most)) return refuse(outside_text(at, value, least, most) + limit);
     }
     return ok_status();
 }
@@ -113,8 +112,15 @@ Status check_side(const Settings& settings, std::size_t index) {
     const double deepest = side.kind == SideKind::discharge ? settings.method.largest_height : 0;
     if (!(side.depth >= 0 && side.depth <= deepest))
         return refuse(outside_text(path + ".depth", side.depth, 0, deepest) + (deepest > 0 ? "" : "; only a discharge has one"));
-    if (side.kind == SideKind::discharge) return check_series(path + ".value", side.value, 0, DISCHARGE_MOST);
-    return check_series(path + ".value", side.value, -LEVEL_MOST, LEVEL_MOST);
+    const double most = settings.method.largest_height;
+    if (side.kind == SideKind::discharge) {
+        // What the critical depth carries through the opening: more would stand above the limit as it enters.
+        const double opening = std::min(side.to, length) - side.from;
+        const double carried = opening * std::sqrt(settings.gravity * most * most * most);
+        const double most_discharge = settings.gravity > 0 ? std::min(DISCHARGE_MOST, carried) : DISCHARGE_MOST;
+        return check_series(path + ".value", side.value, 0, most_discharge, " (what enters at the depth method.largest_height)");
+    }
+    return check_series(path + ".value", side.value, -most, most, HEIGHT_LIMIT);
 }
 
 Status check_source(const Settings& settings, std::size_t index) {
@@ -201,6 +207,7 @@ Status validate(const Settings& settings) {
         return refuse("edits: " + std::to_string(settings.edits.size()) + " are more than " + std::to_string(EDITS_MOST));
     for (std::size_t n = 0; n < settings.edits.size(); ++n)
         if (Status status = check_scripted_edit(settings, n); !status) return status;
+    if (Status status = check_edits_per_step(settings); !status) return status;
     for (const auto& [name, force] : settings.effects) {
         const auto& names = effect_names();
         if (std::find(names.begin(), names.end(), name) == names.end())

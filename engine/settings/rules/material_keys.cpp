@@ -17,24 +17,26 @@ std::vector<const Setting*> find_rows() {
     return rows;
 }
 
-const Setting& row_of(int key) {
-    static const std::vector<const Setting*> rows = find_rows();
-    return *rows[static_cast<std::size_t>(key)];
+// Made by whoever asks first, for all that ask: a worker's thread later finds it made.
+struct Known {
+    std::vector<const Setting*> rows = find_rows();
+    std::vector<MaterialKey> keys;
+    Known() {
+        for (const Setting* row : rows)
+            keys.push_back({std::string(row->key()), row->values.least, row->values.most, row->effect});
+    }
+};
+
+const Known& known() {
+    static const Known all;
+    return all;
 }
 
-std::vector<MaterialKey> make_keys() {
-    std::vector<MaterialKey> keys;
-    for (const Setting* row : find_rows())
-        keys.push_back({std::string(row->key()), row->values.least, row->values.most, row->effect});
-    return keys;
-}
+const Setting& row_of(int key) { return *known().rows[static_cast<std::size_t>(key)]; }
 
 } // namespace
 
-std::span<const MaterialKey> material_keys() {
-    static const std::vector<MaterialKey> keys = make_keys();
-    return keys;
-}
+std::span<const MaterialKey> material_keys() { return known().keys; }
 
 int find_material_key(std::string_view name) {
     const auto keys = material_keys();

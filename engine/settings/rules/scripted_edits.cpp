@@ -4,6 +4,7 @@
 #include "engine/settings/rules/messages.hpp"
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace wadi {
 
@@ -30,6 +31,45 @@ std::uint64_t first_turn(const ScriptedEdit& script, std::uint64_t step, double 
     }
     while (turn <= last_turn(script) && step_of(script, turn, dt) < step) ++turn;
     return turn;
+}
+
+/// At most so many turns of a script fall into a step.
+std::uint64_t turns_per_step(const ScriptedEdit& script, double dt) {
+    return script.every > 0 && script.every < dt ? static_cast<std::uint64_t>(dt / script.every) + 1 : 1;
+}
+
+struct Fullest {
+    std::uint64_t edits = 0, step = 0;
+};
+
+/// As if every script had its most turns in each step from its first to its last.
+Fullest fullest_at_most(const Settings& settings) {
+    std::map<std::uint64_t, std::int64_t> changes;
+    for (const ScriptedEdit& script : settings.edits) {
+        const std::uint64_t last = last_turn(script);
+        const auto turns = static_cast<std::int64_t>(std::min(turns_per_step(script, settings.dt), last + 1));
+        changes[step_of(script, 0, settings.dt)] += turns;
+        changes[step_of(script, last, settings.dt) + 1] -= turns;
+    }
+    Fullest fullest;
+    std::int64_t now = 0;
+    for (const auto& [step, change] : changes) {
+        now += change;
+        if (now > static_cast<std::int64_t>(fullest.edits)) fullest = {static_cast<std::uint64_t>(now), step};
+    }
+    return fullest;
+}
+
+/// Turn by turn.
+Fullest fullest_step(const Settings& settings) {
+    std::map<std::uint64_t, std::uint64_t> edits;
+    Fullest fullest;
+    for (const ScriptedEdit& script : settings.edits)
+        for (std::uint64_t turn = 0; turn <= last_turn(script); ++turn) {
+            const std::uint64_t step = step_of(script, turn, settings.dt), now = ++edits[step];
+            if (now > fullest.edits) fullest = {now, step};
+        }
+    return fullest;
 }
 
 Edit moved(const ScriptedEdit& script, std::uint64_t turn) {
@@ -72,6 +112,18 @@ Status check_scripted_edit(const Settings& settings, std::size_t index) {
     Edit edit = script.edit;
     edit.step = 0;
     return check_edit("", index, edit, settings, {}, 0);
+}
+
+Status check_edits_per_step(const Settings& settings) {
+    constexpr double countable = 1e6; // turns, one by one
+    Fullest fullest = fullest_at_most(settings);
+    double turns = 0;
+    for (const ScriptedEdit& script : settings.edits) turns += static_cast<double>(last_turn(script)) + 1;
+    if (fullest.edits > STEP_EDITS_MOST && turns <= countable) fullest = fullest_step(settings);
+    if (fullest.edits <= STEP_EDITS_MOST) return ok_status();
+    return error(Code::bad_argument, "edits: they bring up to " + std::to_string(fullest.edits) + " into one step, at " +
+                                         number_text(static_cast<double>(fullest.step) * settings.dt) + " s; allowed are " +
+                                         std::to_string(STEP_EDITS_MOST));
 }
 
 } // namespace wadi

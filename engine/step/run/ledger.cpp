@@ -1,4 +1,5 @@
 #include "engine/step/run/ledger.hpp"
+#include <array>
 
 namespace wadi {
 
@@ -54,20 +55,40 @@ Result<Ledger> read_ledger(WorldState& state) {
     return ledger;
 }
 
-// The first counter of the entry's row takes it all: only the sum is ever looked at.
-Status count_in_ledger(WorldState& state, int entry, std::int64_t quanta) {
-    if (quanta == 0) return ok_status();
+Status count_in_ledger(WorldState& state, std::span<const LedgerChange> changes) {
+    constexpr std::size_t most = LEDGER_ENTRIES;
+    struct Counter { // the first of the entry's row takes it all: only the sum is ever looked at
+        std::uint64_t at = 0;
+        std::uint32_t before = 0, now = 0;
+    };
+    std::array<Counter, 2 * most> counters;
+    std::size_t count = 0;
     const auto ledger = state.fields().buffer("source_ledger");
-    const std::uint64_t low = 2 * static_cast<std::uint64_t>(entry) * row_of(state) * 4, high = low + row_of(state) * 4;
-    std::array<std::uint32_t, 2> words{};
-    const auto word = [&](std::size_t n) { return std::span(words).subspan(n, 1); };
     auto& device = state.device();
-    if (auto status = device.read(ledger, low, std::as_writable_bytes(word(0))); !status) return status;
-    if (auto status = device.read(ledger, high, std::as_writable_bytes(word(1))); !status) return status;
-    const std::uint64_t count = (std::uint64_t{words[0]} + (std::uint64_t{words[1]} << 32)) + static_cast<std::uint64_t>(quanta);
-    words = {static_cast<std::uint32_t>(count), static_cast<std::uint32_t>(count >> 32)};
-    if (auto status = device.write(ledger, low, std::as_bytes(word(0))); !status) return status;
-    return device.write(ledger, high, std::as_bytes(word(1)));
+    for (const auto& [entry, quanta] : changes) {
+        if (quanta == 0) continue;
+        const std::uint64_t low = 2 * static_cast<std::uint64_t>(entry) * row_of(state) * 4;
+        Counter* pair = &counters[count];
+        count += 2;
+        pair[0].at = low;
+        pair[1].at = low + row_of(state) * 4;
+        for (Counter* word : {pair, pair + 1})
+            if (auto status = device.read(ledger, word->at, std::as_writable_bytes(std::span(&word->before, 1))); !status)
+                return status;
+        const std::uint64_t sum =
+            (std::uint64_t{pair[0].before} + (std::uint64_t{pair[1].before} << 32)) + static_cast<std::uint64_t>(quanta);
+        pair[0].now = static_cast<std::uint32_t>(sum);
+        pair[1].now = static_cast<std::uint32_t>(sum >> 32);
+    }
+    for (std::size_t n = 0; n < count; ++n) {
+        auto status = device.write(ledger, counters[n].at, std::as_bytes(std::span(&counters[n].now, 1)));
+        if (status) continue;
+        for (std::size_t k = 0; k <= n; ++k)
+            if (!device.write(ledger, counters[k].at, std::as_bytes(std::span(&counters[k].before, 1))))
+                return device.give_up("the ledger is half written: " + status.message);
+        return status;
+    }
+    return ok_status();
 }
 
 } // namespace wadi

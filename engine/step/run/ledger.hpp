@@ -1,6 +1,7 @@
 // The ledger: what was really added and taken, in quanta, as stages count it on the device. Every call waits for the device.
 #pragma once
 #include "engine/step/run/world_state.hpp"
+#include <span>
 
 namespace wadi {
 
@@ -13,7 +14,12 @@ struct Ledger {
 Result<Ledger> read_ledger(WorldState& state);
 /// What went in and out through the open sides alone; zero where the plan has no such ledger.
 Result<std::pair<std::int64_t, std::int64_t>> read_side_ledger(WorldState& state, const char* field);
-/// Adds to an entry (LEDGER_WATER_IN, ...) of the ledger of sources and edits.
-Status count_in_ledger(WorldState& state, int entry, std::int64_t quanta);
+/// Adds to entries (LEDGER_WATER_IN, ...) of the ledger of sources and edits: to all of them, or to none where that fails. The
+/// world is given up where it can be neither.
+struct LedgerChange {
+    int entry = 0;
+    std::int64_t quanta = 0;
+};
+Status count_in_ledger(WorldState& state, std::span<const LedgerChange> changes);
 
 } // namespace wadi

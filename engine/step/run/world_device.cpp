@@ -21,6 +21,8 @@ template <class Answer> Answer WorldDevice::noted(Answer answer) {
     return answer;
 }
 
+Status WorldDevice::give_up(const std::string& why) { return noted(error(Code::device_lost, why)); }
+
 std::uint64_t WorldDevice::bytes() const {
     return std::accumulate(memory_.begin(), memory_.end(), std::uint64_t{0},
                            [](std::uint64_t sum, const MemoryItem& item) { return sum + item.bytes; });

@@ -27,6 +27,8 @@ class WorldDevice {
     compute::Device& operator*() const { return *device_; }
     /// ok until the device is lost, then device_lost for ever.
     const Status& lost() const { return lost_; }
+    /// The state is neither what it was nor what it should be, and cannot be mended: device_lost from here on.
+    Status give_up(const std::string& why);
     /// Every buffer that the world has.
     const std::vector<MemoryItem>& memory() const { return memory_; }
     std::uint64_t bytes() const;

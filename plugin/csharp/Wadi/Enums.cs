@@ -54,10 +54,12 @@ namespace Wadi
     public enum ActiveTiles
     {
         Off = -1,
-        /// <summary>as the level says, which by default is AUTO in large grids on GPUs, else OFF</summary>
+        /// <summary>as the level says, by default CHEAP</summary>
         Level = 0,
         /// <summary>on while little of the world is awake</summary>
         Auto = 1,
+        /// <summary>AUTO in large grids on GPUs, else OFF</summary>
+        Cheap = 2,
         /// <summary>on, of 8 x 8 cells</summary>
         Tiles8 = 8,
         Tiles16 = 16,

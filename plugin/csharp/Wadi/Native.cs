@@ -84,9 +84,9 @@ namespace Wadi
         public static extern Result wadi_list_accuracy_presets(RawAccuracyPreset* presets, uint* count);
 
         /// <summary>
-        /// Creates a world from a level file (.json) or from a terrain map (.png, .r16, .npy, .asc). overrides, options: NULL = the
-        /// defaults. Waits: for compilers of drivers. Errors: NOT_FOUND, BAD_FILE, BAD_ARGUMENT, OUT_OF_MEMORY, NOT_SUPPORTED; no
-        /// world is made.
+        /// Creates a world from a level file (.json) or from a terrain map (.png, .r16, .r32, .raw, .hgt, .npy, .asc). overrides,
+        /// options: NULL = the defaults. Waits: for compilers of drivers. Errors: NOT_FOUND, BAD_FILE, BAD_ARGUMENT, OUT_OF_MEMORY,
+        /// NOT_SUPPORTED; no world is made.
         /// </summary>
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         public static extern Result wadi_create_world_from_level(byte* path, RawLevelOverrides* overrides, RawDeviceOptions* options,
@@ -130,7 +130,8 @@ namespace Wadi
         /// may be called between updates: its steps are beside this clock, which goes on where it was. Every call that reads or
         /// changes the state first finishes a step that `spread` began; the update in which it falls due does not repeat it. Waits:
         /// nothing, unless max_steps_in_flight is 0; a step ahead of which an edit brings a new material may (wadi_world_edit).
-        /// Errors: OUT_OF_MEMORY (a new material).
+        /// Errors: OUT_OF_MEMORY (a new material). One that fails has not taken the time: repeated, it takes what steps are left of
+        /// it.
         /// </summary>
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         public static extern Result wadi_world_update(WorldId world, ulong hostNanoseconds, Frame* frame);

@@ -421,6 +421,11 @@ namespace Wadi
         public ulong ActiveTiles;
         /// <summary>64-bit state hash, ghosts excluded</summary>
         public ulong Hash;
+        /// <summary>
+        /// columns of terrain, sand and water above method.largest_height, which flow and pushes can pile up: there heights are
+        /// rounded like any float, and the books drift
+        /// </summary>
+        public ulong HighColumns;
         /// <summary>A struct with the size that the library asks for and the header's defaults.</summary>
         public static unsafe WorldStats Default
         {

@@ -50,6 +50,7 @@ namespace Wadi
             ulong given = 0;
             bool ready = Ready(Native.wadi_world_begin_save(Id, &given));
             ticket = given;
+            if (ready) FreePinnedSaves(); // of an earlier save that nobody fetched: the library has let go of it
             return ready;
         }
 

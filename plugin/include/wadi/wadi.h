@@ -185,8 +185,9 @@ typedef enum wadi_choice WADI_ENUM {
 /** Tiles in which nothing changes any more are left out of a step; every bit stays, also in snapshots. */
 typedef enum wadi_active_tiles WADI_ENUM {
     WADI_ACTIVE_TILES_OFF = -1,
-    WADI_ACTIVE_TILES_LEVEL = 0, /* as the level says, which by default is AUTO in large grids on GPUs, else OFF */
+    WADI_ACTIVE_TILES_LEVEL = 0, /* as the level says, by default CHEAP */
     WADI_ACTIVE_TILES_AUTO = 1,  /* on while little of the world is awake */
+    WADI_ACTIVE_TILES_CHEAP = 2, /* AUTO in large grids on GPUs, else OFF */
     WADI_ACTIVE_TILES_8 = 8,     /* on, of 8 x 8 cells */
     WADI_ACTIVE_TILES_16 = 16,
     WADI_ACTIVE_TILES_32 = 32,
@@ -221,7 +222,7 @@ typedef struct wadi_accuracy_preset {
 /** Lists the accuracy presets by rising accuracy. */
 WADI_API wadi_result wadi_list_accuracy_presets(wadi_accuracy_preset* presets, uint32_t* count);
 
-/** Creates a world from a level file (.json) or from a terrain map (.png, .r16, .npy, .asc).
+/** Creates a world from a level file (.json) or from a terrain map (.png, .r16, .r32, .raw, .hgt, .npy, .asc).
  *  overrides, options: NULL = the defaults.
  *  Waits: for compilers of drivers.
  *  Errors: NOT_FOUND, BAD_FILE, BAD_ARGUMENT, OUT_OF_MEMORY, NOT_SUPPORTED; no world is made. */
@@ -337,7 +338,7 @@ static inline wadi_frame wadi_default_frame(void) {
  *  its steps are beside this clock, which goes on where it was. Every call that reads or changes the state first finishes a step that
  *  `spread` began; the update in which it falls due does not repeat it.
  *  Waits: nothing, unless max_steps_in_flight is 0; a step ahead of which an edit brings a new material may (wadi_world_edit).
- *  Errors: OUT_OF_MEMORY (a new material). */
+ *  Errors: OUT_OF_MEMORY (a new material). One that fails has not taken the time: repeated, it takes what steps are left of it. */
 WADI_API wadi_result wadi_world_update(wadi_world_id world, uint64_t host_nanoseconds, wadi_frame* frame);
 
 /** Advances by `steps` water steps of fixed dt.
@@ -522,6 +523,8 @@ typedef struct wadi_world_stats {
     uint64_t tiles, active_tiles; /* of the world, and of those the ones that the newest step ran over, in the longer of its two lists
                                      where water and sand have one each; 0 without active tiles */
     uint64_t hash;                /* 64-bit state hash, ghosts excluded */
+    uint64_t high_columns;        /* columns of terrain, sand and water above method.largest_height, which flow and pushes can pile up:
+                                     there heights are rounded like any float, and the books drift */
 } wadi_world_stats;
 static inline wadi_world_stats wadi_default_world_stats(void) {
     WADI_ZERO_STRUCT(wadi_world_stats);

@@ -63,6 +63,7 @@ int files() {
     }
     folder.write("small.npy", map_files::npy(map_files::dictionary("<f4", "(4, 4)"), std::vector<float>(16, 0.5F)));
     folder.write("bomb.png", map_files::png_of_zeros(16384, 16384, 16, 6));
+    folder.write("honest.png", map_files::png_of_zeros(8, 8, 16, 0, std::uint64_t{300} << 20));
     folder.write("flat.png", map_files::png_of_zeros(16000, 1, 8, 0));
     folder.write("wide.npy", map_files::npy(map_files::dictionary("<f8", "(1000000, 1000000)"), std::vector<double>(4)));
     folder.write("turned.npy", map_files::npy(map_files::dictionary("<f4", "(-4, -4)"), std::vector<float>(16)));
@@ -106,6 +107,7 @@ int files() {
                  "grid": { "nx": 2000000000, "ny": 2000000000, "dx": 0.5 } })")));
          }},
         {"png", "16384 x 16384 of 8 bytes in 13 MB", "largest PNG", [&] { return with_map("bomb.png"); }},
+        {"png", "8 x 8, and 300 MiB of data", "more than the pixels", [&] { return with_map("honest.png"); }},
         {"png", "16000 x 1", "", [&] { return with_map("flat.png"); }},
         {"png", "holes of 256 GiB", "largest accepted", [&] { return with_map("holes.png"); }},
         {"npy", "a million by a million", "outside 1", [&] { return with_map("wide.npy"); }},

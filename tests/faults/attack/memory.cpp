@@ -60,6 +60,20 @@ int memory() {
                "address space of " + std::to_string(mebibytes) + " MiB more: ended with " + std::to_string(ran.code));
     }
     std::printf("address space for 4 to 300 MiB more: worlds until one is refused\n");
+    const auto made = [](int count) {
+        return run_child([&] {
+            for (int n = 0; n < count; ++n) {
+                wadi_world_id world{};
+                if (make(8, world) != WADI_OK || wadi_world_step(world, 1) != WADI_OK) return 1;
+            }
+            return 0;
+        });
+    };
+    const auto few = made(10), many = made(210);
+    expect(few.code == 0 && many.code == 0, "210 small worlds");
+    const double each = (many.mebibytes - few.mebibytes) / 200;
+    std::printf("a world of 8 x 8 cells takes %.2f MiB\n", each);
+    expect(each < 1, "a small world takes little"); // and no page of 2 MiB for itself
     // Where the last world that fits ends differs by limit: most of a world lies between the first and the last.
     for (const std::uint64_t mebibytes : {230U, 245U, 260U, 275U, 290U, 305U}) {
         const std::string group = memory_group(std::to_string(mebibytes << 20));

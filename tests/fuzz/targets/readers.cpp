@@ -7,6 +7,7 @@
 #include "engine/saves/sealed_bytes.hpp"
 #include "engine/settings/rules/checks.hpp"
 #include "engine/world.hpp"
+#include <cmath>
 #include <cstdlib>
 #include <memory>
 
@@ -29,6 +30,8 @@ template <class Decode> void map(const Bytes& bytes, Decode decode) {
     const auto decoded = decode(bytes);
     if (!decoded) return;
     if (decoded->values.size() != static_cast<std::size_t>(decoded->nx) * static_cast<std::size_t>(decoded->ny)) std::abort();
+    for (const float value : decoded->values)
+        if (!std::isfinite(value)) std::abort();
     static_cast<void>(resample(*decoded, 7, 5));
 }
 [[maybe_unused]] void png(const Bytes& bytes) {
@@ -42,6 +45,9 @@ template <class Decode> void map(const Bytes& bytes, Decode decode) {
 }
 [[maybe_unused]] void r16(const Bytes& bytes) {
     map(bytes, [](const Bytes& b) { return decode_r16(b, "fuzz.r16", std::nullopt); });
+    map(bytes, [](const Bytes& b) { return decode_raw(b, "fuzz.raw", std::nullopt); });
+    map(bytes, [](const Bytes& b) { return decode_r32(b, "fuzz.r32", std::nullopt); });
+    map(bytes, [](const Bytes& b) { return decode_hgt(b, "N46E007.hgt"); });
 }
 
 World& small_world() {

@@ -17,7 +17,7 @@ struct Float {
     Terrain* in;
     Float* next;
     bool told;                         /* what keeps it from floating was logged */
-    uint32_t asked_first, asked_count; /* its points in the terrain's query */
+    uint32_t asked_query, asked_first, asked_count; /* its points in one of the terrain's queries */
     uint32_t answer_count;
     wadi_query_result answers[MOST_POINTS];
 };

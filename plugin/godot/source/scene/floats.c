@@ -70,16 +70,14 @@ static void apply(Float* body, const Terrain* terrain, const Transform3D* pose) 
     engine_call(ENGINE_RigidBody3D_apply_torque, rigid, torque_arguments, NULL);
 }
 
-static void take_answers(Terrain* terrain) {
+static void take_query(Terrain* terrain, uint32_t query) {
     uint32_t count = 0;
-    if (!terrain->body_asked) return;
-    if (wadi_world_get_query(terrain->world, terrain->body_ticket, NULL, 0, &count, NULL) != WADI_OK) return;
-    terrain->body_asked = false;
+    if (wadi_world_get_query(terrain->world, terrain->body_tickets[query], NULL, 0, &count, NULL) != WADI_OK) return;
     wadi_query_result* all = malloc(count * sizeof *all);
     if (!all) return;
-    if (wadi_world_get_query(terrain->world, terrain->body_ticket, all, count, &count, NULL) == WADI_OK) {
+    if (wadi_world_get_query(terrain->world, terrain->body_tickets[query], all, count, &count, NULL) == WADI_OK) {
         for (Float* body = terrain->floats; body; body = body->next) {
-            if (body->asked_first + body->asked_count > count) continue;
+            if (body->asked_query != query || body->asked_first + body->asked_count > count) continue;
             memcpy(body->answers, all + body->asked_first, body->asked_count * sizeof *all);
             body->answer_count = body->asked_count;
         }
@@ -87,31 +85,68 @@ static void take_answers(Terrain* terrain) {
     free(all);
 }
 
-static void ask(Terrain* terrain, const Transform3D* pose) {
-    uint32_t bodies = 0, count = 0;
-    for (Float* body = terrain->floats; body; body = body->next) ++bodies;
-    float* points = malloc((size_t)bodies * 2 * MOST_POINTS * sizeof *points);
-    if (!points) return;
-    for (Float* body = terrain->floats; body; body = body->next) {
-        wadi_body state;
-        uint32_t own = MOST_POINTS;
-        body->asked_count = 0;
-        if (!state_of(terrain, pose, body, &state)) continue;
-        if (wadi_buoyancy_points(&state, points + 2 * count, &own) != WADI_OK) {
-            float_tell(body, wadi_get_last_error());
-            continue;
-        }
-        bool finite = true;
-        for (uint32_t n = 0; n < 2 * own; ++n) finite = finite && isfinite(points[2 * count + n]);
-        if (!finite) {
-            float_tell(body, "the body's place is not finite");
-            continue;
-        }
-        body->asked_first = count;
-        body->asked_count = own;
-        count += own;
+/* Of all queries, once the last of them is answered. */
+static void take_answers(Terrain* terrain) {
+    uint32_t count = 0;
+    for (uint32_t query = 0; query < terrain->body_queries; ++query)
+        if (wadi_world_get_query(terrain->world, terrain->body_tickets[query], NULL, 0, &count, NULL) != WADI_OK) return;
+    for (uint32_t query = 0; query < terrain->body_queries; ++query) take_query(terrain, query);
+    terrain->body_queries = 0;
+}
+
+/* The points of a body, MOST_POINTS at most, from `to` on; how many. */
+static uint32_t points_of(const Terrain* terrain, const Transform3D* pose, Float* body, float* to) {
+    wadi_body state;
+    uint32_t own = MOST_POINTS;
+    if (!state_of(terrain, pose, body, &state)) return 0;
+    if (wadi_buoyancy_points(&state, to, &own) != WADI_OK) {
+        float_tell(body, wadi_get_last_error());
+        return 0;
     }
-    if (count > 0) terrain->body_asked = wadi_world_query(terrain->world, points, count, &terrain->body_ticket) == WADI_OK;
+    bool finite = true;
+    for (uint32_t n = 0; n < 2 * own; ++n) finite = finite && isfinite(to[n]);
+    if (finite) return own;
+    float_tell(body, "the body's place is not finite");
+    return 0;
+}
+
+static bool send(Terrain* terrain, const float* points, uint32_t count, Float* first) {
+    if (count == 0) return true;
+    const wadi_result result = wadi_world_query(terrain->world, points, count, &terrain->body_tickets[terrain->body_queries]);
+    if (result == WADI_OK) ++terrain->body_queries;
+    if (result != WADI_OK && result != WADI_NOT_READY) float_tell(first, wadi_get_last_error());
+    return result == WADI_OK;
+}
+
+static void ask(Terrain* terrain, const Transform3D* pose) {
+    size_t room = 0;
+    for (Float* body = terrain->floats; body && room < MOST_QUERY_POINTS; body = body->next) room += MOST_POINTS;
+    float* points = malloc(room * 2 * sizeof *points);
+    if (!points) return;
+    uint32_t count = 0;
+    bool asking = true; /* a query that is refused, or one too many, ends it for this tick */
+    Float* first = terrain->floats;
+    for (Float* body = terrain->floats; body; body = body->next) {
+        body->asked_count = 0;
+        if (asking && count + MOST_POINTS > MOST_QUERY_POINTS) {
+            asking = send(terrain, points, count, first);
+            count = 0;
+            first = body;
+        }
+        if (asking && terrain->body_queries == MOST_BODY_QUERIES) {
+            asking = false;
+            float_tell(body, "more than 262144 points of bodies in one terrain: this body and those behind it do not float");
+        }
+        if (!asking) {
+            body->answer_count = 0;
+            continue;
+        }
+        body->asked_query = terrain->body_queries;
+        body->asked_first = count;
+        body->asked_count = points_of(terrain, pose, body, points + 2 * count);
+        count += body->asked_count;
+    }
+    if (asking) send(terrain, points, count, first);
     free(points);
 }
 
@@ -124,11 +159,11 @@ void floats_tick(Terrain* terrain) {
     }
     take_answers(terrain);
     for (Float* body = terrain->floats; body; body = body->next) apply(body, terrain, &pose);
-    if (!terrain->body_asked) ask(terrain, &pose);
+    if (terrain->body_queries == 0) ask(terrain, &pose);
 }
 
 void floats_forget(Terrain* terrain) {
-    terrain->body_asked = false;
+    terrain->body_queries = 0;
     for (Float* body = terrain->floats; body; body = body->next) body->asked_count = body->answer_count = 0;
 }
 

@@ -4,6 +4,8 @@
 #include "shared_device.h"
 #include "terrain.h"
 
+#include <math.h>
+
 static wadi_output_mask mask_of(const Terrain* terrain) { return (wadi_output_mask)terrain->outputs; }
 
 /* Brings the newest publish into the textures. */
@@ -34,13 +36,20 @@ static void tell_changes(Terrain* terrain) {
         api.variant_destroy(&argument);
 }
 
+/* A tween may overshoot time_scale at any tick: below 0 and no number are no time, and what is more than any host means is dropped by
+ * the library and told by time_dropped. */
+static double due_nanoseconds(const Terrain* terrain, double delta) {
+    const double most = 1e15, due = delta * terrain->time_scale * 1e9 + terrain->nanoseconds_left;
+    return due >= 0 ? fmin(due, most) : 0;
+}
+
 void frame_tick(Terrain* terrain) {
     if (!terrain->started || terrain->lost) return;
     double delta = 0;
     engine_call(ENGINE_Node_get_physics_process_delta_time, terrain->object, NULL, &delta);
     uint64_t nanoseconds = 0;
     if (terrain->running) {
-        const double due = delta * terrain->time_scale * 1e9 + terrain->nanoseconds_left;
+        const double due = due_nanoseconds(terrain, delta);
         nanoseconds = (uint64_t)due;
         terrain->nanoseconds_left = due - (double)nanoseconds;
     }
@@ -127,7 +136,9 @@ void terrain_get_texture(void* self, const GDExtensionConstTypePtr* arguments, v
         terrain->outputs |= bit;
         wadi_result outcome = world_set_outputs(terrain);
         if (outcome == WADI_OK) outcome = frame_sync(terrain);
+        const GDObjectInstanceID id = api.object_get_instance_id(terrain->object);
         if (outcome != WADI_OK) world_failed(terrain, "get_texture", outcome);
+        if (!api.object_get_instance_from_id(id)) return; /* device_lost was told to who freed the node */
     }
     value_assign(GDEXTENSION_VARIANT_TYPE_OBJECT, result, &terrain->textures.objects[output]);
 }

@@ -115,7 +115,9 @@ void terrain_get_heights(void* self, const GDExtensionConstTypePtr* arguments, v
     if (!terrain->heights_asked) {
         terrain->heights_asked = true;
         const wadi_result outcome = world_set_outputs(terrain);
+        const GDObjectInstanceID id = api.object_get_instance_id(terrain->object);
         if (outcome != WADI_OK) world_failed(terrain, "get_heights", outcome);
+        if (!api.object_get_instance_from_id(id)) return; /* device_lost was told to who freed the node */
     }
     PackedFloat32Array heights;
     float* room = floats_new(&heights, (size_t)region.nx * (size_t)region.ny);

@@ -9,6 +9,9 @@
 
 typedef struct Float Float;
 
+/* Of 65536 points each: 1024 bodies with the most samples. A world answers eight at a time, and the scene may ask, too. */
+enum { MOST_BODY_QUERIES = 4, MOST_QUERY_POINTS = 65536 };
+
 typedef struct Terrain {
     Object object;
     /* properties */
@@ -30,8 +33,8 @@ typedef struct Terrain {
     uint64_t save_ticket; /* 0 = none under way */
     void* save_data;
     size_t save_bytes;
-    uint64_t body_ticket; /* of the query for all bodies */
-    bool body_asked;
+    uint64_t body_tickets[MOST_BODY_QUERIES]; /* of the queries for all bodies */
+    uint32_t body_queries;                    /* how many are under way */
     Float* floats; /* a list */
     char message[512];
 } Terrain;

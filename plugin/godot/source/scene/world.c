@@ -103,8 +103,9 @@ int64_t world_start(Terrain* terrain) {
     if (result == WADI_OK) result = world_set_outputs(terrain);
     if (result == WADI_OK) result = frame_sync(terrain);
     if (result != WADI_OK) {
+        const GDObjectInstanceID id = api.object_get_instance_id(terrain->object);
         const int64_t error = world_failed(terrain, "start", result);
-        world_stop(terrain);
+        if (api.object_get_instance_from_id(id)) world_stop(terrain); /* device_lost may be told to who frees the node */
         return error;
     }
     emit(terrain->object, "started", NULL, 0);

@@ -1,0 +1,15 @@
+// What drawing a level's layers will cost, known before the first cell is drawn.
+#pragma once
+#include "engine/level/coverage.hpp"
+
+namespace wadi {
+
+/// Places at which a layer is asked for its height, each counted by the octaves or segments that are looked at there: some
+/// nanoseconds each. Counting ends beyond `most`.
+std::int64_t drawing_work(const std::vector<const Layer*>& layers, const LevelGrid& grid, std::int64_t most);
+
+/// The same for samples within cut cells.
+std::int64_t sampling_work(const std::vector<const Layer*>& layers, const LevelGrid& grid, const CutCells& cut,
+                           std::int64_t most);
+
+} // namespace wadi
