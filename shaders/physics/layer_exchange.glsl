@@ -26,4 +26,26 @@ FN void layer_exchange_if_any(REF(float) pure, REF(float) mixed, float gained_lo
     if (UNIFORM(wabs(gained_low) + wabs(gained_high) > 0.0f)) layer_exchange(pure, mixed, gained_low, gained_high, pure_height, mixed_height, dry);
 }
 
+// Depths of a face's pure water, of the cell it would flow from, that stand beside sand whose pores are not full (NUMERICS 2.4f).
+struct Beside {
+    float low, high;
+};
+
+// Of one cell. surface: its water's; top: its sand's; next_*: those of the cell beside it.
+FN float depth_beside(float surface, float top, float next_surface, float next_top, float next_ground) {
+    float facing = wmax(wmin(surface, next_top) - wmax(top, next_ground), 0.0f);
+    return next_surface < next_top ? facing : 0.0f;
+}
+
+// What flows into sand from beside it is one with the water in there: both share their momentum. pure_*: depths of pure water;
+// mixed_height: the face's mean depth of mixed water.
+FN void enter_sand(REF(float) pure, REF(float) mixed, Beside beside, float pure_low, float pure_high, float mixed_height) {
+    float facing = wmax(pure > 0.0f ? beside.low : 0.0f, pure < 0.0f ? beside.high : 0.0f);
+    float share = wmin(lean_divide_or_zero(facing, pure > 0.0f ? pure_low : pure_high), 1.0f);
+    float entering = share * (0.5f * (pure_low + pure_high));
+    float difference = (pure - mixed) * lean_reciprocal_or_zero(mixed_height + entering);
+    mixed = mixed + entering * difference;
+    pure = pure - share * (mixed_height * difference);
+}
+
 #endif

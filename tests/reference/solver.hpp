@@ -188,6 +188,8 @@ template <class Real> class Solver {
     void exchange_split(const Field<Real>& mixed_old, const Field<Real>& pure_old, const Field<Real>& mixed_new);
     Real water_gravity(Real fastest, Real deepest) const;
     Real friction_rate(std::size_t L, std::size_t R) const;
+    Real depth_beside(std::size_t from, std::size_t to) const;
+    void enter_sand(Real& uw, Real& um, std::size_t L, std::size_t R, Real beside) const;
     Real sand_gravity(Real deepest) const;
     Real across_face(const Faces<Real>& velocity, const Axis& axis, int a, int b) const; // mean of the four around
     void water_face(const Faces<Real>& pure_old, const Faces<Real>& mixed_old, const Axis& axis, int a, int b);

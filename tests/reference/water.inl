@@ -105,7 +105,27 @@ template <class Real> Real Solver<Real>::friction_rate(std::size_t L, std::size_
     return c / depth;
 }
 
-/// 2.4b, e, c, bed friction and d on one inner face.
+/// 2.4f: how much of the pure water of `from` stands beside the sand of `to`, whose pores are not full.
+template <class Real> Real Solver<Real>::depth_beside(std::size_t from, std::size_t to) const {
+    if (!has(EFFECT_MIXTURE) || !has(EFFECT_SLOPE_NORMAL) || P.exchange <= Real(0)) return Real(0);
+    const Real top = terrain[to] + sand[to];
+    if (terrain[to] + water[to] >= top) return Real(0);
+    const Real upper = std::min(terrain[from] + water[from], top);
+    return std::max(upper - std::max(terrain[from] + sand[from], terrain[to]), Real(0));
+}
+
+/// 2.4f: pure water that flows into sand from beside it and the water of the face's sand become as fast as both together.
+template <class Real> void Solver<Real>::enter_sand(Real& uw, Real& um, std::size_t L, std::size_t R, Real beside) const {
+    if (beside <= Real(0) || uw == Real(0)) return;
+    const Real share = std::min(beside / pure[uw > Real(0) ? L : R], Real(1));
+    const Real entering = share * mean(pure[L], pure[R]);
+    const Real inside = mean(mixed[L], mixed[R]);
+    const Real together = (inside * um + entering * uw) / (inside + entering);
+    uw = std::lerp(uw, together, share);
+    um = together;
+}
+
+/// 2.4b, f, e, c, bed friction and d on one inner face.
 template <class Real>
 void Solver<Real>::water_face(const Faces<Real>& pure_old, const Faces<Real>& mixed_old, const Axis& ax, int a, int b) {
     const std::size_t L = ax.cell(a - 1, b);
@@ -122,6 +142,9 @@ void Solver<Real>::water_face(const Faces<Real>& pure_old, const Faces<Real>& mi
     const Real push = P.k * water_gravity(fastest, std::max(water[L], water[R])) * rise;
 
     uw -= push;
+    const Real beside_L = depth_beside(L, R);
+    const Real beside_R = depth_beside(R, L);
+    enter_sand(uw, um, L, R, uw > Real(0) ? beside_L : beside_R);
     if (level && std::abs(uw) <= P.rest_velocity) uw = Real(0);
     uw = leaving_wet(uw, pure[L], pure[R], P.eps);
     const Real across = across_face(pure_old, ax, a, b);
@@ -132,7 +155,7 @@ void Solver<Real>::water_face(const Faces<Real>& pure_old, const Faces<Real>& mi
     Real& share = mixed_push.along(ax)[f];
     share = push / Real(P.substeps);
     const bool rests = level && std::abs(um) <= P.rest_velocity;
-    if (rests || blocked(mixed[L], mixed[R], eta_L, eta_R, P.eps)) {
+    if (rests || blocked(mixed[L] + beside_L, mixed[R] + beside_R, eta_L, eta_R, P.eps)) {
         um = Real(0);
         share = Real(0);
     }

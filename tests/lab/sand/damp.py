@@ -78,7 +78,7 @@ def washed(name, scene, seconds, above, least, most, held, control=None):
         ]
 
 
-washed("castle_with_wave", castle, 3, above=1, least=0.7, most=0.11, held=0.2)
+washed("castle_with_wave", castle, 3, above=1, least=0.7, most=0.11, held=0.17)
 @case("castle_turned", dx=(0.2, 0.1), control={"dt": 0.03})
 def castle_turned(lab, dx):
     """The castle and its wave, on a walled square with room to turn them, do what they do along the grid."""
@@ -106,7 +106,7 @@ def castle_turned(lab, dx):
 
 
 # On finer grids soaked letters stand steeper and longer.
-washed("letters", partial(shipped, "letters"), 4, above=0.3, least=0.6, most=0.16, held=0.26, control={"material.friction": 0})
+washed("letters", partial(shipped, "letters"), 4, above=0.3, least=0.6, most=0.16, held=0.23, control={"material.friction": 0})
 
 
 @case("cone_at_the_water_line", control={"material.friction": 0.2}, quick=(0.1,))

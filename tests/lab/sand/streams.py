@@ -42,9 +42,9 @@ def dam(height, slope, crest, length):
     return lambda x, y: np.where(np.abs(y) < length / 2, np.clip(height - slope * np.maximum(np.abs(x) - crest / 2, 0), 0, None), 0.0)
 
 
-washed("block_in_a_wave", shapes.block(2.4, 2.4, 1.2), wave(1.5, 4, 8, -2), 0.25, 2.5, (0.21, 0.26), {"dt": 0.03}, (0.26, None))
-washed("dam_overtopped", dam(0.6, 0.45, 0.5, 6), wave(1, 4, 6, -1.5), 0.25, 3, (0.11, 0.1), {"dt": 0.03}, (0.135, 0.125))
-washed("pile_in_a_stream", shapes.cone(0.45, 1), wave(1, 5, 8, -2.5), 0.1, 3, (0.11, 0.145), {"dt": 0.03}, (0.19, 0.175))
+washed("block_in_a_wave", shapes.block(2.4, 2.4, 1.2), wave(1.5, 4, 8, -2), 0.25, 2.5, (0.21, 0.26), {"dt": 0.03}, (0.24, None))
+washed("dam_overtopped", dam(0.6, 0.45, 0.5, 6), wave(1, 4, 6, -1.5), 0.25, 3, (0.11, 0.1), {"dt": 0.03}, (None, 0.14))
+washed("pile_in_a_stream", shapes.cone(0.45, 1), wave(1, 5, 8, -2.5), 0.1, 3, (0.11, 0.145), {"dt": 0.03}, (None, 0.205))
 
 
 def cliff(lake):
