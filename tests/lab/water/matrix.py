@@ -52,8 +52,8 @@ def beds():
     found["ends_level"] = (1 - 1e-3 * np.minimum(x, 90), 1e-3, 1)
     found["all_level"] = (0 * x, 1e-3, 1.05)  # the ground beyond falls by 1e-3: backwater over 50 m
     found["noise_1cm"] = (even + 0.01 * noise, 1e-3, 1)
-    found["noise_5cm"] = (1 - 5e-3 * x + 0.05 * noise, 5e-3, 1.05)
-    found["step_down"] = (even - np.where(x > 98, 0.05, 0), 1e-3, None)  # two states: nothing may dam
+    found["noise_5cm"] = (1 - 5e-3 * x + 0.05 * noise, 5e-3, 1.06)
+    found["step_down"] = (even - np.where(x > 98, 0.05, 0), 1e-3, None)  # critical above the step or drowned: nothing dams
     return found
 
 
@@ -70,7 +70,7 @@ def river(name, start, order, seconds, slope=0.0):
 
     def measure(lab):
         h = lab.run(one, [seconds], ("W",), values={}).field("W", seconds)[0]
-        return h[50] / normal, ratio or 1, 0.03 if ratio else 0.15
+        return h[50] / normal, ratio or 0.86, 0.03 if ratio else 0.15
     return measure
 
 
@@ -123,7 +123,8 @@ def tide(periods, order):
     def measure(lab):
         run = lab.run(one, times, ("W",), values={})
         high = [run.field("W", t)[0, -1] for t in times]
-        return (max(high) - min(high)) / 0.2, 1, 0.03
+        wave = 2 * math.pi / (periods * 200)  # a standing wave, held half a cell outside the grid
+        return (max(high) - min(high)) / 0.2, math.cos(wave * 198) / math.cos(wave * 202), 0.03
     return measure
 
 
