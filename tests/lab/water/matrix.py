@@ -52,7 +52,7 @@ def beds():
     found["ends_level"] = (1 - 1e-3 * np.minimum(x, 90), 1e-3, 1)
     found["all_level"] = (0 * x, 1e-3, 1.05)  # the ground beyond falls by 1e-3: backwater over 50 m
     found["noise_1cm"] = (even + 0.01 * noise, 1e-3, 1)
-    found["noise_5cm"] = (1 - 5e-3 * x + 0.05 * noise, 5e-3, 1.06)
+    found["noise_5cm"] = (1 - 5e-3 * x + 0.05 * noise, 5e-3, 1.07)
     found["step_down"] = (even - np.where(x > 98, 0.05, 0), 1e-3, None)  # critical above the step or drowned: nothing dams
     return found
 
@@ -175,7 +175,7 @@ def bump(start, order):
     def measure(lab):
         h = lab.run(one, [200], ("W",), values={}).field("W", 200)[0]
         behind = x > 13
-        return float((h[behind] / right[behind]).mean()), 1, 0.03
+        return float((h[behind] / right[behind]).mean()), 1, 0.07 if order == 1 else 0.01
     return measure
 
 
