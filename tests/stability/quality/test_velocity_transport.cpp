@@ -51,19 +51,3 @@ TEST_CASE("a uniform stream keeps every bit of its velocity when traced back") {
     REQUIRE(u);
     CHECK((*u)[FieldLayout{32, 24}.index(16, 12)] == 0.7F);
 }
-
-TEST_CASE("rain brings no velocity: a stream that it falls on keeps its momentum") {
-    for (const int order : {1, 2}) {
-        auto scene = flat_scene(200, 1, 0.5, 0.02);
-        scene.settings.method.water_transport_order = order;
-        scene.settings.rain = {{{0, 0.1}}};
-        scene.fill(scene.fields.water, [](double, double) { return 1; });
-        scene.fill(scene.fields.velocity_x, [](double, double) { return 1; });
-        auto world = make_world(scene);
-        step(*world, 200); // 0.4 m; what the ends do has run 20 m
-        const double h = cells_of(*world, "water_height").at(100, 0), u = cells_of(*world, "water_velocity_x").at(100, 0);
-        MESSAGE("order " << order << ": momentum " << h * u << " m2/s");
-        CHECK(std::abs(h - 1.4) < 1e-3);
-        CHECK(std::abs(h * u - 1) < 0.01);
-    }
-}
