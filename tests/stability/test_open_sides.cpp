@@ -169,10 +169,10 @@ TEST_CASE("an outflow side leaves fast streams and even slopes alone, every kind
             on_every_backend(lake, [](World& world) {
                 step(world, 1); // sets what sides remember
                 const auto before = hash_of(world);
-                const auto depths = cells_of(world, "water_height").values;
+                const auto stood = cells_of(world, "water_height").values;
                 step(world, 100);
                 CHECK(hash_of(world) == before);
-                CHECK(cells_of(world, "water_height").values == depths);
+                CHECK(cells_of(world, "water_height").values == stood);
             });
         }
     }
