@@ -154,8 +154,8 @@ template <class Real> Real Solver<Real>::waves_face(const Axis& ax, int a, int b
     const bool shoots = c_in > Real(0) && next > c_in;
     const Real swing = Real(2) * c_in + Real(2) * c_still - Real(4) * c_wave;
     const Real moved = shoots ? next : stream + swing;
-    u[f] = outward * beside_level(N, level, moved);
-    const bool rests = std::abs(water[N] - outside) <= P.rest_surface && std::abs(moved) <= P.rest_velocity;
+    const bool rests = std::abs(water[N] - outside) <= P.rest_surface && std::abs(stream) <= P.rest_velocity;
+    u[f] = rests ? Real(0) : outward * beside_level(N, level, moved);
     const Real share = absorbs > Real(0) ? std::min(P.dt / absorbs, Real(0.5)) : P.k * c_still / (Real(4) * Real(cells));
     if (!rests) stream = clamped(shoots ? next - swing : stream + share * Real(2) * (c_in - c_wave), P.clamp);
     return P.k * g * (water[N] - outside);

