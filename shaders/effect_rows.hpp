@@ -26,7 +26,7 @@ inline constexpr EffectRow effect_rows[] = {
     {EFFECT_COHESION, "cohesion", EFFECT_ELASTOPLASTIC | EFFECT_WATER, "cohesion follows the saturation of the sand"},
     {EFFECT_SOURCES, "sources", 0, "points, discs and boxes that add or take water or sand"},
     {EFFECT_RAIN, "rain", EFFECT_WATER, "rain and evaporation"},
-    {EFFECT_OPEN_SIDES, "open_sides", 0, "sides with discharge, level or outflow"},
+    {EFFECT_OPEN_SIDES, "open_sides", 0, "sides that let water through: discharge, level, waves, outflow, brink"},
     {EFFECT_BED_FRICTION, "bed_friction", EFFECT_WATER, "friction of pure water on its bed"},
     {EFFECT_BED_SHEAR, "bed_shear", EFFECT_MIXTURE, "pure water drags the sand under it along: bed load"},
     {EFFECT_SLOPE_NORMAL, "slope_normal", EFFECT_SAND,

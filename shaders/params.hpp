@@ -14,7 +14,7 @@ static_assert(sizeof(WorldParams) <= 512, "WorldParams must stay within 512 byte
 static_assert(sizeof(WorldParams) % 4 == 0 && alignof(WorldParams) == 4);
 static_assert(sizeof(StepInput) <= 2304, "StepInput must stay within 2304 bytes");
 static_assert(offsetof(StepInput, source) == 16 && offsetof(StepInput, side) == 16 + 16 * MAX_SOURCES);
-static_assert(offsetof(StepInput, edit) == offsetof(StepInput, side) + 16 * 4 && sizeof(StepInput) % 16 == 0);
+static_assert(offsetof(StepInput, edit) == offsetof(StepInput, side) + 16 * 8 && sizeof(StepInput) % 16 == 0);
 static_assert(sizeof(EditInput) == 64 && alignof(EditInput) == 4, "std140 begins each edit at a multiple of 16 bytes");
 static_assert(offsetof(StepInput, wake) == offsetof(StepInput, edit) + sizeof(EditInput) * MAX_EDITS);
 

@@ -32,6 +32,11 @@
 #define SIDE_DISCHARGE 1
 #define SIDE_LEVEL 2
 #define SIDE_OUTFLOW 3
+#define SIDE_BRINK 4
+#define SIDE_WAVES 5      // and a level that lets waves out
+#define SIDE_REACH 64       // cells whose bed says how the ground falls at an outflow
+#define SIDE_SLOPE_LEAST 1.0e-3f // and how much it does at least
+#define SIDE_SLOPE_EVERY 16 // steps from one look at it to the next
 #define SIDE_WEST 0
 #define SIDE_EAST 1
 #define SIDE_SOUTH 2
@@ -186,9 +191,10 @@ struct StepInput {
     float evaporation;          // largest depth that evaporates in this step [m]
     float interpolation;        // of published outputs: 0 = previous, 1 = current
     vec4 source[MAX_SOURCES];   // depth added (negative: removed) [m], face velocity x, y [m/s], 1 if velocity is set
-    vec4 side[4];               // west, east, south, north: discharge per width [m2/s] or level [m],
-                                // least ghost depth (negative: the ghost depth) or the level's rise since the last step [m],
+    vec4 side[4];               // west, east, south, north: discharge per width [m2/s], level [m] or an outflow's slope,
+                                // least ghost depth (negative: the ghost depth) or the wave's elevation [m],
                                 // first and last index of the open span
+    vec4 side_pace[4];          // of waves: dt over the time below which they leave (0: four times the grid's length over a wave's speed)
     EditInput edit[MAX_EDITS];
     vec4 wake[MAX_WAKES];       // tiles woken in this step: first column, row, last column, row
     int edit_count;             // edits in this submission of apply_edits

@@ -28,7 +28,7 @@ class Runner {
     // Only the thread's own face and ghost are written: a chunk at a time is saved, run and compared.
     void run_rim() {
         constexpr int chunk = 128;
-        std::array<std::uint32_t, ActiveStage::most_outputs * 2 * chunk> old;
+        std::array<std::uint32_t, ActiveStage::most_outputs * 4 * chunk> old;
         for (int i0 = call_.range.i0; i0 < call_.range.i1; i0 += chunk) {
             const int i1 = std::min(i0 + chunk, call_.range.i1);
             const auto visit = [&](auto use) {
@@ -36,12 +36,22 @@ class Runner {
                 for (int i = i0; i < i1; ++i) {
                     const Place place = rim_place(i);
                     for (const auto& output : s_.outputs) {
-                        for (const std::size_t n :
-                             {output.count ? static_cast<std::size_t>(i) : place.face,
-                              output.count ? static_cast<std::size_t>(i + 4 * (p_.nx + p_.ny)) : place.ghost}) {
+                        const auto look = [&](std::size_t n) {
                             std::uint32_t word = 0;
                             std::memcpy(&word, output.data + n * ActiveStage::number_bytes, ActiveStage::number_bytes);
                             use(old[at++], word, place.tile);
+                        };
+                        const auto own = static_cast<std::size_t>(i);
+                        switch (output.numbers) {
+                        case ActiveStage::Numbers::field:
+                            look(place.face), look(place.ghost);
+                            break;
+                        case ActiveStage::Numbers::counts:
+                            look(own), look(own + static_cast<std::size_t>(4 * (p_.nx + p_.ny)));
+                            break;
+                        case ActiveStage::Numbers::memory:
+                            for (std::size_t n = 0; n < 4; ++n) look(4 * own + n);
+                            break;
                         }
                     }
                 }

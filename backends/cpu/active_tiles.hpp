@@ -10,11 +10,12 @@ namespace wadi::cpu {
 
 /// A stage with its buffers, and the lists of compute::ActiveTiles.
 struct ActiveStage {
-    /// Numbers of 4 bytes that the stage writes; a count has its low words for in and out at i and i + 2 rim
-    /// (account_sides).
+    /// Of 4 bytes that the stage writes. Counts have their low words for in and out at i and i + 2 rim (account_sides), the
+    /// memory of outer faces four numbers each (open_sides).
+    enum class Numbers : std::uint8_t { field, counts, memory };
     struct Output {
         std::byte* data;
-        bool count;
+        Numbers numbers;
     };
     static constexpr std::size_t most_outputs = 16, number_bytes = 4;
 

@@ -213,8 +213,12 @@ Status CpuDevice::set_active(const compute::Dispatch& d, const compute::StageInf
     active.counts = words(d.tiles.counts);
     active.rim = stage.extent == compute::Extent::rim;
     for (std::size_t b = 0; b < stage.bindings.size(); ++b) {
-        if (stage.bindings[b].access == compute::Access::in || step.buffers[b] == nullptr) continue;
-        active.outputs.push_back({static_cast<std::byte*>(step.buffers[b]), stage.bindings[b].type == compute::Scalar::u32});
+        const auto& binding = stage.bindings[b];
+        if (binding.access == compute::Access::in || step.buffers[b] == nullptr) continue;
+        using enum ActiveStage::Numbers;
+        active.outputs.push_back({static_cast<std::byte*>(step.buffers[b]), binding.type == compute::Scalar::u32    ? counts
+                                                                            : binding.type == compute::Scalar::vec4 ? memory
+                                                                                                                    : field});
     }
     if (active.outputs.size() > ActiveStage::most_outputs)
         return error(Code::internal,

@@ -74,11 +74,15 @@ void read_sides(const Json& value, LevelFiles& files, std::array<Side, 4>& sides
         ObjectReader side_reader(*found, path, status);
         int kind = 0;
         side_reader.require("kind");
-        side_reader.choice("kind", {"wall", "discharge", "level", "outflow"}, kind);
+        side_reader.choice("kind", {"wall", "discharge", "level", "outflow", "brink", "waves"}, kind);
         side.kind = static_cast<SideKind>(kind);
         side_reader.number("from", side.from, 0, ANY_NUMBER);
         side_reader.number("to", side.to, 0, ANY_NUMBER);
         side_reader.number("depth", side.depth, 0, ANY_NUMBER);
+        side_reader.number("slope", side.slope, 0, ANY_NUMBER);
+        side_reader.number("sediment", side.sediment, 0, ANY_NUMBER);
+        side_reader.number("absorb", side.absorb, 0, ANY_NUMBER);
+        if (const Json* series = side_reader.find("wave")) side.wave = read_series(*series, path + ".wave", files, status);
         if (const Json* series = side_reader.find("value")) side.value = read_series(*series, path + ".value", files, status);
         side_reader.finish();
     }

@@ -339,6 +339,44 @@ bool opens_a_cell(const Settings& settings, std::size_t index) {
     return std::ceil(side.from / settings.grid.dx - 0.5) <= std::min(std::floor(side.to / settings.grid.dx - 0.5), last);
 }
 
+/// The shortest swing of a series: twice the time from a highest or lowest value to the next; 0 where it has no two of them.
+double shortest_period(const TimeSeries& series) {
+    const auto& at = series.samples;
+    double period = 0, last = 0;
+    bool met = false;
+    for (std::size_t n = 1; n + 1 < at.size(); ++n) {
+        if ((at[n].second - at[n - 1].second) * (at[n + 1].second - at[n].second) >= 0) continue;
+        const double swing = 2 * (at[n].first - last);
+        if (met && (period == 0 || swing < period)) period = swing;
+        last = at[n].first;
+        met = true;
+    }
+    return period;
+}
+
+/// A held level that swings faster than a basin can follow: its own waves come back from it.
+void warn_levels(const Settings& s, const InitialFields& fields, std::vector<std::string>& warnings) {
+    for (std::size_t n = 0; n < s.sides.size(); ++n) {
+        const Side& side = s.sides[n];
+        if (side.kind != SideKind::level || side.absorb > 0) continue;
+        const double period = shortest_period(side.value);
+        if (period == 0) continue;
+        const bool along_y = n == static_cast<std::size_t>(SideName::west) || n == static_cast<std::size_t>(SideName::east);
+        const bool high = n == static_cast<std::size_t>(SideName::east) || n == static_cast<std::size_t>(SideName::north);
+        const auto nx = static_cast<std::size_t>(s.grid.nx), ny = static_cast<std::size_t>(s.grid.ny);
+        double deep = 0;
+        for (std::size_t at = 0; at < (along_y ? ny : nx); ++at) {
+            const std::size_t cell = along_y ? at * nx + (high ? nx - 1 : 0) : (high ? (ny - 1) * nx : 0) + at;
+            deep = std::max(deep, side.value.at(0) - (fields.terrain.empty() ? 0 : static_cast<double>(fields.terrain[cell])));
+        }
+        const double across = s.grid.dx * (along_y ? s.grid.nx : s.grid.ny) / std::sqrt(std::max(s.gravity * deep, 1e-9));
+        if (deep > 0 && period < 8 * across)
+            warnings.push_back("sides." + side_names()[n] + ".value: a level that swings within " + number_text(period) +
+                               " s throws back what returns from the other end after " + at_least(2 * across) +
+                               " s; for waves that come in use kind \"waves\" (value: the still level, wave: the rest)");
+    }
+}
+
 } // namespace
 
 std::vector<std::string> level_warnings(const Settings& settings, const InitialFields& fields) {
@@ -349,6 +387,7 @@ std::vector<std::string> level_warnings(const Settings& settings, const InitialF
     const auto cells = static_cast<std::size_t>(settings.grid.nx) * static_cast<std::size_t>(settings.grid.ny);
     warn_films(settings, {survey.highest_column, 2 * survey.dry_cells > cells}, warnings);
     warn_discharges(settings, warnings);
+    warn_levels(settings, fields, warnings);
     for (std::size_t n = 0; n < settings.sources.size(); ++n)
         if (!covers_a_cell(settings.sources[n], settings.grid))
             warnings.push_back("sources[" + std::to_string(n) +

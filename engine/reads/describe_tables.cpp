@@ -114,7 +114,7 @@ bool takes_turns(std::string_view field) {
 }
 
 std::string describe_fields() {
-    const char* roles[] = {"state", "scratch", "ledger", "fixed", "shapes", "tiles", "published"};
+    const char* roles[] = {"state", "state", "scratch", "ledger", "fixed", "shapes", "tiles", "published"};
     std::string text = heading({"field", "role", "symbol", "place", "unit", "exists with", "meaning"});
     const auto table = field_table();
     for (std::size_t n = 0; n < table.size();) {
@@ -133,6 +133,7 @@ std::string describe_fields() {
         text += row({code(joined(folded(names), ", ")), role, joined(symbols, ", "),
                      west || south                     ? faces
                      : first.place == FieldPlace::cell ? "cell"
+                     : first.role == FieldRole::rim    ? "outer face"
                                                        : "",
                      first.unit, joined(names_of(first.needs), ", "), first.meaning});
     }

@@ -156,8 +156,9 @@ Status StateReader::read(const std::string& name, const Region& region, std::spa
         auto status = publish(stage, {}, {row->name.data()}); // the program keeps the pointer
         return status ? read_cells(rows_of(output_[0]), region, values) : status;
     }
-    if (state_.plan().find(name) == nullptr) {
-        if (row == nullptr || row->role != FieldRole::state)
+    const bool readable = row != nullptr && row->place != FieldPlace::none;
+    if (!readable || state_.plan().find(name) == nullptr) {
+        if (!readable || row->role != FieldRole::state)
             return error(Code::bad_argument, "read: no field is called '" + name + "'");
         std::fill(values.begin(), values.end(), 0.0F);
         return ok_status();
@@ -184,6 +185,12 @@ Result<std::uint64_t> StateReader::hash_fields(WorldStats* stats) {
         const std::uint64_t n = number++;
         const std::string name(field.name);
         if (state_.plan().find(name) == nullptr) continue;
+        if (field.role == FieldRole::rim) {
+            std::vector<float> values(static_cast<std::size_t>(state_.layout().rim()) * 4);
+            if (auto status = state_.fields().read(name, 0, values); !status) return status;
+            hash += hash_of_row(n, 0, values);
+            continue;
+        }
         const bool height = name.ends_with("_height"), velocity = is_velocity(field);
         const auto look = [&](int j, std::span<const float> row, Figures& figures) {
             figures.hash += hash_of_row(n, j, row);

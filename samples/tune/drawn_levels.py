@@ -223,8 +223,8 @@ def beach(s):
     else:
         period, times = s.between(1.5, 4), []
         for n in range(math.ceil(level["duration"] / period)):
-            times += [[rounded(n * period), s.metres(depth)], [rounded((n + 0.5) * period), s.metres(depth + height)]]
-        level["sides"] = {s.side_name(0): {"kind": "level", "value": times}}
+            times += [[rounded(n * period), 0], [rounded((n + 0.5) * period), s.metres(height)]]
+        level["sides"] = {s.side_name(0): {"kind": "waves", "value": s.metres(depth), "wave": times}}
     s.depth = max(s.depth, s.wall, (depth + height) * s.side)
 
 

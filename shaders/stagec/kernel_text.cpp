@@ -21,15 +21,18 @@ std::string guard(const std::string& extent) {
 
 bool marks(const Stage& s) {
     bool marks = s.extent == "CELLS" || s.extent == "FACES" || s.extent == "RIM";
-    for (const auto& b : s.bindings) marks &= b.access == "IN" || b.type == "float" || (s.extent == "RIM" && b.type == "uint");
+    for (const auto& b : s.bindings)
+        marks &= b.access == "IN" || b.type == "float" || (s.extent == "RIM" && (b.type == "uint" || b.type == "vec4"));
     return marks;
 }
 
-// Where a kernel at (i, j) writes a buffer. RIM: its face and the ghost outside, the low words of its counts in and out.
+// What of a buffer a kernel at (i, j) writes. RIM: at its face and the ghost outside, the low words of its counts in and out, the
+// four numbers that it remembers.
 static std::vector<std::string> written(const Stage& s, const Binding& b) {
-    if (s.extent != "RIM") return {"at"};
-    if (b.type == "uint") return {"i", "4 * (P.nx + P.ny) + i"};
-    return {"at", "ghost"};
+    if (s.extent != "RIM") return {"[at]"};
+    if (b.type == "uint") return {"[i]", "[4 * (P.nx + P.ny) + i]"};
+    if (b.type == "vec4") return {"[i].x", "[i].y", "[i].z", "[i].w"};
+    return {"[at]", "[ghost]"};
 }
 
 std::string marking(const Stage& s, const std::string& member) {
@@ -39,9 +42,9 @@ std::string marking(const Stage& s, const std::string& member) {
         if (b.access == "IN") continue;
         const std::string has = b.condition == "0u" ? "" : "if (HAS(" + b.condition + ")) ";
         for (const std::string& at : written(s, b)) {
-            const bool is_float = b.type == "float";
-            const std::string old = "old" + std::to_string(count++), value = member + b.name + "[" + at + "]";
-            before << "    " << (is_float ? "float" : b.type) << " " << old << " = " << (is_float ? "0.0f" : "0u")
+            const bool is_float = b.type != "uint";
+            const std::string old = "old" + std::to_string(count++), value = member + b.name + at;
+            before << "    " << (is_float ? "float" : "uint") << " " << old << " = " << (is_float ? "0.0f" : "0u")
                    << ";\n    if (look) {\n        " << has << old << " = " << value << ";\n    }\n";
             after << "        " << has << "changed = changed || "
                   << (is_float ? "float_bits(" + value + ") != float_bits(" + old + ")" : value + " != " + old) << ";\n";
@@ -69,7 +72,7 @@ std::string tile_part(const std::string& m, const std::string& skip) {
 
 std::string rim_place(const Stage& s) {
     bool ghosts = false;
-    for (const auto& b : s.bindings) ghosts |= b.access != "IN" && b.type != "uint";
+    for (const auto& b : s.bindings) ghosts |= b.access != "IN" && b.type == "float";
     return std::string("    int west_east = 2 * P.ny;\n    bool along_y = i < west_east;\n"
                        "    bool low = along_y ? i < P.ny : i < west_east + P.nx;\n"
                        "    int along = along_y ? (low ? i : i - P.ny) : (low ? i - west_east : i - west_east - P.nx);\n"

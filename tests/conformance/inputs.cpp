@@ -229,7 +229,15 @@ void open_sides(Scene& scene) {
     if (!water) return;
     s.sides[SIDE_EAST] = {SideKind::discharge, 0, 0.8 * ly, {{{0, 0.8 * deep * ly}, {1, 1.2 * deep * ly}}}};
     if (scene.name == "slope" || scene.name == "islands") s.sides[SIDE_EAST].depth = 0.3; // less than critical
-    s.sides[SIDE_SOUTH] = {SideKind::level, 0.2 * lx, 1e30, constant(scene.name == "lake" ? 1.000008 : 1.03 * deep)};
+    auto& south = s.sides[SIDE_SOUTH];
+    south = {SideKind::level, 0.2 * lx, 1e30, constant(scene.name == "lake" ? 1.000008 : 1.03 * deep)};
+    // Every kind somewhere: each stage meets several scenes.
+    if (scene.name == "slope" || scene.name == "thin_film" || scene.name == "deep") s.sides[SIDE_NORTH].kind = SideKind::brink;
+    if (scene.name == "random" || scene.name == "cliff") {
+        south.kind = SideKind::waves;
+        south.wave = {{{0, 0.02}, {1, -0.03}}};
+    }
+    if (scene.name == "islands") south.absorb = 0.7;
 }
 
 // What enters and leaves, for the grid that the settings have.

@@ -142,6 +142,21 @@ std::vector<std::uint32_t> ledger_words(std::size_t count) {
     return words;
 }
 
+// Four numbers of each outer face, west, east, south, north: what its kind remembers.
+std::vector<std::uint32_t> memory_words(const reference::Solver<float>& s) {
+    std::vector<std::uint32_t> words;
+    for (const bool is_y : {false, true}) {
+        const reference::Axis axis = s.axis(is_y);
+        for (const int a : {0, axis.along()})
+            for (int b = 0; b < axis.across(); ++b) {
+                const auto& memory = s.side_memory.along(axis)[axis.face(a, b)];
+                for (const float value : {memory.stream + memory.error, memory.mean, memory.rise, memory.above})
+                    words.push_back(std::bit_cast<std::uint32_t>(value));
+            }
+    }
+    return words;
+}
+
 } // namespace
 
 std::uint32_t ledger_start(std::size_t word) { return 0xFFFFFF00u + static_cast<std::uint32_t>(word * 37 % 251); }
@@ -184,6 +199,8 @@ std::vector<BenchBuffer> stage_buffers(const compute::StageInfo& stage, const Sc
             fill_words(buffers[b],
                        ledger_words(std::size_t{2 * LEDGER_ENTRIES} * static_cast<std::size_t>(layout.strips() * layout.pitch())),
                        true);
+        } else if (binding.name == "side_memory") {
+            fill_words(buffers[b], memory_words(*pilot.narrow), true);
         } else if (binding.name == "side_ledger") {
             fill_words(buffers[b], ledger_words(4 * static_cast<std::size_t>(layout.rim())), true);
         } else if (!fill_active_tiles(buffers[b], binding, params) && !fill_tiles(buffers[b], binding, layout)) {

@@ -122,9 +122,14 @@ Json level_of(const Case& c) {
         const Side& side = s.sides[n];
         if (side.kind == SideKind::wall) continue;
         Json& to = json["sides"][side_names()[n]];
-        to["kind"] = side.kind == SideKind::discharge ? "discharge" : side.kind == SideKind::level ? "level" : "outflow";
+        const char* kinds[] = {"wall", "discharge", "level", "outflow", "brink", "waves"};
+        to["kind"] = kinds[static_cast<std::size_t>(side.kind)];
         if (!side.value.samples.empty()) to["value"] = series(side.value);
         if (side.depth > 0) to["depth"] = side.depth;
+        if (!side.wave.samples.empty()) to["wave"] = series(side.wave);
+        if (side.slope > 0) to["slope"] = side.slope;
+        if (side.sediment >= 0) to["sediment"] = side.sediment;
+        if (side.absorb > 0) to["absorb"] = side.absorb;
         if (side.from > 0) to["from"] = side.from;
         if (side.to < 1e29) to["to"] = side.to;
     }

@@ -242,6 +242,18 @@ Case make_case(std::uint64_t seed) {
         s.method.strain_transport = random.pick({StrainTransport::polar, StrainTransport::direct});
     }
     if (random.chance(0.2)) c.at_ends = draw_ends(random, c);
+    for (Side& side : s.sides) {
+        if (side.kind == SideKind::outflow && random.chance(0.4)) side.kind = SideKind::brink;
+        if (side.kind == SideKind::outflow && random.chance(0.3)) side.slope = random.log(1e-5, 1);
+        if (side.kind != SideKind::wall && random.chance(0.3)) side.sediment = random.real(0, 1);
+        if (side.kind != SideKind::level) continue;
+        if (random.chance(0.4)) {
+            side.kind = SideKind::waves;
+            const double high = random.log(1e-3, 1) * size;
+            if (random.chance(0.7)) side.wave = {{{0, random.real(-1, 1) * high}, {c.steps * s.dt, random.real(-1, 1) * high}}};
+        }
+        if (random.chance(0.4)) side.absorb = random.log(0.1, 1e4) * s.dt;
+    }
     if (random.chance(0.5)) s.material.bed_adhesion = random.pick({0.0, random.log(1e-12, 1e-3), random.real(0, 1)});
     return c;
 }

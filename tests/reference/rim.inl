@@ -85,77 +85,80 @@ template <class Real> void Solver<Real>::apply_rain() {
     }
 }
 
-/// A face beside a reservoir whose surface stands at `level`, and stood at `level_before` a step ago, over sand as high as
-/// inside. Waves run out through it, d/dt (u - sqrt(g/h) eta) being what the level does; where one depth of pure water is under
-/// half of the other the reservoir is a neighbour as any cell is. Returns what the outward velocity gains.
-template <class Real> Real Solver<Real>::level_face(const Axis& ax, int a, int b, Real level, Real level_before) {
+/// Depth of a face outside which the free surface stands at `level`, over sand as high as in cell N.
+template <class Real> Real Solver<Real>::clear_depth(std::size_t N, Real level) const {
+    const Real outside = std::max(level - terrain[N], Real(0));
+    return has(EFFECT_MIXTURE) ? std::max(outside - sand[N], Real(0)) : outside;
+}
+
+/// What the velocity out of the domain becomes beside such a surface: 2.4e, c and d.
+template <class Real> Real Solver<Real>::beside_level(std::size_t N, Real level, Real u) const {
+    const Real eta_in = terrain[N] + water[N];
+    const Real eta_out = std::max(level, terrain[N]);
+    if (std::abs(eta_in - eta_out) <= P.rest_surface && std::abs(u) <= P.rest_velocity) return Real(0);
+    if (blocked(pure[N], clear_depth(N, level), eta_in, eta_out, P.eps)) return Real(0);
+    return clamped(u, P.clamp);
+}
+
+/// A face beside water held at `level`: its own equation of motion, that of 2.3 and 2.4 with the level as the surface outside.
+/// Returns what the push adds to the outward velocity.
+template <class Real> Real Solver<Real>::level_face(const Axis& ax, int a, int b, Real level) {
     const bool far_end = a != 0;
     const Real outward = far_end ? Real(1) : Real(-1);
     const int cells = ax.along();
     const std::size_t f = ax.face(a, b);
     const std::size_t N = ax.cell(far_end ? cells - 1 : 0, b);
     const std::size_t M = ax.cell(far_end ? std::max(cells - 2, 0) : std::min(1, cells - 1), b);
+    Field<Real>& u = pure_velocity.along(ax);
+    const Real next = outward * u[cells == 1 ? f : ax.face(far_end ? cells - 1 : 1, b)];
+    const Real own = step_index > 0 ? outward * u[f] : next;
     const Real outside = std::max(level - terrain[N], Real(0));
-    const auto above_sand = [&](Real depth) { return has(EFFECT_MIXTURE) ? std::max(depth - sand[N], Real(0)) : depth; };
-    const Real ghost = above_sand(outside);
+    const Real ghost = clear_depth(N, level);
     ghost_water.along(ax)[f] = ghost;
-    const Real eta_in = terrain[N] + water[N];
-    const Real eta_out = terrain[N] + outside;
-    Real& velocity = pure_velocity.along(ax)[f];
-    const Real next = outward * pure_velocity.along(ax)[ax.face(far_end ? cells - 1 : 1, b)];
-    const Real own = step_index > 0 || cells == 1 ? outward * velocity : next;
-    const Real g = water_gravity(std::abs(own), std::max(water[N], outside));
-    const Real push = P.k * g * (eta_in - eta_out);
-    const Real deeper = std::max(pure[N], ghost);
-    Real gain = push;
-    const Real alike =
-        deeper > Real(0) ? std::clamp(std::min(pure[N], ghost) / deeper * Real(4) - Real(2), Real(0), Real(1)) : Real(0);
-    if (cells > 1 && alike > Real(0)) {
-        const Real h = pure[N];
-        const Real c = std::sqrt(g * h);
-        const auto upwind = [&](Real speed, Real behind, Real ahead) { return P.k * speed * (speed > Real(0) ? behind : ahead); };
-        const int inner = far_end ? cells - 1 : 0;
-        const Axis cross = axis(!ax.is_y);
-        velocity = outward * own; // for face_depth
-        const bool second = has(EFFECT_SECOND_ORDER_WATER);
-        const auto enters = [&](Layer layer, const Field<Real>& depth, Real beyond) {
-            // Cells at the side's ends count as flat.
-            const auto along_side = [&](int face) {
-                const Real v = velocity_of(layer).along(cross)[cross.face(face, inner)];
-                const int donor = v > Real(0) ? face - 1 : face;
-                const bool flat = !second || donor == 0 || donor + 1 == cross.along();
-                return P.k * v * (flat ? depth[cross.cell(donor, inner)] : face_depth(layer, cross, face, inner, v));
-            };
-            const Real low = b > 0 ? along_side(b) : Real(0);
-            const Real high = b + 1 < ax.across() ? along_side(b + 1) : Real(0);
-            const auto leaves = [&](int face, Real behind, Real ahead) {
-                const Real speed = outward * velocity_of(layer).along(ax)[ax.face(face, b)];
-                // Of two cells the further one lies beside the other side and counts as flat.
-                const bool flat = cells == 2 && face != a && speed > Real(0);
-                if (!second || flat) return upwind(speed, behind, ahead);
-                return P.k * speed * face_depth(layer, ax, face, b, outward * speed);
-            };
-            Real out = leaves(a, depth[N], beyond);
-            if (second) out = whole_quanta(out, P.quantum, false);
-            return (leaves(far_end ? cells - 1 : 1, depth[M], depth[N]) - out) + (low - high);
-        };
-        Real gained = enters(Layer::pure, pure, ghost);
-        if (has(EFFECT_MIXTURE)) gained += enters(Layer::mixed, mixed, Real(0));
-        if (has(EFFECT_DIFFUSION)) {
-            const Real through = outward * diffusion(ax, far_end ? cells - 1 : 1, b);
-            const Real low = b > 0 ? diffusion(cross, b, inner) : Real(0);
-            const Real high = b + 1 < ax.across() ? diffusion(cross, b + 1, inner) : Real(0);
-            gained += P.k * (through + (low - high));
-        }
-        const Real risen = ghost - above_sand(std::max(level_before - terrain[N], Real(0)));
-        const Real incoming = push / (Real(4) * Real(cells)) + (h > Real(0) ? c / h : Real(0)) * (gained - Real(2) * risen);
-        gain += alike * (incoming / (Real(1) + P.k * std::max(second ? c : c + own, Real(0))) - push);
+    const Real push = P.k * water_gravity(std::abs(own), std::max(water[N], outside)) * (water[N] - outside);
+    const Real depth = mean(pure[N], ghost);
+    Real moved = own + push;
+    if (depth > Real(0)) {
+        const Real leaves = mean(std::max(next, Real(0)) * pure[M], std::max(own, Real(0)) * pure[N]);
+        moved += std::min(P.k * leaves / depth, Real(1)) * (next - own);
+        moved = rubbed(moved, Real(0), std::abs(own), P.dt * bed_drag(N, N, depth) / depth);
     }
-    Real u = own + gain;
-    if (std::abs(eta_in - eta_out) <= P.rest_surface && std::abs(u) <= P.rest_velocity) u = Real(0);
-    if (blocked(pure[N], ghost, eta_in, eta_out, P.eps)) u = Real(0);
-    velocity = clamped(outward * u, P.clamp);
-    return gain;
+    u[f] = outward * beside_level(N, level, moved);
+    return push;
+}
+
+/// A face through which a wave comes in that raises the surface outside from `still` to `level`, and everything from inside
+/// leaves: u - 2c, what comes in by the incident wave, about a stream that is learnt over the time `absorbs` (0: four times the
+/// grid's length over a wave's speed).
+template <class Real> Real Solver<Real>::waves_face(const Axis& ax, int a, int b, Real still, Real level, Real absorbs) {
+    const bool far_end = a != 0;
+    const Real outward = far_end ? Real(1) : Real(-1);
+    const int cells = ax.along();
+    const std::size_t f = ax.face(a, b);
+    const std::size_t N = ax.cell(far_end ? cells - 1 : 0, b);
+    const std::size_t M = ax.cell(far_end ? std::max(cells - 2, 0) : std::min(1, cells - 1), b);
+    Field<Real>& u = pure_velocity.along(ax);
+    const Real next = outward * u[cells == 1 ? f : ax.face(far_end ? cells - 1 : 1, b)];
+    const Real outside = std::max(level - terrain[N], Real(0));
+    const Real ghost = clear_depth(N, level);
+    ghost_water.along(ax)[f] = ghost;
+    const Real g = water_gravity(std::abs(next), std::max(water[N], outside));
+    const auto wave = [&](Real depth) { return std::sqrt(g * std::max(depth, Real(0))); };
+    const Real rise = minmod(pure[N] - pure[M], (terrain[N] + water[N]) - (terrain[M] + water[M]));
+    const Real arriving = std::min(P.k * (wave(pure[N]) + std::max(next, Real(0))), Real(1));
+    const Real c_in = wave(pure[N] + (Real(1) - arriving) * rise / Real(2));
+    const Real c_still = wave(clear_depth(N, still));
+    const Real c_wave = wave(ghost);
+    Real& stream = side_memory.along(ax)[f].stream;
+    if (step_index == 0) stream = next;
+    const bool shoots = c_in > Real(0) && next > c_in;
+    const Real swing = Real(2) * c_in + Real(2) * c_still - Real(4) * c_wave;
+    const Real moved = shoots ? next : stream + swing;
+    const bool rests = std::abs(water[N] - outside) <= P.rest_surface && std::abs(stream) <= P.rest_velocity;
+    u[f] = rests ? Real(0) : outward * beside_level(N, level, moved);
+    const Real share = absorbs > Real(0) ? std::min(P.dt / absorbs, Real(0.5)) : P.k * c_still / (Real(4) * Real(cells));
+    if (!rests) stream = clamped(shoots ? next - swing : stream + share * Real(2) * (c_in - c_wave), P.clamp);
+    return P.k * g * (water[N] - outside);
 }
 
 /// The water inside the sand of the cell beside such a reservoir (2.4e, c, d) gains as much as the water above it, less the drag
@@ -208,26 +211,109 @@ template <class Real> void Solver<Real>::leave(Faces<Real>& velocity, const Axis
     u[ax.face(far_end ? ax.along() : 0, b)] = outward * std::clamp(outward * next, Real(0), fastest);
 }
 
-/// Outflow of pure water: u - 2 sqrt(g h), h the water above the sand, is the same at the outer face, with the depth of the last
-/// cell, as at the next face inside.
-template <class Real> void Solver<Real>::radiate(const Axis& ax, bool far_end, int b) {
-    if (ax.along() < 2) return;
-    const std::size_t N = ax.cell(far_end ? ax.along() - 1 : 0, b);
-    const std::size_t M = ax.cell(far_end ? ax.along() - 2 : 1, b);
+/// A straight line fitted to the bed inside a face: its rise per cell inward, and how far it lies above the bed of the last cell.
+template <class Real> std::pair<Real, Real> Solver<Real>::bed_line(const Axis& ax, bool far_end, int b) const {
+    const int count = std::min(ax.along(), 64);
+    const auto bed = [&](int n) {
+        const std::size_t c = ax.cell(far_end ? ax.along() - 1 - n : n, b);
+        return terrain[c] + (has(EFFECT_MIXTURE) ? sand[c] : Real(0));
+    };
+    const Real middle = Real(count - 1) / Real(2);
+    Real sum(0), moment(0), weight(0);
+    for (int n = 0; n < count; ++n) {
+        sum += bed(n) - bed(0);
+        moment += (Real(n) - middle) * (bed(n) - bed(0));
+        weight += (Real(n) - middle) * (Real(n) - middle);
+    }
+    const Real rise = weight > Real(0) ? moment / weight : Real(0);
+    return {rise, sum / Real(count) - rise * middle};
+}
+
+/// Outflow of pure water (2.9): a steady stream goes on, what stands above it is a wave and leaves, and in the long run the depth
+/// is that of uniform flow on the slope `given`, or on that of the bed inside.
+template <class Real> void Solver<Real>::run_off(const Axis& ax, bool far_end, int b, Real given) {
+    const int cells = ax.along();
+    const std::size_t f = ax.face(far_end ? cells : 0, b);
+    auto& memory = side_memory.along(ax)[f];
+    const auto line = bed_line(ax, far_end, b);
+    if (step_index == 0) memory.rise = line.first, memory.above = line.second;
+    const auto known = memory;
+    if (step_index % 16 == 0) memory.rise = line.first, memory.above = line.second;
+    const auto cell = [&](int n) {
+        const int inward = std::min(n, cells - 1);
+        return ax.cell(far_end ? cells - 1 - inward : inward, b);
+    };
     const Real outward = far_end ? Real(1) : Real(-1);
     Field<Real>& velocity = pure_velocity.along(ax);
-    const Real next = outward * velocity[ax.face(far_end ? ax.along() - 1 : 1, b)];
+    const auto speed =
+        [&](int n) { // of the nth inner face, of the last one where there are no more, in a grid of one cell its own
+            const int face = cells > 1 ? std::min(n, cells - 1) : 0;
+            return outward * velocity[ax.face(far_end ? cells - face : face, b)];
+        };
+    const std::size_t N = cell(0), M = cell(1), F = cell(2);
+    const Real next = speed(1), runs = std::max(next, Real(0));
     const Real g = water_gravity(std::abs(next), std::max(water[N], water[M]));
-    const Real fall = (terrain[N] + water[N]) - (terrain[M] + water[M]);
+    const auto eta = [&](std::size_t c) { return terrain[c] + water[c]; };
+    const auto bed = [&](std::size_t c) { return terrain[c] + (has(EFFECT_MIXTURE) ? sand[c] : Real(0)); };
+    const auto ratio = [](Real a, Real over) { return over > Real(0) ? a / over : Real(0); };
+    const Real h = pure[N], before = pure[M];
+    const Real c = std::sqrt(g * h);
+    const Real subcritical = std::clamp(Real(2) - Real(2) * ratio(std::abs(next), c), Real(0), Real(1));
+    // 1: what a steady stream's surface falls by, and the velocity of the same discharge there.
+    const Real drag = before > Real(0) ? bed_drag(M, M, before) : Real(0);
+    const Real rubs = ratio(P.dx * drag * runs * runs, g * std::max(before, P.eps));
+    const Real carried = ratio(std::max(speed(2), Real(0)) * pure[F] + runs * before, before + h);
+    const Real falls = std::clamp(rubs + ratio(carried * (next - speed(2)), g), -before / Real(4),
+                                  before / Real(4) + std::max(bed(M) - bed(N), Real(0)));
+    const Real steady = bed(M) + before - falls - bed(N);
+    const Real narrowed = std::clamp(ratio(before, std::max(steady, P.eps)), Real(0.25), Real(4));
+    // 2: the wave.
+    const Real fall = eta(N) - eta(M);
     const bool rests = std::abs(fall) <= P.rest_surface && std::abs(next) <= P.rest_velocity;
-    const Real rise = rests ? Real(0) : minmod(pure[N] - pure[M], fall);
-    const Real c_N = std::sqrt(g * pure[N]);
-    const Real c_M = std::sqrt(g * std::max(pure[N] - rise, Real(0)));
-    const Real subcritical = c_N > Real(0) ? std::clamp(Real(2) * (Real(1) - std::abs(next) / c_N), Real(0), Real(1)) : Real(1);
-    const Real u = next + subcritical * Real(2) * (c_N - c_M);
+    const Real head = Real(1) + std::min(ratio(runs, c), Real(1));
+    const Real rise = rests ? Real(0) : (fall + falls) / head;
+    const Real behind = cells > 2 ? (eta(M) - (bed(F) + pure[F]) + falls) / head : rise;
+    Real wave = (Real(1) - std::min(P.k * (c + runs), Real(1))) * (rise - behind) / Real(2);
+    wave = rise + std::clamp(wave, -std::abs(rise) / Real(2), std::abs(rise) / Real(2));
+    wave = std::clamp(wave, -h / Real(2), h / Real(2));
+    const Real free = Real(2) * (c - std::sqrt(g * std::max(h - wave, Real(0))));
+    // 3: the depth of uniform flow, at most critical.
+    const Real slope = given > Real(0) ? given : std::max(known.rise / P.dx, Real(1e-3));
+    const Real deep = std::max(h - known.above, Real(0));
+    Real due = std::sqrt(P.gravity * h) * h;
+    const Real stress = bed_drag(N, N, std::max(deep, Real(1e-30)));
+    if (stress > Real(0)) due = std::min(due, deep * std::sqrt(P.gravity * slope * deep / stress));
+    const Real comes = runs * before;
+    const Real wanted = std::clamp(due - comes, -comes / Real(2), Real(2) * comes);
+    const Real flows =
+        std::clamp(Real(50) * known.mean - Real(1), given > Real(0) && comes > Real(0) ? Real(1) : Real(0), Real(1));
+    const Real n = Real(cells);
+    const Real extra = flows * ratio(wanted, h) / n;
+    const Real arrives = next * (Real(1) + subcritical * (narrowed - Real(1))) * (Real(1) + subcritical * known.error);
+    if (cells > 1) {
+        const Real u = std::min(arrives + subcritical * (free + extra), std::max(next, c));
+        velocity[f] = outward * std::clamp(u, Real(0), P.clamp);
+        if (has(EFFECT_SECOND_ORDER_WATER)) // the slope goes on
+            ghost_water.along(ax)[f] = std::max(h + minmod(h - before, rise), Real(0));
+    }
+    // 4 and 5: what 1 is wrong by, and whether this is a stream.
+    const Real pace = P.k * c / n;
+    const Real miss = std::clamp(ratio(wanted, comes), Real(-0.2), Real(0.2));
+    memory.error += flows > Real(0) ? flows * subcritical * Real(2) / n * pace * miss : -std::min(pace, Real(1)) * known.error;
+    memory.error = std::clamp(memory.error, Real(-0.1), Real(0.1));
+    memory.mean += std::min(pace / Real(8), Real(1)) * (std::clamp(ratio(next, c), Real(-1), Real(1)) - known.mean);
+}
+
+/// Water falls off the edge: as fast as it comes, critical at least.
+template <class Real> void Solver<Real>::fall(const Axis& ax, bool far_end, int b) {
+    const std::size_t N = ax.cell(far_end ? ax.along() - 1 : 0, b);
+    const Real outward = far_end ? Real(1) : Real(-1);
+    Field<Real>& u = pure_velocity.along(ax);
+    const Real next = ax.along() > 1 ? outward * u[ax.face(far_end ? ax.along() - 1 : 1, b)] : Real(0);
+    const Real critical = std::sqrt(water_gravity(std::abs(next), water[N]) * pure[N]);
     const std::size_t f = ax.face(far_end ? ax.along() : 0, b);
-    velocity[f] = outward * std::clamp(u, Real(0), P.clamp);
-    if (has(EFFECT_SECOND_ORDER_WATER)) ghost_water.along(ax)[f] = std::max(pure[N] + rise, Real(0)); // the slope goes on
+    u[f] = outward * std::clamp(std::max(next, critical), Real(0), P.clamp);
+    if (has(EFFECT_SECOND_ORDER_WATER)) ghost_water.along(ax)[f] = pure[N];
 }
 
 /// The water's velocities and outer depths of one side's faces. Positive `outward` points out of the domain.
@@ -249,8 +335,8 @@ template <class Real> void Solver<Real>::update_side(const Side& side, const Axi
         const std::size_t f = ax.face(a, b);
         const std::size_t inner = ax.cell(far_end ? a - 1 : 0, b);
         const bool open = side.kind != SideKind::wall && in_span(side, b);
-        if (!open || side.kind != SideKind::level) pure_velocity.along(ax)[f] = Real(0);
-        if (!open || side.kind != SideKind::level) mixed_velocity.along(ax)[f] = Real(0);
+        if (!open || !side.has_level()) pure_velocity.along(ax)[f] = Real(0);
+        if (!open || !side.has_level()) mixed_velocity.along(ax)[f] = Real(0);
         ghost_water.along(ax)[f] = Real(0);
         if (!open) continue;
         if (side.kind == SideKind::discharge) {
@@ -261,12 +347,18 @@ template <class Real> void Solver<Real>::update_side(const Side& side, const Axi
             const Real depth = std::max(shooting ? static_cast<Real>(side.depth) : std::max(water[inner], critical), fastest);
             ghost_water.along(ax)[f] = depth;
             if (depth > Real(0)) pure_velocity.along(ax)[f] = -outward * given / depth;
-        } else if (side.kind == SideKind::level) {
+        } else if (side.has_level()) {
+            const Real still = static_cast<Real>(value);
+            const bool held = side.kind == SideKind::level && !(side.absorb > 0);
+            const Real level = still + static_cast<Real>(sample(side.wave, time()));
             const Real gain =
-                level_face(ax, a, b, static_cast<Real>(value), static_cast<Real>(sample(side.value, time() - settings.dt)));
-            if (has(EFFECT_MIXTURE)) seep(ax, a, b, static_cast<Real>(value), gain);
+                held ? level_face(ax, a, b, still) : waves_face(ax, a, b, still, level, static_cast<Real>(side.absorb));
+            if (has(EFFECT_MIXTURE)) seep(ax, a, b, level, gain);
+        } else if (side.kind == SideKind::brink) {
+            fall(ax, far_end, b);
+            if (has(EFFECT_MIXTURE)) leave(mixed_velocity, ax, far_end, b, P.clamp);
         } else {
-            radiate(ax, far_end, b);
+            run_off(ax, far_end, b, static_cast<Real>(side.slope));
             if (has(EFFECT_MIXTURE)) leave(mixed_velocity, ax, far_end, b, P.clamp);
         }
     }
@@ -286,11 +378,27 @@ template <class Real> void Solver<Real>::update_open_sides() {
     for_sides([&](const Side& side, const Axis& ax, bool far_end) { update_side(side, ax, far_end); });
 }
 
+/// 2.11 at an open side: the law at the face's own velocity, no slope, as much of it as the side lets pass.
+template <class Real> void Solver<Real>::open_bed_load(const Side& side, const Axis& ax, bool far_end, int b) {
+    const std::size_t f = ax.face(far_end ? ax.along() : 0, b);
+    const std::size_t N = ax.cell(far_end ? ax.along() - 1 : 0, b);
+    const Real u = pure_velocity.along(ax)[f];
+    const bool enters = side.kind == SideKind::discharge;
+    const double share = side.sediment >= 0 ? side.sediment : enters ? 0 : 1;
+    const bool carries = water[N] - sand[N] > P.eps && (enters || (far_end ? u > Real(0) : u < Real(0)));
+    bed_load.along(ax)[f] =
+        carries ? static_cast<Real>(std::copysign(share, static_cast<double>(u))) * capacity(std::abs(u)) : Real(0);
+}
+
 template <class Real> void Solver<Real>::update_open_sand_sides() {
     if (!has(EFFECT_OPEN_SIDES) || !has(EFFECT_SAND)) return;
     for_sides([&](const Side& side, const Axis& ax, bool far_end) {
-        for (int b = 0; b < ax.across(); ++b)
-            if (side.kind == SideKind::outflow && in_span(side, b)) leave(sand_velocity, ax, far_end, b, P.clamp_sand);
+        for (int b = 0; b < ax.across(); ++b) {
+            if (side.kind == SideKind::wall || !in_span(side, b)) continue;
+            if (has(EFFECT_BED_SHEAR)) open_bed_load(side, ax, far_end, b);
+            if (side.kind == SideKind::outflow || side.kind == SideKind::brink)
+                leave(sand_velocity, ax, far_end, b, P.clamp_sand);
+        }
     });
 }
 

@@ -122,6 +122,8 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
         faces->x.assign((nx + 1) * ny, Real(0));
         faces->y.assign(nx * (ny + 1), Real(0));
     }
+    side_memory.x.assign((nx + 1) * ny, {});
+    side_memory.y.assign(nx * (ny + 1), {});
     roughness.assign(nx * ny, Real(0));
     if (has(EFFECT_ROUGHNESS))
         std::transform(world.roughness.begin(), world.roughness.end(), roughness.begin(),
@@ -230,6 +232,13 @@ template <class Real> template <class Other> void Solver<Real>::copy_from(const 
     faces(&A::mixed_push, &B::mixed_push);
     faces(&A::layer_exchange, &B::layer_exchange);
     faces(&A::ghost_water, &B::ghost_water);
+    const auto remembers = [](const auto& from, auto& to) {
+        for (std::size_t n = 0; n < to.size(); ++n)
+            to[n] = {static_cast<Real>(from[n].stream), static_cast<Real>(from[n].error), static_cast<Real>(from[n].mean),
+                     static_cast<Real>(from[n].rise), static_cast<Real>(from[n].above)};
+    };
+    remembers(other.side_memory.x, side_memory.x);
+    remembers(other.side_memory.y, side_memory.y);
     faces(&A::pure_type, &B::pure_type);
     faces(&A::mixed_type, &B::mixed_type);
     faces(&A::sand_type, &B::sand_type);

@@ -6,6 +6,7 @@
 #include "tests/reference/grid.hpp"
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace wadi::reference {
@@ -150,6 +151,17 @@ template <class Real> class Solver {
     Faces<Real> bend_gain, bed_lift;              // 2.3: of bends: what they add to us [m/s], g_b [m/s2]
     Field<Real> roughness;                        // of each cell beyond P.manning [s/m^(1/3)]
     Faces<Real> ghost_water;                      // depth outside the open sides [m], on boundary faces
+    struct SideMemory {                           // 2.9, state of an outer face
+        Real stream{};                            // waves: the stream's velocity outward [m/s]
+        Real error{}, mean{};                     // outflow: e and m
+        Real rise{}, above{};                     // of the bed's line: per cell inward, above the last cell's bed [m]
+    };
+    struct RimMemory {
+        std::vector<SideMemory> x, y;
+        std::vector<SideMemory>& along(const Axis& axis) { return axis.is_y ? y : x; }
+        const std::vector<SideMemory>& along(const Axis& axis) const { return axis.is_y ? y : x; }
+    };
+    RimMemory side_memory;
 
     // What sources, rain and open sides added, as sums of depths [m]: exact in double with a quantum.
     double water_added = 0;
@@ -187,6 +199,7 @@ template <class Real> class Solver {
     void backtrace(const Faces<Real>& type, Real k, Faces<Real>& velocity) const;
     void exchange_split(const Field<Real>& mixed_old, const Field<Real>& pure_old, const Field<Real>& mixed_new);
     Real water_gravity(Real fastest, Real deepest) const;
+    Real bed_drag(std::size_t L, std::size_t R, Real depth) const;
     Real friction_rate(std::size_t L, std::size_t R) const;
     Real depth_beside(std::size_t from, std::size_t to) const;
     void enter_sand(Real& uw, Real& um, std::size_t L, std::size_t R, Real beside) const;
@@ -253,10 +266,17 @@ template <class Real> class Solver {
     template <class F> void for_sides(F f);
     bool in_span(const Side& side, int b) const;
     void leave(Faces<Real>& velocity, const Axis& axis, bool far_end, int b, Real fastest) const;
-    void radiate(const Axis& axis, bool far_end, int b);
+    Real capacity(Real speed) const; // 2.11: bed load of water so fast [m2/s]
+    void open_bed_load(const Side& side, const Axis& axis, bool far_end, int b);
+    std::pair<Real, Real> bed_line(const Axis& axis, bool far_end, int b) const;
+    void run_off(const Axis& axis, bool far_end, int b, Real given);
     void seep(const Axis& axis, int a, int b, Real level, Real gain);
     void update_side(const Side& side, const Axis& axis, bool far_end);
-    Real level_face(const Axis& axis, int a, int b, Real level, Real level_before);
+    Real clear_depth(std::size_t N, Real level) const;
+    Real beside_level(std::size_t N, Real level, Real u) const;
+    Real level_face(const Axis& axis, int a, int b, Real level);
+    Real waves_face(const Axis& axis, int a, int b, Real still, Real level, Real absorbs);
+    void fall(const Axis& axis, bool far_end, int b);
 
     std::vector<double> source_totals_; // depth given so far, before rounding to quanta [m]
     double rain_total_ = 0;

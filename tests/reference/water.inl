@@ -94,15 +94,19 @@ template <class Real> Real Solver<Real>::water_gravity(Real fastest, Real deepes
     return std::min(P.gravity, room * room / (P.k * P.k * deepest));
 }
 
-/// 2.4: c/hb of the stresses on the bed between two cells, 0 without water.
-template <class Real> Real Solver<Real>::friction_rate(std::size_t L, std::size_t R) const {
-    const Real depth = mean(pure[L], pure[R]);
-    if (depth <= Real(0)) return Real(0);
+/// 2.4: c of the stresses on the bed between two cells under water so deep.
+template <class Real> Real Solver<Real>::bed_drag(std::size_t L, std::size_t R, Real depth) const {
     const Real n_L = P.manning + roughness[L];
     const Real n_R = P.manning + roughness[R];
     Real c = P.bed_friction + P.gravity * mean(n_L * n_L, n_R * n_R) / std::cbrt(depth);
     if (mean(sand[L], sand[R]) > P.eps) c += P.bed_shear;
-    return c / depth;
+    return c;
+}
+
+/// c/hb between two cells, 0 without water.
+template <class Real> Real Solver<Real>::friction_rate(std::size_t L, std::size_t R) const {
+    const Real depth = mean(pure[L], pure[R]);
+    return depth > Real(0) ? bed_drag(L, R, depth) / depth : Real(0);
 }
 
 /// 2.4f: how much of the pure water of `from` stands beside the sand of `to`, whose pores are not full.
@@ -258,6 +262,11 @@ template <class Real> void Solver<Real>::start_water_velocity() {
 }
 
 /// 2.11: sand that pure water drags along its bed.
+template <class Real> Real Solver<Real>::capacity(Real speed) const {
+    const Real excess = std::max(P.bed_shear * speed * speed - P.bed_threshold, Real(0));
+    return P.bed_rate * std::pow(excess, Real(1.5));
+}
+
 template <class Real> void Solver<Real>::compute_bed_load() {
     for_inner_faces([&](const Axis& ax, int a, int b) {
         const std::size_t L = ax.cell(a - 1, b);
@@ -268,8 +277,7 @@ template <class Real> void Solver<Real>::compute_bed_load() {
         const Real u = pure_velocity.along(ax)[ax.face(a, b)];
         const Real v = across_face(pure_velocity, ax, a, b);
         const Real speed = std::sqrt(u * u + v * v);
-        const Real excess = std::max(P.bed_shear * speed * speed - P.bed_threshold, Real(0));
-        const Real moved = P.bed_rate * std::pow(excess, Real(1.5));
+        const Real moved = capacity(speed);
         const Real rise = (terrain[R] + sand[R]) - (terrain[L] + sand[L]);
         if (speed > Real(0)) q = moved * u / speed;
         q -= std::min(Real(2) / P.dx * moved, Real(0.2) / P.k) * rise;

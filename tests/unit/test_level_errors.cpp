@@ -257,7 +257,12 @@ TEST_CASE("level errors: sides, sources, series") {
     refuses(R"("sides": {"west": {}})", "sides.west.kind: missing");
     refuses(R"("sides": {"wets": {"kind": "wall"}})", "sides.wets: unknown key, did you mean \"west\"?");
     refuses(R"("sides": {"west": {"kind": "level"}})", "sides.west.value: missing");
-    refuses(R"("sides": {"west": {"kind": "outflow", "value": 1}})", "only discharge and level have one");
+    refuses(R"("sides": {"west": {"kind": "outflow", "value": 1}})", "only discharge, level and waves have one");
+    refuses(R"("sides": {"west": {"kind": "waves"}})", "sides.west.value: missing");
+    refuses(R"("sides": {"west": {"kind": "level", "value": 1, "wave": 1}})", "sides.west.wave: only waves have one");
+    refuses(R"("sides": {"west": {"kind": "waves", "value": 1, "wave": 1e9}})", "sides.west.wave: 1e+09 is outside");
+    refuses(R"("sides": {"west": {"kind": "brink", "absorb": 1}})", "only level and waves have one");
+    refuses(R"("sides": {"west": {"kind": "level", "value": 1, "absorb": 1e7}})", "sides.west.absorb: 1e+07 is outside");
     refuses(R"("sides": {"west": {"kind": "outflow", "from": 8}})", "sides.west.from: 8 is outside 0 ... 8");
     refuses(R"("sides": {"west": {"kind": "outflow", "depth": 1}})", "only a discharge has one");
     refuses(R"("sides": {"west": {"kind": "discharge", "value": 1, "depth": 17}})", "sides.west.depth: 17 is outside 0 ... 16");

@@ -219,6 +219,10 @@ TEST_CASE("level warnings: cohesion too weak for a wall, wet slopes") {
 }
 
 TEST_CASE("level warnings: an opening between two cell centres") {
+    const char* swings = R"("sides": {"west": {"kind": "level", "value": [[0, 1], [0.1, 1.1], [0.2, 1], [0.3, 1.1], [0.4, 1]])";
+    CHECK(says(warnings(swings + std::string("}}")), "sides.west.value: a level that swings within 0.2 s throws back"));
+    CHECK(warnings(swings + std::string(R"(, "absorb": 1}})")).empty());
+    CHECK(warnings(R"("sides": {"west": {"kind": "level", "value": [[0, 1], [100, 1.1], [200, 1], [300, 1.1]]}})").empty());
     CHECK(says(warnings(R"("sides": {"west": {"kind": "outflow", "from": 1.06, "to": 1.14}})"),
                "sides.west: no cell centre lies between"));
     CHECK(warnings(R"("sides": {"west": {"kind": "outflow", "from": 1.04, "to": 1.06}})").empty());

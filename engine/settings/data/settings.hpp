@@ -81,16 +81,22 @@ struct TimeSeries {
     double at(double time) const;
 };
 
-enum class SideKind : std::uint8_t { wall, discharge, level, outflow };
+enum class SideKind : std::uint8_t { wall, discharge, level, outflow, brink, waves };
 enum class SideName : std::uint8_t { west, east, south, north };
 
 /// One side of the domain; open between `from` and `to` along it, wall elsewhere.
 struct Side {
     SideKind kind = SideKind::wall;
-    double from = 0;  // [m] from the side's south or west end
-    double to = 1e30; // [m]
-    TimeSeries value; // discharge [m3/s] into the domain, or free surface outside [m]
-    double depth = 0; // of a discharge while it is less than its critical depth [m]; 0: critical or what stands inside
+    double from = 0;      // [m] from the side's south or west end
+    double to = 1e30;     // [m]
+    TimeSeries value;     // discharge [m3/s] into the domain, or free surface outside [m]
+    double depth = 0;     // of a discharge while it is less than its critical depth [m]; 0: critical or what stands inside
+    TimeSeries wave = {}; // of waves: elevation of what comes in [m]; none: still
+    double slope = 0;     // of an outflow: fall of the ground beyond; 0: that of the bed inside
+    double sediment = -1; // bed load, in shares of what the water there can carry; negative: all that leaves, none that enters
+    double absorb = 0; // of level and waves [s]: what is shorter leaves; 0: a level holds, waves take it from the grid's length
+
+    bool has_level() const { return kind == SideKind::level || kind == SideKind::waves; }
 };
 
 enum class SourceShape : std::uint8_t { point, disc, box };

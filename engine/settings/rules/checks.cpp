@@ -15,6 +15,7 @@
 namespace wadi {
 namespace {
 
+constexpr double ABSORB_MOST = 1e6; // [s]
 constexpr const char* HEIGHT_LIMIT = " (method.largest_height)";
 constexpr double COORDINATE_MOST = double{GRID_MOST} * DX_MOST;
 
@@ -105,14 +106,30 @@ Status check_side(const Settings& settings, std::size_t index) {
     if (!(side.from >= 0 && side.from < length)) return refuse(outside_text(path + ".from", side.from, 0, length));
     if (!(side.to > side.from))
         return refuse(path + ".to: " + number_text(side.to) + " is not greater than from, " + number_text(side.from));
-    const bool has_value = side.kind == SideKind::discharge || side.kind == SideKind::level;
+    const bool has_value = side.kind == SideKind::discharge || side.has_level();
     if (has_value == side.value.samples.empty())
-        return refuse(
-            path + ".value: " + (has_value ? "missing; discharge in m3/s or level in m" : "only discharge and level have one"));
+        return refuse(path + ".value: " +
+                      (has_value ? "missing; discharge in m3/s or level in m" : "only discharge, level and waves have one"));
     const double deepest = side.kind == SideKind::discharge ? settings.method.largest_height : 0;
     if (!(side.depth >= 0 && side.depth <= deepest))
         return refuse(outside_text(path + ".depth", side.depth, 0, deepest) + (deepest > 0 ? "" : "; only a discharge has one"));
+    if (!side.wave.samples.empty() && side.kind != SideKind::waves) return refuse(path + ".wave: only waves have one");
+    const double steepest = side.kind == SideKind::outflow ? 1 : 0;
+    if (!(side.slope >= 0 && side.slope <= steepest))
+        return refuse(outside_text(path + ".slope", side.slope, 0, steepest) + (steepest > 0 ? "" : "; only an outflow has one"));
+    const double most_load = side.kind == SideKind::wall ? -1 : side.kind == SideKind::discharge ? 10 : 1;
+    if (!(side.sediment <= most_load))
+        return refuse(outside_text(path + ".sediment", side.sediment, 0, most_load) + (most_load > 0 ? "" : "; a wall has none"));
+    const double longest = side.has_level() ? ABSORB_MOST : 0;
+    if (!(side.absorb >= 0 && side.absorb <= longest))
+        return refuse(outside_text(path + ".absorb", side.absorb, 0, longest) +
+                      (longest > 0 ? "" : "; only level and waves have one"));
     const double most = settings.method.largest_height;
+    double level = 0; // the highest; the wave stands on it
+    for (const auto& [time, value] : side.value.samples) level = side.has_level() ? std::clamp(value, level, most) : 0;
+    if (Status status = check_series(path + ".wave", side.wave, -most, most - level, " (method.largest_height less the level)");
+        !status)
+        return status;
     if (side.kind == SideKind::discharge) {
         // What the critical depth carries through the opening: more would stand above the limit as it enters.
         const double opening = std::min(side.to, length) - side.from;

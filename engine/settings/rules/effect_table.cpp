@@ -43,13 +43,13 @@ Why holds_shape(const Settings& s, Content) {
 }
 
 constexpr Effect effects[] = {
-    {row(EFFECT_WATER), "the level, a source, rain, a discharge or a level side brings water",
+    {row(EFFECT_WATER), "the level, a source, rain or a side (discharge, level, waves) brings water",
      [](const Settings& s, Content content) -> Why {
          if (content.water) return {true, "the world holds water"};
          if (source_adds(s, SourceMaterial::water)) return {true, "a source adds water"};
          if (ever_above_zero(s.rain)) return {true, "it rains"};
          for (const auto& side : s.sides)
-             if (side.kind == SideKind::discharge || side.kind == SideKind::level) return {true, "water enters through a side"};
+             if (side.kind == SideKind::discharge || side.has_level()) return {true, "water enters through a side"};
          return {false, "no water in the world, its sources or its sides"};
      }},
     {row(EFFECT_SAND), "the level or a source brings sand",

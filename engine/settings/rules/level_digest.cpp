@@ -29,6 +29,10 @@ std::uint64_t level_digest(const Settings& s) {
         add(side.to);
         series(side.value);
         if (side.depth > 0) add(side.depth);
+        if (!side.wave.samples.empty()) series(side.wave);
+        if (side.absorb > 0) add(side.absorb);
+        if (side.slope > 0) add(side.slope);
+        if (side.sediment >= 0) add(side.sediment);
     }
     for (const auto& source : s.sources) {
         for (const double value :

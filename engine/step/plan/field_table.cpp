@@ -33,6 +33,8 @@ constexpr FieldRow rows[] = {
     {"rotation", state, cell, in_hash, no_host, "", "rad or 1", EFFECT_ELASTOPLASTIC | EFFECT_PUBLISHED,
      "angle of R, or antisymmetric part of F (NUMERICS 2.13)"},
     {"wedge_depth", state, cell, in_hash, no_host, "hz", "m", EFFECT_SLOPE_NORMAL, "sand above the plane on which it can slide"},
+    {"side_memory", rim, none, in_hash, no_host, "", "", EFFECT_WATER | EFFECT_OPEN_SIDES,
+     "what waves and outflows have learnt of a stream (NUMERICS 2.9)"},
     {"roughness", fixed, cell, no_hash, no_host, "", "s/m^(1/3)", EFFECT_ROUGHNESS, "Manning's n beyond that of the material"},
     {"water_scale", scratch, cell, no_hash, no_host, "", "1", EFFECT_WATER, "outflow limiter of pure water"},
     {"mixed_scale", scratch, cell, no_hash, no_host, "", "1", EFFECT_MIXTURE, "outflow limiter of mixed water"},

@@ -10,6 +10,7 @@ namespace wadi {
 
 enum class FieldRole : std::uint8_t {
     state,     // lasts from step to step
+    rim,       // state of the outer faces: four numbers each, in the order of RIM stages
     scratch,   // alive within one step
     ledger,    // counts quanta in and out
     fixed,     // from the level, never changes

@@ -87,10 +87,14 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     p.tile_columns = s.tile_side() > 0 ? FieldLayout::active_tiles(s.grid.nx, s.tile_side()) : 0;
     p.tile_rows = s.tile_side() > 0 ? FieldLayout::active_tiles(s.grid.ny, s.tile_side()) : 0;
     set_sources(s, p);
-    p.side_kind_west = static_cast<int>(s.sides[SIDE_WEST].kind);
-    p.side_kind_east = static_cast<int>(s.sides[SIDE_EAST].kind);
-    p.side_kind_south = static_cast<int>(s.sides[SIDE_SOUTH].kind);
-    p.side_kind_north = static_cast<int>(s.sides[SIDE_NORTH].kind);
+    const auto kind = [&](int side) { // a level that absorbs is a side of waves without any
+        const Side& of = s.sides[static_cast<std::size_t>(side)];
+        return static_cast<int>(of.kind == SideKind::level && of.absorb > 0 ? SideKind::waves : of.kind);
+    };
+    p.side_kind_west = kind(SIDE_WEST);
+    p.side_kind_east = kind(SIDE_EAST);
+    p.side_kind_south = kind(SIDE_SOUTH);
+    p.side_kind_north = kind(SIDE_NORTH);
     p.dx = f(dx);
     p.inv_dx = f(1 / dx);
     p.gravity = f(gravity);

@@ -41,6 +41,7 @@ std::uint64_t FieldStore::bytes_of(const PlanField& field) const {
                     : field.name.starts_with("active_counts") ? rows
                                                               : columns * rows);
     }
+    if (field.role == FieldRole::rim) return static_cast<std::uint64_t>(layout_.rim()) * 4 * 4;
     if (field.role != FieldRole::ledger) return layout_.size() * PlanField::element_bytes;
     if (field.name != "source_ledger") return static_cast<std::uint64_t>(layout_.rim()) * 4 * 4;
     return std::uint64_t{2 * LEDGER_ENTRIES} * static_cast<std::uint64_t>(layout_.strips()) *
@@ -50,7 +51,8 @@ std::uint64_t FieldStore::bytes_of(const PlanField& field) const {
 std::vector<KeptField> FieldStore::kept(const std::vector<PlanField>& fields) const {
     std::vector<KeptField> kept;
     for (const auto& field : fields)
-        if (field.role == FieldRole::state || field.role == FieldRole::ledger) kept.push_back({field.name, bytes_of(field)});
+        if (field.role == FieldRole::state || field.role == FieldRole::rim || field.role == FieldRole::ledger)
+            kept.push_back({field.name, bytes_of(field)});
     return kept;
 }
 

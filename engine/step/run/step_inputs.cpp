@@ -81,9 +81,13 @@ void StepInputs::set_sides(StepInput& input, double time) {
             // less than critical, whatever the cell holds.
             const bool shooting = side.depth > 0 && side.depth < critical;
             depth = shooting ? -std::max(side.depth, fastest) : std::max(critical, fastest);
-        } else if (side.kind == SideKind::level) {
-            depth = value - side.value.at(time - settings_.dt); // its rise: the wave that comes in
+        } else if (side.has_level()) {
+            depth = side.wave.at(time);
+            input.side_pace[n].x = side.absorb > 0 ? static_cast<float>(std::min(0.5, settings_.dt / side.absorb)) : 0.0F;
         }
+        if (side.kind == SideKind::outflow) value = side.slope;
+        const double unless_said = side.kind == SideKind::discharge ? 0 : 1;
+        input.side_pace[n].y = static_cast<float>(side.sediment >= 0 ? side.sediment : unless_said);
         input.side[n] = {static_cast<float>(value), static_cast<float>(depth), static_cast<float>(first),
                          static_cast<float>(last)};
     }

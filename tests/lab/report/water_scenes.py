@@ -108,7 +108,7 @@ def over_bump(key, title, q, right, through_critical, seconds):
 
     def make(n):
         dx = length / n
-        east = {"kind": "outflow"} if right is None else {"kind": "level", "value": right}
+        east = {"kind": "outflow"} if right is None else {"kind": "waves", "value": right}
         return base(title, n, 3, dx, terrain=[{"file": "bed.npy"}], water=[start],
                     sides={"west": {"kind": "discharge", "value": q * 3 * dx}, "east": east})
 
