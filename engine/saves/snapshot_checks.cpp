@@ -15,6 +15,7 @@ namespace {
 // Flow may pile columns above method.largest_height, by how much no rule says: as far as the fuzzer calls a world finite.
 constexpr double PILED_MOST = 1e6;
 constexpr double STRAIN_MOST = 1e7; // as stages clamp it
+constexpr double RIM_MOST = 1e7;    // shares and speeds, no unit larger
 constexpr std::uint64_t STEPS_MOST = std::uint64_t{1} << 53;
 constexpr double QUANTA_MOST = 0x1p62;
 
@@ -64,6 +65,17 @@ Status check_field(const std::string& name, const Contents& values, const FieldL
                      std::to_string(column(wrong)) + ", " + std::to_string(row(wrong)) + ")");
 }
 
+/// What outer faces have learnt: speeds and shares.
+Status check_rim(const std::string& name, std::span<const std::byte> numbers) {
+    for (std::size_t n = 0; n < numbers.size() / sizeof(float); ++n) {
+        const auto value = static_cast<double>(get<float>(numbers, n * sizeof(float)));
+        if (!(std::fabs(value) <= RIM_MOST))
+            return error(Code::bad_file,
+                         outside_text("snapshot: " + name + ", number " + std::to_string(n), value, -RIM_MOST, RIM_MOST));
+    }
+    return ok_status();
+}
+
 /// What each rate brought is cut to whole quanta: the two numbers of a total differ by less than one, and by rounding.
 Status check_totals(const HostTotals& totals, double quantum) {
     const auto refuse = [](const std::string& text) { return error(Code::bad_file, "snapshot: " + text); };
@@ -87,7 +99,11 @@ Status check_contents(const SnapshotHeader& header, std::span<const std::byte> s
     const FieldLayout layout{header.nx, header.ny};
     for (std::size_t n = 0; n < header.fields.size(); ++n) {
         const std::string& name = header.fields[n].name;
-        if (field_row(name).role != FieldRole::state) continue; // counters may hold any bits
+        const FieldRole role = field_row(name).role;
+        if (role == FieldRole::rim) {
+            if (auto status = check_rim(name, contents_of(header, snapshot, n)); !status) return status;
+        }
+        if (role != FieldRole::state) continue; // counters may hold any bits
         const Contents values(contents_of(header, snapshot, n), layout);
         if (auto status = check_field(name, values, layout, range_of(name, settings)); !status) return status;
     }

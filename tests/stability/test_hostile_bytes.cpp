@@ -93,6 +93,26 @@ TEST_CASE("a snapshot with contents that no world reaches is refused, whatever i
     refuses(totals + 8, 1e6, "is not its 1e+06 quanta");
 }
 
+TEST_CASE("what outer faces remember is asked for sense, too") {
+    auto scene = mixed_scene(20, 17);
+    scene.settings.sides[static_cast<std::size_t>(SideName::east)].kind = SideKind::outflow;
+    auto world = make_world(scene);
+    step(*world, 5);
+    auto bytes = save(*world);
+    const auto header = read_header(bytes);
+    REQUIRE(header);
+    std::size_t field = 0;
+    while (header->fields.at(field).name != "side_memory") ++field;
+    const auto load = [&](float value) {
+        set(bytes, in_memory(header->begin_of(field)) + 4 * 6, value);
+        seal(bytes);
+        return world->snapshots().load(bytes);
+    };
+    CHECK(load(none).message.find("snapshot: side_memory, number 6: nan is outside") != std::string::npos);
+    CHECK_FALSE(load(1e30F));
+    CHECK(load(0.01F));
+}
+
 TEST_CASE("a snapshot whose books do not tell what it holds says so when it is loaded") {
     auto world = make_world(mixed_scene(20, 17));
     std::vector<std::string> heard;
