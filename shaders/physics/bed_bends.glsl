@@ -62,7 +62,8 @@ struct BedRide {
 FN BedRide bed_ride(BedInflow all, BedCourse own, float gravity_dts, float inv_dts) {
     float normal2 = 1.0f + (own.slope_along * own.slope_along + own.slope_across * own.slope_across);
     float whole = normal2 * all.energy;
-    bool bent = both(all.bend > wmax(1.0e-9f * whole, 1.0e-30f), whole < 1.0e30f); // less is rounding of heights
+    bool follows = both(both(all.energy > 1.0e-24f, normal2 < 1.0e14f), normal2 * whole < 1.0e30f);
+    bool bent = both(follows, all.bend > 1.0e-9f * whole); // less is rounding of heights
     bool flies = both(bent, all.leaves > gravity_dts);
     float gain = 0.0f;
     if (UNIFORM(bent)) {

@@ -41,9 +41,10 @@ FN float depth_beside(float surface, float top, float next_surface, float next_t
 // mixed_height: the face's mean depth of mixed water.
 FN void enter_sand(REF(float) pure, REF(float) mixed, Beside beside, float pure_low, float pure_high, float mixed_height) {
     float facing = wmax(pure > 0.0f ? beside.low : 0.0f, pure < 0.0f ? beside.high : 0.0f);
-    float share = wmin(lean_divide_or_zero(facing, pure > 0.0f ? pure_low : pure_high), 1.0f);
+    float donor = pure > 0.0f ? pure_low : pure_high;
+    float share = donor > 1.0e-20f ? wmin(lean_quotient(facing, wmax(donor, 1.0e-20f)), 1.0f) : 0.0f; // less may be a denormal
     float entering = share * (0.5f * (pure_low + pure_high));
-    float difference = (pure - mixed) * lean_reciprocal_or_zero(mixed_height + entering);
+    float difference = share > 0.0f ? (pure - mixed) * lean_reciprocal(wmax(mixed_height + entering, 1.0e-20f)) : 0.0f;
     mixed = mixed + entering * difference;
     pure = pure - share * (mixed_height * difference);
 }

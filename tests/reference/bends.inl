@@ -38,25 +38,29 @@ template <class Real> void Solver<Real>::bend_sand_velocity() {
         if (hb <= P.film / Real(2)) return;
         const Course own = course_at(old, ax, a, b);
         const Real n = Real(1) + own.a * own.a + own.e * own.e;
-        Real U(0), S(0), E(0), D(0), B(0); // sums of Q with u, |u| + |w|, V^2, d, d^2
+        struct Sums {
+            Real U, S, E, D, B; // of Q with u, |u| + |w|, V^2, d, d^2
+        };
         const auto side = [&](Real Q, const Course& from) {
-            if (Q <= Real(0)) return;
+            if (Q <= Real(0)) return Sums{Real(0), Real(0), Real(0), Real(0), Real(0)};
             const Real d = (from.a - own.a) * from.u + (from.e - own.e) * from.w;
             const Real climb = from.a * from.u + from.e * from.w;
-            U += Q * from.u;
-            S += Q * (std::abs(from.u) + std::abs(from.w));
-            E += Q * (from.u * from.u + from.w * from.w + climb * climb);
-            D += Q * d;
-            B += Q * d * d;
+            return Sums{Q * from.u, Q * (std::abs(from.u) + std::abs(from.w)),
+                        Q * (from.u * from.u + from.w * from.w + climb * climb), Q * d, Q * d * d};
+        };
+        const auto sum = [](const Sums& one, const Sums& other) {
+            return Sums{one.U + other.U, one.S + other.S, one.E + other.E, one.D + other.D, one.B + other.B};
         };
         const Field<Real>& along = sand_flux.along(ax);
         const Field<Real>& across = sand_flux.across(ax);
-        side(mean(along[ax.face(a - 1, b)], along[f]), course_at(old, ax, a - 1, b));
-        side(-mean(along[f], along[ax.face(a + 1, b)]), course_at(old, ax, a + 1, b));
-        if (b > 0) side(mean(across[ax.cross(a - 1, b)], across[ax.cross(a, b)]), course_at(old, ax, a, b - 1));
-        if (b + 1 < ax.across())
-            side(-mean(across[ax.cross(a - 1, b + 1)], across[ax.cross(a, b + 1)]), course_at(old, ax, a, b + 1));
-        if (B <= std::max(Real(1e-9) * n * E, Real(1e-30) * hb)) return;
+        const Sums low = side(mean(along[ax.face(a - 1, b)], along[f]), course_at(old, ax, a - 1, b));
+        const Sums high = side(-mean(along[f], along[ax.face(a + 1, b)]), course_at(old, ax, a + 1, b));
+        const Real Q_S = b > 0 ? mean(across[ax.cross(a - 1, b)], across[ax.cross(a, b)]) : Real(0);
+        const Real Q_N = b + 1 < ax.across() ? mean(across[ax.cross(a - 1, b + 1)], across[ax.cross(a, b + 1)]) : Real(0);
+        const Sums left = side(Q_S, course_at(old, ax, a, b > 0 ? b - 1 : b));
+        const Sums right = side(-Q_N, course_at(old, ax, a, b + 1 < ax.across() ? b + 1 : b));
+        const auto [U, S, E, D, B] = sum(sum(low, high), sum(left, right)); // in pairs: mirrored scenes have mirrored bits
+        if (B <= Real(1e-9) * n * E || E <= Real(1e-24) * hb) return;
         const Real x = B / (n * E);
         const Real turned = (U + own.a * D / n) / std::sqrt(std::max(x, Real(1) - x)) - U;
         const Real acceleration = -D / (hb * P.substep);
