@@ -200,6 +200,6 @@ struct StepInput {
     int edit_count;             // edits in this submission of apply_edits
     int point_count;            // points of a POINTS stage
     int wake_count;
-    int pad0;
+    float phase;                // of rounding to whole quanta, in [0, 1) (NUMERICS 2.2)
 };
 #endif

@@ -11,12 +11,13 @@ struct WetSand {
 
 FN float mixed_of(WetSand cell) { return wmin(cell.water, cell.sand); }
 
-// The smaller of the gradients of the mixed height and of the free surface, none where they disagree in sign, so that a lake at rest stays
-// at rest. number = c dt/dx^2.
-FN float limited_diffusion(WetSand low, WetSand high, float number, float dry) {
-    float s = minmod(mixed_of(high) - mixed_of(low), high.surface - low.surface);
+// The smaller of the gradients of the mixed height and of the free surface, none where they disagree in sign or the surface is as level as
+// rounding leaves it, so that a lake at rest stays at rest. number = c dt/dx^2.
+FN float limited_diffusion(WetSand low, WetSand high, float number, float dry, float rest_surface) {
+    float fall = high.surface - low.surface;
+    float s = minmod(mixed_of(high) - mixed_of(low), fall);
     bool sand = both(low.sand > dry, high.sand > dry);
-    return both(s != 0.0f, sand) ? -number * s : 0.0f;
+    return both(wabs(fall) > rest_surface, both(s != 0.0f, sand)) ? -number * s : 0.0f;
 }
 
 // By the height alone, sand or not (method published).

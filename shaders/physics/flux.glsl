@@ -63,18 +63,24 @@ FN float outflow_scale(float height, float outflow_depth, float limiter) {
     return limiter > 0.0f ? limited : 1.0f;
 }
 
-// The flux after its donor's limiter, in whole quanta.
-FN float limited_flux(float raw, float scale_low, float scale_high, float quantum, float inv_quantum) {
-    float scale = raw > 0.0f ? scale_low : scale_high;
-    return flush(whole_quanta(raw * scale, quantum, inv_quantum));
+// How many quanta a flux moves: what is less than one moves one in that share of the steps, since `phase` takes every value of [0, 1)
+// equally often.
+FN float moved_quanta(float flux, float inv_quantum, float phase) { return wfloor(wabs(flux) * inv_quantum + phase); }
+
+// outflow_scale of a cell, negative where phase would let it give more than it holds: then its fluxes are cut toward 0.
+FN float outflow_limit(float height, FacePair x, FacePair y, float limiter, float quantum, float inv_quantum, float phase) {
+    float scale = outflow_scale(height, outflow(x, y), limiter);
+    float moved_x = moved_quanta(wmax(-x.low, 0.0f) * scale, inv_quantum, phase) + moved_quanta(wmax(x.high, 0.0f) * scale, inv_quantum, phase);
+    float moved_y = moved_quanta(wmax(-y.low, 0.0f) * scale, inv_quantum, phase) + moved_quanta(wmax(y.high, 0.0f) * scale, inv_quantum, phase);
+    return (moved_x + moved_y) * quantum > height ? -scale : scale;
 }
 
-// The same to the nearest quantum, for a donor that its limiter leaves half a quantum for each face (NUMERICS 2.16), or with up = 0
-// toward 0; up: 0.5 or 0.
-FN float rounded_flux(float raw, float scale_low, float scale_high, float up, float quantum, float inv_quantum) {
-    float limited = raw * (raw > 0.0f ? scale_low : scale_high);
-    float share = limited > 0.0f ? up : -up;
-    return flush(whole_quanta(limited + share * quantum, quantum, inv_quantum));
+// The flux after its donor's limiter, in whole quanta.
+FN float limited_flux(float raw, float scale_low, float scale_high, float quantum, float inv_quantum, float phase) {
+    float scale = raw > 0.0f ? scale_low : scale_high;
+    float limited = raw * wabs(scale);
+    float depth = moved_quanta(limited, inv_quantum, scale > 0.0f ? phase : 0.0f) * quantum;
+    return flush(quantum > 0.0f ? (raw > 0.0f ? depth : -depth) : limited);
 }
 
 FN float integrate_height(float height, float flux_west, float flux_east, float flux_south, float flux_north) {

@@ -10,7 +10,7 @@ template <class Real> void Solver<Real>::diffuse_mixed_height() {
     for_inner_faces([&](const Axis& ax, int a, int b) {
         const std::size_t L = ax.cell(a - 1, b);
         const std::size_t R = ax.cell(a, b);
-        const Real moved = whole_quanta(number * (old[L] - old[R]), P.quantum, false);
+        const Real moved = whole_quanta(number * (old[L] - old[R]), P.quantum, Real(0));
         mixed[L] -= moved;
         mixed[R] += moved;
     });

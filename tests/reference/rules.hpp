@@ -58,10 +58,10 @@ template <class Real> Real centred_slope(Real a, Real b, Real c) {
 
 template <class Real> Real mean(Real left, Real right) { return (left + right) / Real(2); }
 
-/// Volume that is moved: whole quanta, towards zero or to the nearest.
-template <class Real> Real whole_quanta(Real depth, Real quantum, bool nearest) {
-    const Real count = depth / quantum;
-    return quantum > Real(0) ? (nearest ? std::round(count) : std::trunc(count)) * quantum : depth;
+/// Volume that is moved: whole quanta, towards zero once a phase in [0, 1) of one is added.
+template <class Real> Real whole_quanta(Real depth, Real quantum, Real phase) {
+    const Real count = std::floor(std::abs(depth) / quantum + phase);
+    return quantum > Real(0) ? std::copysign(count * quantum, depth) : depth;
 }
 
 } // namespace wadi::reference

@@ -180,8 +180,8 @@ template <class Real> class Solver {
     /// f(axis, a, b) for every face between two cells.
     template <class F> void for_inner_faces(F f) const;
 
-    /// 2.16: fluxes of inner faces to the nearest quantum, not toward 0.
-    bool nearest(Layer layer) const;
+    /// 2.2: what a step adds to a flux, in quanta, before it is cut to whole ones.
+    Real rounding_phase(Layer layer, const Axis& ax, std::size_t face) const;
     Real raw_flux(Layer layer, const Axis& axis, int a, int b) const;
     void limit_outflow(Layer layer, Real k, Field<Real>& scale) const;
     void limited_flux(Layer layer, Real k, const Field<Real>& scale, Faces<Real>& flux) const;

@@ -72,8 +72,14 @@ template <class Real> Real Solver<Real>::raw_flux(Layer layer, const Axis& ax, i
     return q;
 }
 
-template <class Real> bool Solver<Real>::nearest(Layer layer) const {
-    return layer != Layer::sand && has(EFFECT_SECOND_ORDER_WATER);
+/// 2.2: the fractional part of the step's number times the golden ratio's, in 32 and then 24 bits. Sand is rounded by it only
+/// where bed load runs.
+template <class Real> Real Solver<Real>::rounding_phase(Layer layer, const Axis& ax, std::size_t face) const {
+    if (has(EFFECT_PUBLISHED)) return Real(0);
+    if (layer == Layer::sand && (!has(EFFECT_BED_SHEAR) || bed_load.along(ax)[face] == Real(0))) return Real(0);
+    const double turns = static_cast<double>(std::uint32_t(step_index)) * 2654435769.0;
+    const double part = std::fmod(turns, 4294967296.0);
+    return static_cast<Real>(std::floor(part / 256.0) / 16777216.0);
 }
 
 template <class Real> void Solver<Real>::limit_outflow(Layer layer, Real k, Field<Real>& scale) const {
@@ -89,8 +95,12 @@ template <class Real> void Solver<Real>::limit_outflow(Layer layer, Real k, Fiel
             const Real north = std::max(raw_flux(layer, y, j + 1, i), Real(0));
             const Real outflow = k * ((west + east) + (south + north));
             const std::size_t c = x.cell(i, j);
-            const Real held = nearest(layer) ? std::max(h[c] - Real(2) * P.quantum, Real(0)) : h[c];
-            scale[c] = !P.limiter || outflow <= held ? Real(1) : held / outflow * margin;
+            scale[c] = !P.limiter || outflow <= h[c] ? Real(1) : h[c] / outflow * margin;
+            // Where the phase would take more than there is, all four are cut toward 0; the sign says so.
+            const Real phase = layer == Layer::sand && !has(EFFECT_BED_SHEAR) ? Real(0) : rounding_phase(Layer::pure, x, 0);
+            Real moved(0);
+            for (const Real leaves : {west, east, south, north}) moved += whole_quanta(k * leaves * scale[c], P.quantum, phase);
+            if (P.quantum > Real(0) && moved > h[c]) scale[c] = -scale[c];
         }
     }
 }
@@ -100,11 +110,13 @@ template <class Real> void Solver<Real>::limited_flux(Layer layer, Real k, const
         const Axis ax = axis(is_y);
         for (int b = 0; b < ax.across(); ++b) {
             for (int a = 0; a <= ax.along(); ++a) {
-                Real q = raw_flux(layer, ax, a, b);
-                if (q > Real(0) && a > 0) q *= scale[ax.cell(a - 1, b)];
-                if (q < Real(0) && a < ax.along()) q *= scale[ax.cell(a, b)];
-                const bool inner = a > 0 && a < ax.along();
-                flux.along(ax)[ax.face(a, b)] = whole_quanta(k * q, P.quantum, inner && nearest(layer));
+                const Real q = raw_flux(layer, ax, a, b);
+                Real donor(-1); // outside: as much as is meant
+                if (q > Real(0) && a > 0) donor = scale[ax.cell(a - 1, b)];
+                if (q < Real(0) && a < ax.along()) donor = scale[ax.cell(a, b)];
+                const std::size_t face = ax.face(a, b);
+                const Real phase = donor > Real(0) ? rounding_phase(layer, ax, face) : Real(0);
+                flux.along(ax)[face] = whole_quanta(k * (q * std::abs(donor)), P.quantum, phase);
             }
         }
     }

@@ -122,6 +122,7 @@ void plan_sand_forces(PlanBuilder b) {
 void plan_active_tiles(PlanBuilder b) {
     if (!b.tiles_by_material()) {
         for (const char* stage : {"mark_active_tiles", "count_active_tiles", "list_active_tiles"}) b.run(stage);
+        if (b.has(EFFECT_WATER)) b.run("keep_water_awake");
         return;
     }
     b.run("choose_active_tiles");
@@ -134,6 +135,7 @@ void plan_active_tiles(PlanBuilder b) {
             b.run(stage, {}, names);
         }
     }
+    b.run("keep_water_awake", {}, {{"active_tiles", "active_tiles_water"}, {"activity", "activity_water"}});
 }
 
 // Two lists, unless the substeps move the water's velocities to their other buffers, as single-layer drag does: they would have

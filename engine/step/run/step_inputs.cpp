@@ -98,6 +98,7 @@ StepInput StepInputs::next(std::uint64_t step) {
     StepInput input{};
     const double time = static_cast<double>(step) * settings_.dt;
     input.step = stage_step(step);
+    input.phase = settings_.method.published() ? 0.0F : rounding_phase(step); // the paper says nothing of rounding
     const std::size_t sources = settings_.sources.size();
     input.rain = advance(totals_[sources], settings_.rain.at(time));
     input.evaporation = advance(totals_[sources + 1], settings_.evaporation.at(time));

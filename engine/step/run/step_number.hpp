@@ -21,4 +21,10 @@ constexpr std::int64_t step_behind(std::int32_t number, std::uint64_t now) {
     return static_cast<std::int64_t>(now - age);
 }
 
+/// What a step adds to its fluxes, in quanta, before they are cut to whole ones: multiples of the golden ratio less their whole
+/// part, which are spread over [0, 1) as evenly as numbers that come one by one can be (Weyl 1916; Knuth, TAOCP 3, 6.4).
+constexpr float rounding_phase(std::uint64_t step) {
+    return static_cast<float>((static_cast<std::uint32_t>(stage_step(step)) * 0x9E3779B9U) >> 8U) / static_cast<float>(1U << 24U);
+}
+
 } // namespace wadi

@@ -179,8 +179,65 @@ def bump(start, order):
     return measure
 
 
+# Thin water: how high a column may be sets the quantum, which must not matter
+
+def film(height, dt, seconds=3600):
+    """What is left of 2 cm on 208 m of ground that falls by 0.05, over the kinematic wave's (h = (3 n x / (5 sqrt(S) t))^1.5 behind the fan)."""
+    n, slope, manning = 104, 0.05, 0.03
+    x = (np.arange(n) + 0.5) * 2
+    one = level(n, 4, 2, dt, height=height, terrain=along(slope * (x[-1] - x), 4), water=along(0 * x + 0.02, 4),
+                sides={"east": {"kind": "outflow"}}, material={"bed_friction": 0, "manning": manning})
+
+    def measure(lab):
+        left = 2 * lab.run(one, [seconds], ("W",), values={}).field("W", seconds)[1].sum()
+        fine = (np.arange(20800) + 0.5) / 100
+        right = 0.01 * np.minimum((3 * manning * fine / (5 * math.sqrt(slope) * seconds)) ** 1.5, 0.02).sum()
+        return left / right, 1, 0.15
+    return measure
+
+
+def rain(height, degrees=0):
+    """Depth under 50 mm/h on ground that falls by 0.05, 100 m down, over Manning's."""
+    slope, manning, fall, angle = 0.05, 0.03, 0.05 / 3600, math.radians(degrees)
+    n = 100 if degrees == 0 else 160
+    x, y = np.meshgrid(np.arange(n) + 0.5, np.arange(4 if degrees == 0 else n) + 0.5)
+    down = x * math.cos(angle) + y * math.sin(angle)
+    one = level(n, x.shape[0], 1, 0.04, height=height, terrain=[{"file": slope * (down.max() - down)}], rain=fall,
+                sides={"east": {"kind": "outflow"}, **({"north": {"kind": "outflow"}} if degrees else {})},
+                material={"bed_friction": 0, "manning": manning})
+
+    def measure(lab):
+        h = lab.run(one, [900], ("W",), values={}).field("W", 900)
+        if degrees == 0:
+            run, depth = x[1, 80:95], h[1, 80:95]
+        else:  # along the diagonal from the corner, where both rims are as far
+            run = np.array([down[at, at] - down[0, 0] for at in range(60, 70)])
+            depth = np.array([h[at, at] for at in range(60, 70)])
+        return float((depth / (fall * run * manning / math.sqrt(slope)) ** 0.6).mean()), 1, 0.03
+    return measure
+
+
+def seepage(height):
+    """How far the middle of 0.2 m of water in 0.3 m of sand gets in 120 s on ground that falls by 0.05, over 0.026 m (in plain float)."""
+    x = (np.arange(60) + 0.5) * 0.1
+    one = level(60, 1, 0.1, 0.005, height=height, terrain=along(0.05 * (6 - x)), sand=along(0 * x + 0.3), water=along(np.where((x > 2) & (x < 4), 0.2, 0)),
+                material={"friction": 0.7, "exchange_rate": 1e5, "diffusion_rate": 0})
+
+    def measure(lab):
+        run = lab.run(one, [0, 120], ("W",), values={})
+        middle = [(run.field("W", t)[0] * x).sum() / run.field("W", t)[0].sum() for t in (0, 120)]
+        return (middle[1] - middle[0]) / 0.026, 1, 0.1
+    return measure
+
+
 def rows():
     found = []
+    for height in (16, 256, 4096):
+        for dt in (0.01, 0.05, 0.2):
+            found.append(Row(f"film/{height}/dt_{dt:g}", (height, dt) == (4096, 0.2), film(height, dt)))
+        found.append(Row(f"rain/{height}", height == 4096, rain(height)))
+        found.append(Row(f"seepage/{height}", height == 4096, seepage(height)))
+    found.append(Row("rain/4096/turned_45", False, rain(4096, 45)))
     for order in (1, 2):
         for bed in beds():
             for start in ("normal", "dry", "drowned"):
