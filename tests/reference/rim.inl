@@ -263,8 +263,8 @@ template <class Real> void Solver<Real>::run_off(const Axis& ax, bool far_end, i
     const Real drag = before > Real(0) ? bed_drag(M, M, before) : Real(0);
     const Real rubs = ratio(P.dx * drag * runs * runs, g * std::max(before, P.eps));
     const Real carried = ratio(std::max(speed(2), Real(0)) * pure[F] + runs * before, before + h);
-    const Real falls = std::clamp(rubs + ratio(carried * (next - speed(2)), g), -before / Real(4),
-                                  before / Real(4) + std::max(bed(M) - bed(N), Real(0)));
+    const Real most = before > Real(0) ? before / Real(4) + std::max(bed(M) - bed(N), Real(0)) : Real(0);
+    const Real falls = std::clamp(rubs + ratio(carried * (next - speed(2)), g), -before / Real(4), most);
     const Real steady = bed(M) + before - falls - bed(N);
     const Real narrowed = std::clamp(ratio(before, std::max(steady, P.eps)), Real(0.25), Real(4));
     // 2: the wave.
