@@ -1,6 +1,6 @@
 // Advice on a level that loads but would not do what its author expects. Each message has the numbers and what to change.
 // Rules and constants: NUMERICS.md sections 2.4b, 2.4d, 2.7, 2.8 and 4.
-#include "engine/level/films.hpp"
+#include "engine/level/source_rates.hpp"
 #include "engine/level/level.hpp"
 #include "engine/settings/data/setting_table.hpp"
 #include "engine/settings/rules/messages.hpp"
@@ -384,8 +384,6 @@ std::vector<std::string> level_warnings(const Settings& settings, const InitialF
     const Survey survey = survey_fields(settings, fields);
     warn_water(settings, survey, warnings);
     warn_sand(settings, survey, warnings);
-    const auto cells = static_cast<std::size_t>(settings.grid.nx) * static_cast<std::size_t>(settings.grid.ny);
-    warn_films(settings, {survey.highest_column, 2 * survey.dry_cells > cells}, warnings);
     warn_discharges(settings, warnings);
     warn_levels(settings, fields, warnings);
     for (std::size_t n = 0; n < settings.sources.size(); ++n)

@@ -136,33 +136,6 @@ TEST_CASE("level warnings: a source that brings more than a cell takes") {
     CHECK(warnings(R"("sources": [{"shape": "disc", "center": [1, 1], "radius": 0.2, "discharge": 120}])").empty());
 }
 
-TEST_CASE("level warnings: flows of less than a quantum a step") {
-    // 2^-20 m in cells of 0.1 m and steps of 0.009 s is 1.06e-5 m2/s, half of a grid of 4 m of rain 5.3e-6 m/s.
-    const auto west = [](const char* value) {
-        return warnings(std::string(R"("sides": {"west": {"kind": "discharge", "value": )") + value + "}}");
-    };
-    CHECK_MESSAGE(says(west("3e-6"),
-                       "sides.west.value: brings 9e-08 m through a face in a step, and less than a quantum of height, "
-                       "9.53674e-07 m, does not move: on dry ground the water runs about 4.1 times too deep and late; use dt "
-                       ">= 0.0954 s or method.largest_height <= 1"),
-                  west("3e-6"));
-    CHECK(west("3.2e-5").empty());
-    CHECK(
-        says(warnings(R"("rain": 5.2e-6)"), "rain: brings 9.36e-07 m through a face in a step half the grid's length downhill"));
-    CHECK(warnings(R"("rain": 5.4e-6)").empty());
-    CHECK(warnings(R"("rain": 5.2e-6, "method": {"largest_height": 8})").empty());
-    CHECK(warnings(R"("rain": 5.2e-6, "method": {"quantum": 0})").empty());
-    CHECK(warnings(R"("rain": 5.2e-6, "water": [{"shape": "plane", "height": 0.01}])").empty());
-    const auto source = [](const char* shape) { return warnings(std::string(R"("sources": [{)") + shape + "}]"); };
-    CHECK(says(source(R"("shape": "box", "from": [1, 1], "to": [2, 1.2], "rate": 5e-5)"), "sources[0]: brings 9e-07 m"));
-    CHECK(source(R"("shape": "box", "from": [1, 1], "to": [2, 1.3], "rate": 5e-5)").empty());
-    CHECK(says(source(R"("shape": "box", "from": [1, 1], "to": [2, 1.2], "discharge": 1e-5)"), "sources[0]: brings 9e-07 m"));
-    CHECK(source(R"("shape": "box", "from": [1, 1], "to": [2, 1.2], "discharge": 1.1e-5)").empty());
-    CHECK(says(source(R"("shape": "point", "center": [1, 1], "rate": 1e-4)"), "sources[0]: brings 9e-07 m"));
-    CHECK(source(R"("shape": "disc", "center": [1, 1], "radius": 0.2, "rate": 1e-4)").empty());
-    CHECK(source(R"("shape": "point", "center": [1, 1], "rate": 1e-4, "material": "sand")").empty());
-}
-
 TEST_CASE("level warnings: stiffness of the sand") {
     const auto with = [](const std::string& modulus, const std::string& method = "") {
         return warnings(R"("sand": [{"shape": "plane", "height": 2}], "material": {"young_modulus": )" + modulus + "}" + method);
