@@ -1,7 +1,9 @@
 #include "tests/conformance/active_tiles_check.hpp"
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <limits>
+#include <string>
 
 namespace wadi::conformance {
 
@@ -117,6 +119,40 @@ Verdict check_look(const StageRun& run) {
     return {};
 }
 
+// Whether water passes the face below a cell, by its velocities or by diffusion, or would if a quantum were less.
+bool passes(const StageRun& run, int i, int j, bool is_y) {
+    const int low_i = is_y ? i : i - 1, low_j = is_y ? j - 1 : j;
+    const std::string axis = is_y ? "_y" : "_x";
+    const float water = run.before("water_height", i, j), below = run.before("water_height", low_i, low_j);
+    if (!(std::max(water, below) > 0)) return false;
+    if (run.before(("water_velocity" + axis).c_str(), i, j) != 0 || run.before(("mixed_velocity" + axis).c_str(), i, j) != 0)
+        return true;
+    if ((run.scene.effects & EFFECT_DIFFUSION) == 0) return false;
+    const float sand = run.before("sand_height", i, j), sand_below = run.before("sand_height", low_i, low_j);
+    const float fall = (run.before("terrain", i, j) + water) - (run.before("terrain", low_i, low_j) + below);
+    const float rise = std::min(water, sand) - std::min(below, sand_below);
+    const float dry = run.params.dry_threshold;
+    if (!(sand > dry && sand_below > dry && std::abs(fall) > run.params.rest_surface) || fall * rise <= 0) return false;
+    const bool down = fall > 0; // what diffuses leaves the higher cell
+    const float from = down ? water : below, in = down ? sand : sand_below;
+    return (run.scene.effects & EFFECT_RETENTION) == 0 || from >= in || from / in > run.params.retained;
+}
+
+Verdict check_keep(const StageRun& run) {
+    const auto& p = run.params;
+    for (int row = 0; row < p.tile_rows; ++row)
+        for (int column = 0; column < p.tile_columns; ++column) {
+            bool flows = false;
+            for (int j = row * 8; j < (row + 1) * 8 && j <= p.ny; ++j)
+                for (int i = column * 8; i < (column + 1) * 8 && i <= p.nx; ++i)
+                    flows = flows || passes(run, i, j, false) || passes(run, i, j, true);
+            const auto at = static_cast<std::size_t>(row * p.tile_columns + column);
+            const std::uint32_t wanted = flag(at) != 0 && flows ? step : stamp(at);
+            if (run.buffer("activity").words()[at] != wanted) return wrong("activity", at);
+        }
+    return {};
+}
+
 Verdict check_count(const StageRun& run) {
     const TileGrid grid(run.params);
     for (std::size_t at = 0; at < grid.columns * grid.rows; ++at) {
@@ -144,7 +180,7 @@ Verdict check_list(const StageRun& run) {
 
 bool lists_active_tiles(const std::string& stage) {
     return stage == "mark_active_tiles" || stage == "choose_active_tiles" || stage == "look_into_tiles" ||
-           stage == "count_active_tiles" || stage == "list_active_tiles";
+           stage == "keep_water_awake" || stage == "count_active_tiles" || stage == "list_active_tiles";
 }
 
 void add_active_tiles(Scene& scene, StepInput& input) {
@@ -181,6 +217,7 @@ Verdict check_active_tiles(const StageRun& run) {
     return run.stage.name == "mark_active_tiles"     ? check_mark(run)
            : run.stage.name == "choose_active_tiles" ? check_choose(run)
            : run.stage.name == "look_into_tiles"     ? check_look(run)
+           : run.stage.name == "keep_water_awake"    ? check_keep(run)
            : run.stage.name == "count_active_tiles"  ? check_count(run)
                                                      : check_list(run);
 }

@@ -187,6 +187,7 @@ constexpr Definition definitions[] = {
     {"mark_active_tiles", check_active_tiles},
     {"choose_active_tiles", check_active_tiles},
     {"look_into_tiles", check_active_tiles},
+    {"keep_water_awake", check_active_tiles},
     {"count_active_tiles", check_active_tiles},
     {"list_active_tiles", check_active_tiles},
 };

@@ -17,8 +17,7 @@ template <class Real> Real Solver<Real>::diffusion(const Axis& ax, int a, int b)
     Real q(0);
     if (has(EFFECT_PUBLISHED))
         q = -P.diffusion * (mixed[R] - mixed[L]) / P.dx;
-    else if (sand[L] > P.eps && sand[R] > P.eps &&
-             std::abs((terrain[R] + water[R]) - (terrain[L] + water[L])) > P.rest_surface)
+    else if (sand[L] > P.eps && sand[R] > P.eps && std::abs((terrain[R] + water[R]) - (terrain[L] + water[L])) > P.rest_surface)
         q = -P.diffusion * minmod(mixed[R] - mixed[L], (terrain[R] + water[R]) - (terrain[L] + water[L])) / P.dx;
     return has(EFFECT_RETENTION) ? q * relative_permeability(q > Real(0) ? L : R) : q;
 }
