@@ -326,8 +326,8 @@ TEST_CASE("waves come in through their side as high over sand as over solid grou
         // Loose sand through which water runs easily takes its part of a wave, but not with the grid.
         const auto [coarse_low, coarse_high] = swing(1, 2, 1e4, order);
         const auto [fine_low, fine_high] = swing(0.25, 2, 1e4, order);
-        CHECK(std::abs(coarse_high - fine_high) < 0.03);
-        CHECK(std::abs(coarse_low - fine_low) < 0.03);
+        CHECK(std::abs(coarse_high - fine_high) < 0.04);
+        CHECK(std::abs(coarse_low - fine_low) < 0.04);
     }
 }
 

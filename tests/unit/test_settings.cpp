@@ -135,7 +135,14 @@ TEST_CASE("settings: the quantum that is chosen") {
 TEST_CASE("settings: sides") {
     const auto west = [](const std::function<void(Side&)>& change) { return refusal([&](Settings& s) { change(s.sides[0]); }); };
     CHECK(says(west([](Side& s) { s.kind = SideKind::discharge; }), "sides.west.value: missing"));
-    CHECK(says(west([](Side& s) { s.value.samples = {{0, 1}}; }), "only discharge and level"));
+    CHECK(says(west([](Side& s) { s.value.samples = {{0, 1}}; }), "only discharge, level and waves have one"));
+    CHECK(says(west([](Side& s) { s.kind = SideKind::outflow, s.slope = 2; }), "sides.west.slope: 2 is outside 0 ... 1"));
+    CHECK(says(west([](Side& s) { s.kind = SideKind::brink, s.slope = 0.1; }), "only an outflow has one"));
+    CHECK(says(west([](Side& s) { s.kind = SideKind::brink, s.wave.samples = {{0, 1}}; }), "only waves have one"));
+    CHECK(says(west([](Side& s) { s.kind = SideKind::outflow, s.absorb = 1; }), "only level and waves have one"));
+    CHECK(says(west([](Side& s) { s.kind = SideKind::outflow, s.sediment = 1.5; }), "sides.west.sediment: 1.5 is outside"));
+    CHECK(says(west([](Side& s) { s.sediment = 0; }), "a wall has none"));
+    CHECK(west([](Side& s) { s.kind = SideKind::outflow, s.slope = 0.01, s.sediment = 0.5; }).empty());
     CHECK(says(west([](Side& s) { s.from = 5; }), "sides.west.from: 5 is outside 0 ... 5"));
     CHECK(west([](Side& s) { s.from = 4; }).empty());
     CHECK(says(west([](Side& s) { s.from = 3, s.to = 2; }), "sides.west.to: 2 is not greater than from, 3"));
