@@ -122,6 +122,9 @@ FN float clamped_speed(float along, float across, float limit) {
     return wclamp(over ? shortened : finite, -limit, limit);
 }
 
+// A velocity after rain, which brings none (NUMERICS 2.9); inv_sum: 1 over both cells' depths behind the rain.
+FN float diluted(float velocity, float rain, float inv_sum) { return velocity - velocity * wmin(rain * (2.0f * inv_sum), 1.0f); }
+
 // Rest rule (NUMERICS 2.4e): a level and slow face stands still for ever.
 FN bool at_rest(float surface_low, float surface_high, float u, float rest_surface, float rest_velocity) {
     return both(wabs(surface_high - surface_low) <= rest_surface, wabs(u) <= rest_velocity);

@@ -79,6 +79,7 @@ template <class Real> void Solver<Real>::apply_rain() {
     if (!has(EFFECT_RAIN)) return;
     const Real gained = static_cast<Real>(quanta(rain_total_, sample(settings.rain, time()) * settings.dt));
     const Real lost = static_cast<Real>(quanta(evaporation_total_, sample(settings.evaporation, time()) * settings.dt));
+    rained = gained;
     for (std::size_t c = 0; c < cells(); ++c) {
         add_depth(water, c, gained, water_added);
         add_depth(water, c, -lost, water_added);

@@ -248,6 +248,7 @@ template <class Real> template <class Other> void Solver<Real>::copy_from(const 
     faces(&A::bend_gain, &B::bend_gain);
     faces(&A::bed_lift, &B::bed_lift);
     field(&A::wedge_depth, &B::wedge_depth);
+    rained = static_cast<Real>(other.rained);
     water_added = other.water_added;
     sand_added = other.sand_added;
     refused = other.refused;

@@ -150,6 +150,7 @@ template <class Real> class Solver {
     Faces<Real> friction_limit, withheld_push;    // 2.18: N, k_sand g_f (K - C r) d (1 - r^ f) [m/s]
     Faces<Real> bend_gain, bed_lift;              // 2.3: of bends: what they add to us [m/s], g_b [m/s2]
     Field<Real> roughness;                        // of each cell beyond P.manning [s/m^(1/3)]
+    Real rained{};                                // depth of rain in this step [m]
     Faces<Real> ghost_water;                      // depth outside the open sides [m], on boundary faces
     struct SideMemory {                           // 2.9, state of an outer face
         Real stream{};                            // waves: the stream's velocity outward [m/s]

@@ -383,6 +383,22 @@ TEST_CASE("a discharge arrives on time to one quantum a face however small it is
     CHECK(std::abs(total(cells_of(*world, "water_height")) - 400 * 5e-6) <= 400 * height_quantum(scene.settings.method));
 }
 
+TEST_CASE("rain brings no velocity: a stream that it falls on keeps its momentum") {
+    for (const int order : {1, 2}) {
+        auto scene = flat_scene(200, 1, 0.5, 0.02);
+        scene.settings.method.water_transport_order = order;
+        scene.settings.rain = {{{0, 0.1}}};
+        scene.fill(scene.fields.water, [](double, double) { return 1; });
+        scene.fill(scene.fields.velocity_x, [](double, double) { return 1; });
+        auto world = make_world(scene);
+        step(*world, 200); // 0.4 m; what the ends do has run 20 m
+        const double h = cells_of(*world, "water_height").at(100, 0), u = cells_of(*world, "water_velocity_x").at(100, 0);
+        MESSAGE("order " << order << ": momentum " << h * u << " m2/s");
+        CHECK(std::abs(h - 1.4) < 1e-3);
+        CHECK(std::abs(h * u - 1) < 0.01);
+    }
+}
+
 TEST_CASE("a film that brings less than a quantum a step is as deep as Manning's law says, and all of it arrives") {
     const auto over_manning = [](double dt) {
         const double q = 1e-5, slope = 0.05, manning = 0.03;
