@@ -176,7 +176,10 @@ template <class Real> void Solver<Real>::damp_shocks(const Faces<Real>& before) 
                 return u[ax.face(inside, b)] - u[ax.face(inside + 1, b)];
             };
             const Real explained = Real(3) * std::min(compression(cell - 1), compression(cell + 1));
-            const Real rest = std::max(compression(cell) - std::max(explained, Real(0)), Real(0));
+            const Axis other = axis(!ax.is_y); // what turns there is no shock
+            const Field<Real>& v = before.along(other);
+            const Real turns = std::max(v[other.face(b + 1, cell)] - v[other.face(b, cell)], Real(0));
+            const Real rest = std::max(compression(cell) - turns - std::max(explained, Real(0)), Real(0));
             const Real depth = pure_predicted[ax.cell(cell, b)];
             const Real waves = P.shock_viscosity * std::sqrt(P.gravity * depth);
             const Real number = std::min(P.k * std::min(waves, Real(12) * rest), Real(0.12));
