@@ -218,20 +218,16 @@ def rain(height, degrees=0):
 
 
 def seepage(height):
-    """How far the middle of 0.2 m of water in 0.3 m of sand gets in 120 s on ground that falls by 0.05, over that without quanta."""
+    """How far the middle of 0.2 m of water in 0.3 m of sand gets in 120 s on ground that falls by 0.05, over 0.01946 m, which it does without quanta
+    (`quantum` 0, at 16 and at 4096 m)."""
     x = (np.arange(60) + 0.5) * 0.1
-
-    def one(**method):
-        return level(60, 1, 0.1, 0.005, height=height, terrain=along(0.05 * (6 - x)), sand=along(0 * x + 0.3),
-                     water=along(np.where((x > 2) & (x < 4), 0.2, 0)), material={"friction": 0.7, "exchange_rate": 1e5, "diffusion_rate": 0}, method=method)
-
-    def moved(lab, **method):
-        run = lab.run(one(**method), [0, 120], ("W",), values={})
-        middle = [(run.field("W", t)[0] * x).sum() / run.field("W", t)[0].sum() for t in (0, 120)]
-        return middle[1] - middle[0]
+    one = level(60, 1, 0.1, 0.005, height=height, terrain=along(0.05 * (6 - x)), sand=along(0 * x + 0.3), water=along(np.where((x > 2) & (x < 4), 0.2, 0)),
+                material={"friction": 0.7, "exchange_rate": 1e5, "diffusion_rate": 0})
 
     def measure(lab):
-        return moved(lab) / moved(lab, quantum=0), 1, 0.05
+        run = lab.run(one, [0, 120], ("W",), values={})
+        middle = [(run.field("W", t)[0] * x).sum() / run.field("W", t)[0].sum() for t in (0, 120)]
+        return (middle[1] - middle[0]) / 0.01946, 1, 0.03
     return measure
 
 
