@@ -39,17 +39,15 @@ template <class Real> void Solver<Real>::bend_sand_velocity() {
         const Course own = course_at(old, ax, a, b);
         const Real n = Real(1) + own.a * own.a + own.e * own.e;
         struct Sums {
-            Real U, S, E, D, B; // of Q with u, |u| + |w|, V^2, d, d^2
+            Real U, W, Z, S; // of Q with u, w, a u + e w, |u| + |w|
         };
         const auto side = [&](Real Q, const Course& from) {
-            if (Q <= Real(0)) return Sums{Real(0), Real(0), Real(0), Real(0), Real(0)};
-            const Real d = (from.a - own.a) * from.u + (from.e - own.e) * from.w;
-            const Real climb = from.a * from.u + from.e * from.w;
-            return Sums{Q * from.u, Q * (std::abs(from.u) + std::abs(from.w)),
-                        Q * (from.u * from.u + from.w * from.w + climb * climb), Q * d, Q * d * d};
+            if (Q <= Real(0)) return Sums{Real(0), Real(0), Real(0), Real(0)};
+            return Sums{Q * from.u, Q * from.w, Q * (from.a * from.u + from.e * from.w),
+                        Q * (std::abs(from.u) + std::abs(from.w))};
         };
         const auto sum = [](const Sums& one, const Sums& other) {
-            return Sums{one.U + other.U, one.S + other.S, one.E + other.E, one.D + other.D, one.B + other.B};
+            return Sums{one.U + other.U, one.W + other.W, one.Z + other.Z, one.S + other.S};
         };
         const Field<Real>& along = sand_flux.along(ax);
         const Field<Real>& across = sand_flux.across(ax);
@@ -59,9 +57,11 @@ template <class Real> void Solver<Real>::bend_sand_velocity() {
         const Real Q_N = b + 1 < ax.across() ? mean(across[ax.cross(a - 1, b + 1)], across[ax.cross(a, b + 1)]) : Real(0);
         const Sums left = side(Q_S, course_at(old, ax, a, b > 0 ? b - 1 : b));
         const Sums right = side(-Q_N, course_at(old, ax, a, b + 1 < ax.across() ? b + 1 : b));
-        const auto [U, S, E, D, B] = sum(sum(low, high), sum(left, right)); // in pairs: mirrored scenes have mirrored bits
-        if (B <= Real(1e-9) * n * E || E <= Real(1e-24) * hb) return;
-        const Real x = B / (n * E);
+        const auto [U, W, Z, S] = sum(sum(low, high), sum(left, right)); // in pairs: mirrored scenes have mirrored bits
+        const Real D = Z - (own.a * U + own.e * W);
+        const Real V2 = U * U + W * W + Z * Z;
+        if (D * D <= Real(1e-9) * n * V2 || V2 <= Real(1e-24) * hb * hb) return;
+        const Real x = D * D / (n * V2);
         const Real turned = (U + own.a * D / n) / std::sqrt(std::max(x, Real(1) - x)) - U;
         const Real acceleration = -D / (hb * P.substep);
         const Real follows = acceleration < -P.gravity ? P.gravity / -acceleration : Real(1);
