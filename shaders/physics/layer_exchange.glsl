@@ -26,12 +26,13 @@ FN void layer_exchange_if_any(REF(float) pure, REF(float) mixed, float gained_lo
     if (UNIFORM(wabs(gained_low) + wabs(gained_high) > 0.0f)) layer_exchange(pure, mixed, gained_low, gained_high, pure_height, mixed_height, dry);
 }
 
-// Depths of a face's pure water, of the cell it would flow from, that stand beside sand whose pores are not full (NUMERICS 2.4f).
+// Water that enters sand through its side and not from above (NUMERICS 2.4f): how much of the depth of pure water in either cell of a
+// face has the other cell's sand in front of it, while that has room in its pores.
 struct Beside {
     float low, high;
 };
 
-// Of one cell. surface: its water's; top: its sand's; next_*: those of the cell beside it.
+// That depth of one cell. surface, top: of its water and of its sand; next_*: the same, and the ground, of the cell in front.
 FN float depth_beside(float surface, float top, float next_surface, float next_top, float next_ground) {
     float facing = wmax(wmin(surface, next_top) - wmax(top, next_ground), 0.0f);
     return next_surface < next_top ? facing : 0.0f;

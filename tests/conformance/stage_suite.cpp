@@ -1,5 +1,6 @@
 #include "tests/conformance/stage_suite.hpp"
 #include "engine/step/plan/world_params.hpp"
+#include "shaders/effect_rows.hpp"
 #include "tests/conformance/active_tiles_check.hpp"
 #include "tests/conformance/compare.hpp"
 #include "tests/conformance/edits_check.hpp"
@@ -121,6 +122,17 @@ std::vector<CaseSpec> list() {
                     level_film                                         ? "coarse"
                     : rounding_only || unresolved || film || one_value ? "unsmoothed"
                                                                        : method);
+            }
+        }
+        if (stages[stage].name == "integrate_water_velocity") {
+            // NUMERICS 2.4f hangs on parameters that two effects set, of which the stage tests no bit.
+            for (const std::uint32_t mask : masks) {
+                const std::uint32_t whole = with_needs(mask | EFFECT_SLOPE_NORMAL | EFFECT_DRAG);
+                if ((mask & EFFECT_MIXTURE) == 0 || !is_legal(whole)) continue;
+                for (const char* const scene : {"random", "dam_break", "cliff"})
+                    cases.push_back(
+                        {"integrate_water_velocity",
+                         {{"grid", "33x17"}, {"effects", effects_text(whole)}, {"scene", scene}, {"method", "default"}}});
             }
         }
         if (stages[stage].name == "apply_sources") {
