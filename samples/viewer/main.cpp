@@ -39,7 +39,7 @@ int main_checked(int argc, char** argv) {
         ->capture_default_str();
     app.add_option("--device", options.simulation.device, "device number within the cpu or cuda backend; -1 = best")
         ->check(CLI::Range(-1, 64));
-    app.add_option("--threads", options.simulation.threads, "threads of the cpu backend; 0 = all cores")
+    app.add_option("--threads", options.simulation.threads, "threads of the cpu backend; 0 = all but one")
         ->check(CLI::Range(0, 256));
     app.add_option("--gpu", options.gpu, "Vulkan device that draws (--list-gpus); -1 = a real GPU first")
         ->check(CLI::Range(-1, 64));
