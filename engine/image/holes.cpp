@@ -56,13 +56,14 @@ std::vector<int> steps_from_ground(const Map& map, const std::vector<bool>& hole
 
 /// Evens out what the nearest heights leave of stripes.
 void smooth(Map& map, const std::vector<bool>& holes) {
-    constexpr int passes = 64;
     const auto nx = static_cast<std::size_t>(map.nx);
     std::vector<std::size_t> cells;
     for (std::size_t cell = 0; cell < holes.size(); ++cell)
         if (holes[cell]) cells.push_back(cell);
+    // For looks alone: large maps get fewer, so that none takes long.
+    const std::size_t passes = cells.empty() ? 0 : std::clamp<std::size_t>(100'000'000 / cells.size(), 2, 64);
     std::vector<float> means(cells.size());
-    for (int pass = 0; pass < passes; ++pass) {
+    for (std::size_t pass = 0; pass < passes; ++pass) {
         for (std::size_t n = 0; n < cells.size(); ++n) {
             const std::size_t cell = cells[n];
             const auto beside = [&](bool inside, std::size_t other) { return map.values[inside ? other : cell]; };

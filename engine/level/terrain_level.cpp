@@ -22,9 +22,9 @@ constexpr double RELIEF = 0.125;     // height_range of integer maps, as a share
 constexpr double HEADROOM = 1.5;     // largest_height over the highest terrain
 constexpr double LEAST_HEADROOM = 8; // [m]
 constexpr double DURATION = 60;      // per metre of cell size, so that large cells get as many steps [s]
-constexpr double RAIN = 0.15;        // falls in the first half of the duration, then streams are left [m]
-constexpr double MANNING = 0.03;     // of a clean river
-constexpr double DEGREES = 0.02;     // cells below this are in degrees rather than metres
+constexpr double RAIN = 0.15;    // falls in the first half of the duration, less on cells below 1 m; then streams are left [m]
+constexpr double MANNING = 0.03; // of a clean river
+constexpr double DEGREES = 0.02; // cells below this are in degrees rather than metres
 
 /// Integer maps: black = 0, white = the relief, whatever range of greys the map uses. NPY and ASC: as stored.
 Status scale_heights(Map& map, const std::string& path) {
@@ -92,7 +92,7 @@ Result<Level> build(const std::string& map_path, const LevelOverrides& overrides
     for (float& height : level.fields.terrain)
         height = static_cast<float>(nearest_quantum(static_cast<double>(height), quantum, Halves::away));
     settings.material.manning = MANNING;
-    const double rate = RAIN / (level.duration / 2), end = level.duration / 2;
+    const double rate = RAIN * std::min(cell, 1.0) / (level.duration / 2), end = level.duration / 2;
     settings.rain.samples = {{0.0, rate}, {end, rate}, {end * (1 + 1e-6), 0.0}};
     if (Status status = validate(settings); !status) return status;
     if (Status status = validate(level.fields, settings); !status) return status;

@@ -124,7 +124,7 @@ void write_level(const Request& request, const std::string& file, const Ground& 
     const auto [low, high] = std::minmax_element(ground.heights.begin(), ground.heights.end());
     const double reach = std::max(static_cast<double>(*high), -static_cast<double>(*low));
     const double largest = std::exp2(std::ceil(std::log2(std::max(reach * 1.5, reach + 8))));
-    const double duration = 60 * ground.dx, rain = 0.15 / (duration / 2);
+    const double duration = 60 * ground.dx, rain = 0.15 * std::min(ground.dx, 1.0) / (duration / 2);
     const Json outflow = {{"kind", "outflow"}};
     const Json level = {{"format_version", 1},
                         {"name", fs::path(request.map).stem().string()},
