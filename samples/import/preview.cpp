@@ -45,7 +45,7 @@ double gain_of(const Ground& ground) {
     if (slopes.empty()) return 1;
     const auto at = slopes.begin() + static_cast<std::ptrdiff_t>(slopes.size() * 9 / 10);
     std::nth_element(slopes.begin(), at, slopes.end());
-    return std::clamp(0.7 / *at, 0.05, 50.0);
+    return std::clamp(0.5 / *at, 0.05, 50.0);
 }
 
 } // namespace
@@ -53,9 +53,9 @@ double gain_of(const Ground& ground) {
 void write_preview(const Request& request, const std::string& file, const Ground& ground) {
     // Holes are where it matters what they are filled with.
     const Ground filled = ground_of(request, file, ground, "filled"), pits = ground_of(request, file, ground, "pit");
-    constexpr int largest = 1600, smallest = 400; // pixels of the longer side
+    constexpr int largest = 1600, smallest = 600; // pixels of the longer side
     const int longer = std::max(ground.nx, ground.ny), reduce = (longer + largest - 1) / largest,
-              enlarge = std::max(1, smallest / longer);
+              enlarge = (smallest + longer - 1) / longer;
     const int width = ground.nx / reduce * enlarge, height = ground.ny / reduce * enlarge;
     const auto [low, high] = std::minmax_element(filled.heights.begin(), filled.heights.end());
     const double least = static_cast<double>(*low), relief = std::max(static_cast<double>(*high) - least, 1e-9);
