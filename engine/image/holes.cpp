@@ -3,9 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 namespace wadi {
 namespace {
+
+/// Calls visit(neighbour) for those beside a cell.
+template <class Visit> void beside(const Map& map, std::size_t cell, const Visit& visit) {
+    const auto nx = static_cast<std::size_t>(map.nx);
+    if (cell % nx > 0) visit(cell - 1);
+    if (cell % nx + 1 < nx) visit(cell + 1);
+    if (cell >= nx) visit(cell - nx);
+    if (cell + nx < map.values.size()) visit(cell + nx);
+}
 
 /// Those of the holes that others join to the map's rim.
 std::vector<bool> joined_to_rim(const Map& map) {
@@ -22,34 +32,31 @@ std::vector<bool> joined_to_rim(const Map& map) {
     while (!front.empty()) {
         const std::size_t cell = front.back();
         front.pop_back();
-        if (cell % nx > 0) reach(cell - 1);
-        if (cell % nx + 1 < nx) reach(cell + 1);
-        if (cell >= nx) reach(cell - nx);
-        if (cell + nx < map.holes.size()) reach(cell + nx);
+        beside(map, cell, reach);
     }
     return joined;
 }
 
-/// Steps over sides from each cell to the nearest that is none of `holes`.
-std::vector<int> steps_from_ground(const Map& map, const std::vector<bool>& holes) {
-    const auto nx = static_cast<std::size_t>(map.nx);
-    std::vector<int> steps(holes.size(), -1);
+/// Steps over sides from each of `holes` to the nearest cell that is none of them.
+std::vector<std::uint16_t> steps_from_ground(const Map& map, const std::vector<bool>& holes) {
+    constexpr std::uint16_t unknown = 65535; // no way is as long
+    std::vector<std::uint16_t> steps(holes.size());
     std::vector<std::size_t> front, next;
     for (std::size_t cell = 0; cell < holes.size(); ++cell)
-        if (!holes[cell]) steps[cell] = 0, front.push_back(cell);
-    for (int step = 1; !front.empty(); ++step, front.swap(next)) {
+        if (holes[cell]) steps[cell] = unknown;
+    for (std::size_t cell = 0; cell < holes.size(); ++cell)
+        if (holes[cell])
+            beside(map, cell, [&](std::size_t other) {
+                if (!holes[other]) front.push_back(other);
+            });
+    for (std::uint16_t step = 1; !front.empty(); ++step, front.swap(next)) {
         next.clear();
-        const auto reach = [&](bool inside, std::size_t cell) {
-            if (!inside || steps[cell] >= 0) return;
-            steps[cell] = step;
-            next.push_back(cell);
-        };
-        for (const std::size_t cell : front) {
-            reach(cell % nx > 0, cell - 1);
-            reach(cell % nx + 1 < nx, cell + 1);
-            reach(cell >= nx, cell - nx);
-            reach(cell + nx < holes.size(), cell + nx);
-        }
+        for (const std::size_t cell : front)
+            beside(map, cell, [&](std::size_t other) {
+                if (steps[other] != unknown) return;
+                steps[other] = step;
+                next.push_back(other);
+            });
     }
     return steps;
 }
@@ -66,9 +73,9 @@ void smooth(Map& map, const std::vector<bool>& holes) {
     for (std::size_t pass = 0; pass < passes; ++pass) {
         for (std::size_t n = 0; n < cells.size(); ++n) {
             const std::size_t cell = cells[n];
-            const auto beside = [&](bool inside, std::size_t other) { return map.values[inside ? other : cell]; };
-            means[n] = 0.25f * ((beside(cell % nx > 0, cell - 1) + beside(cell % nx + 1 < nx, cell + 1)) +
-                                (beside(cell >= nx, cell - nx) + beside(cell + nx < holes.size(), cell + nx)));
+            const auto value = [&](bool inside, std::size_t other) { return map.values[inside ? other : cell]; };
+            means[n] = 0.25f * ((value(cell % nx > 0, cell - 1) + value(cell % nx + 1 < nx, cell + 1)) +
+                                (value(cell >= nx, cell - nx) + value(cell + nx < holes.size(), cell + nx)));
         }
         for (std::size_t n = 0; n < cells.size(); ++n) map.values[cells[n]] = means[n];
     }
@@ -77,7 +84,7 @@ void smooth(Map& map, const std::vector<bool>& holes) {
 /// Ground beside the map that falls away from it, so that what flows there goes on to the rim.
 void slope_away(Map& map, const std::vector<bool>& holes, float drop, double cell) {
     constexpr double slope = 0.02;
-    const std::vector<int> steps = steps_from_ground(map, holes);
+    const std::vector<std::uint16_t> steps = steps_from_ground(map, holes);
     smooth(map, holes);
     for (std::size_t n = 0; n < map.values.size(); ++n)
         if (holes[n]) map.values[n] -= drop + static_cast<float>(slope * cell * steps[n]);
