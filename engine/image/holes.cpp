@@ -37,9 +37,10 @@ std::vector<bool> joined_to_rim(const Map& map) {
     return joined;
 }
 
-/// Steps over sides from each of `holes` to the nearest cell that is none of them.
+/// Steps over sides from each of `holes` to the nearest cell that is none of them; beyond a map's longest side they count no
+/// further.
 std::vector<std::uint16_t> steps_from_ground(const Map& map, const std::vector<bool>& holes) {
-    constexpr std::uint16_t unknown = 65535; // no way is as long
+    constexpr std::uint16_t unknown = 65535, most = MAP_LIMIT;
     std::vector<std::uint16_t> steps(holes.size());
     std::vector<std::size_t> front, next;
     for (std::size_t cell = 0; cell < holes.size(); ++cell)
@@ -49,7 +50,7 @@ std::vector<std::uint16_t> steps_from_ground(const Map& map, const std::vector<b
             beside(map, cell, [&](std::size_t other) {
                 if (!holes[other]) front.push_back(other);
             });
-    for (std::uint16_t step = 1; !front.empty(); ++step, front.swap(next)) {
+    for (std::uint16_t step = 1; !front.empty(); step = std::min<std::uint16_t>(step + 1, most), front.swap(next)) {
         next.clear();
         for (const std::size_t cell : front)
             beside(map, cell, [&](std::size_t other) {
