@@ -114,6 +114,7 @@ class AscReader {
                               "xllcorner or xllcenter, yllcorner or yllcenter, cellsize or dx and dy, NODATA_value");
             if (given[key]) return refuse(word + " is given twice");
             given[key] = true;
+            if (key == x_origin || key == y_origin) centre_[key - x_origin] = lower_case(word).ends_with("center") ? 0.5 : 0;
             if (Status status = read_header_value(word, key, found[key]); !status) return status;
         }
         static const char* const names[] = {"ncols", "nrows", "xllcorner or xllcenter", "yllcorner or yllcenter", "cellsize"};
@@ -124,6 +125,7 @@ class AscReader {
         map_.cell_size = found[cell_size];
         cell_height_ = given[cell_height] ? found[cell_height] : map_.cell_size;
         no_data_ = found[no_data];
+        map_.origin = {found[x_origin] - centre_[0] * map_.cell_size, found[y_origin] - centre_[1] * cell_height_};
         return ok_status();
     }
 
@@ -205,14 +207,13 @@ class AscReader {
         if (Status status = check_map_size(map_.nx, static_cast<std::int64_t>(height), name_, room); !status) return status;
         map_.notes.push_back("cells of " + number_text(map_.cell_size) + " by " + number_text(cell_height_) + " m: its " +
                              std::to_string(map_.ny) + " rows are resampled to " + number_text(height));
-        map_.values = resample(map_, map_.nx, static_cast<int>(height));
-        map_.ny = static_cast<int>(height);
+        resample_map(map_, map_.nx, static_cast<int>(height));
         return ok_status();
     }
 
     Words words_;
     const std::string& name_;
-    double no_data_ = NO_DATA, cell_height_ = 0;
+    double no_data_ = NO_DATA, cell_height_ = 0, centre_[2] = {};
     Map map_;
 };
 

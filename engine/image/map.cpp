@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 namespace wadi {
 namespace {
@@ -105,23 +106,54 @@ FileReader files_in(const std::string& folder, FilesFrom from) {
     };
 }
 
-Result<Map> read_map(const std::string& path, std::optional<std::pair<int, int>> size, const FileReader& files, FileRoom& room) {
-    const std::string ending = lower_case_ending(path);
+namespace {
+
+/// Errors: bad_argument.
+Status check_form(const std::string& path, const std::string& ending, const MapForm& form) {
     const bool raw = ending == ".r16" || ending == ".r32" || ending == ".raw";
-    if (!raw && ending != ".png" && ending != ".npy" && ending != ".asc" && ending != ".hgt")
+    if (!raw && form.size) return error(Code::bad_argument, path + ": only .r16, .r32 and .raw maps are given a size");
+    if (ending != ".png" && form.packing != Packing::grey)
+        return error(Code::bad_argument, path + ": only .png maps hold heights packed into colours");
+    return ok_status();
+}
+
+Result<Map> decode_map(const std::vector<std::uint8_t>& bytes, const std::string& path, const std::string& ending,
+                       const MapForm& form, FileRoom& room) {
+    if (ending == ".raw") return decode_raw(bytes, path, form.size, &room);
+    if (ending == ".r32") return decode_r32(bytes, path, form.size, &room);
+    if (ending == ".r16") return decode_r16(bytes, path, form.size, &room);
+    if (ending == ".hgt") return decode_hgt(bytes, path, &room);
+    if (ending == ".asc") return decode_asc(bytes, path, &room);
+    return ending == ".png" ? decode_png(bytes, path, &room, form.packing) : decode_npy(bytes, path, &room);
+}
+
+template <class Values> void flip(Values& values, int nx, int ny, bool along_x, bool along_y) {
+    const auto width = static_cast<std::ptrdiff_t>(nx);
+    if (along_x)
+        for (std::ptrdiff_t j = 0; j < ny; ++j) std::reverse(values.begin() + j * width, values.begin() + (j + 1) * width);
+    if (along_y)
+        for (std::ptrdiff_t j = 0; j < ny / 2; ++j)
+            std::swap_ranges(values.begin() + j * width, values.begin() + (j + 1) * width, values.begin() + (ny - 1 - j) * width);
+}
+
+} // namespace
+
+Result<Map> read_map(const std::string& path, const MapForm& form, const FileReader& files, FileRoom& room) {
+    const std::string ending = lower_case_ending(path);
+    static const char* const endings[] = {".png", ".r16", ".r32", ".raw", ".hgt", ".npy", ".asc"};
+    if (std::find(std::begin(endings), std::end(endings), ending) == std::end(endings))
         return error(Code::bad_file, path + ": maps end in .png, .r16, .r32, .raw, .hgt, .npy or .asc");
-    if (!raw && size) return error(Code::bad_argument, path + ": only .r16, .r32 and .raw maps are given a size");
+    if (Status status = check_form(path, ending, form); !status) return status;
     // The largest map as float64 or as text, and some room for a header.
     const std::uint64_t values = std::min(static_cast<std::uint64_t>(room.left()), std::uint64_t{MAP_LIMIT} * MAP_LIMIT / 2);
     const std::uint64_t limit = values * 16 + 65536;
     auto bytes = files(path, limit);
     if (!bytes) return bytes.status();
-    if (ending == ".raw") return decode_raw(*bytes, path, size, &room);
-    if (ending == ".r32") return decode_r32(*bytes, path, size, &room);
-    if (ending == ".r16") return decode_r16(*bytes, path, size, &room);
-    if (ending == ".hgt") return decode_hgt(*bytes, path, &room);
-    if (ending == ".asc") return decode_asc(*bytes, path, &room);
-    return ending == ".png" ? decode_png(*bytes, path, &room) : decode_npy(*bytes, path, &room);
+    auto map = decode_map(*bytes, path, ending, form, room);
+    if (!map) return map;
+    flip(map->values, map->nx, map->ny, form.flip_x, form.flip_y);
+    if (!map->holes.empty()) flip(map->holes, map->nx, map->ny, form.flip_x, form.flip_y);
+    return map;
 }
 
 std::vector<float> resample(const Map& map, int nx, int ny) {
@@ -152,6 +184,26 @@ std::vector<float> resample(const Map& map, int nx, int ny) {
         }
     });
     return result;
+}
+
+void resample_map(Map& map, int nx, int ny) {
+    std::vector<float> values = resample(map, nx, ny);
+    if (!map.holes.empty()) {
+        const auto nearest = [corners = map.corners](int i, int source, int target) {
+            const double place = corners ? (i + 0.5) * (source - 1) / target + 0.5 : (i + 0.5) * source / target;
+            return static_cast<std::size_t>(std::clamp(static_cast<int>(place), 0, source - 1));
+        };
+        std::vector<bool> holes;
+        holes.reserve(values.size());
+        for (int j = 0; j < ny; ++j)
+            for (int i = 0; i < nx; ++i)
+                holes.push_back(map.holes[nearest(j, map.ny, ny) * static_cast<std::size_t>(map.nx) + nearest(i, map.nx, nx)]);
+        map.holes = std::move(holes);
+    }
+    map.values = std::move(values);
+    map.nx = nx;
+    map.ny = ny;
+    map.corners = false;
 }
 
 } // namespace wadi

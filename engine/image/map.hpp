@@ -2,6 +2,7 @@
 // field of the engine.
 #pragma once
 #include "engine/compute/status.hpp"
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <optional>
@@ -17,12 +18,36 @@ inline constexpr int MAP_LIMIT = 16384;
 struct Map {
     int nx = 0;
     int ny = 0;
-    bool integer = false;           // values are grey 0 ... 1; otherwise as stored (NPY, ASC, HGT, floats)
-    bool corners = false;           // samples lie at the corners of cells, the outer ones on the rim, and not in their middles
-    double cell_size = 0;           // as the file says (ASC, HGT) [m]; 0 where the format does not
-    std::int64_t filled = 0;        // cells of no known height, which took that of the nearest known one
-    std::vector<std::string> notes; // what was guessed, and what looks odd
-    std::vector<float> values;      // row-major nx * ny, row 0 in the south
+    bool integer = false;    // values are grey 0 ... 1; otherwise as stored (NPY, ASC, HGT, floats)
+    bool corners = false;    // samples lie at the corners of cells, the outer ones on the rim, and not in their middles
+    double cell_size = 0;    // as the file says (ASC, HGT) [m]; 0 where the format does not
+    std::int64_t filled = 0; // cells of no known height, which took that of the nearest known one
+    std::vector<bool> holes; // which they are, as values; empty where there are none
+    std::optional<std::array<double, 2>> origin; // of the south-west corner on the map that the file was cut from (ASC) [m]
+    std::vector<std::string> notes;              // what was guessed, and what looks odd
+    std::vector<float> values;                   // row-major nx * ny, row 0 in the south
+};
+
+/// What the pixels of a PNG hold.
+enum class Packing : std::uint8_t {
+    grey,      // brightness
+    terrarium, // metres in red, green and blue: 256 r + g + b / 256 - 32768 (Mapzen, AWS terrain tiles)
+    mapbox     // 0.1 (65536 r + 256 g + b) - 10000
+};
+
+/// How a file is read beside what it says itself.
+struct MapForm {
+    std::optional<std::pair<int, int>> size; // nx, ny of a raw file, square when absent; absent for the other formats
+    Packing packing = Packing::grey;         // of a PNG; grey for the other formats
+    bool flip_x = false, flip_y = false;     // east for west, north for south
+};
+
+/// What becomes of holes.
+enum class Holes : std::uint8_t {
+    filled,  // the nearest height, as the readers leave them
+    outside, // those that reach the map's rim lie lower than the ground beside them: what flows there is gone; others are filled
+    wall,    // as high as the highest ground
+    pit      // lower than the lowest
 };
 
 /// Values that the files of one level may hold together. Each file takes its own ahead of being decoded, so that small files
@@ -52,14 +77,14 @@ FileReader files_in(const std::string& folder, FilesFrom from);
 /// ok, or bad_file for a name that leads out of the folder of who names it: a path from the root or a drive on, or one with "..".
 Status check_below(const std::string& name);
 
-/// Reads a map by the ending of its name: .png, .raw, .r16, .r32, .hgt, .npy and .asc. `size` (nx, ny) is what a raw file holds,
-/// square when absent; for the other formats it must be absent. Errors: not_found, bad_file, bad_argument; the message names the
-/// file.
-Result<Map> read_map(const std::string& path, std::optional<std::pair<int, int>> size, const FileReader& files, FileRoom& room);
+/// Reads a map by the ending of its name: .png, .raw, .r16, .r32, .hgt, .npy and .asc. Errors: not_found, bad_file, bad_argument
+/// (a form that the format does not have); the message names the file.
+Result<Map> read_map(const std::string& path, const MapForm& form, const FileReader& files, FileRoom& room);
 
 /// The same from bytes already read; `name` is used in messages. `room`: null = as large as a map may be.
 /// PNG with 8 or 16 bits: grey, or the luma of a colour image; alpha is ignored. The file's first row is the north.
-Result<Map> decode_png(const std::vector<std::uint8_t>& bytes, const std::string& name, FileRoom* room = nullptr);
+Result<Map> decode_png(const std::vector<std::uint8_t>& bytes, const std::string& name, FileRoom* room = nullptr,
+                       Packing packing = Packing::grey);
 /// 16-bit samples without a header: little-endian and unsigned, unless the map is far smoother otherwise, which a note says. The
 /// file's first row is the north.
 Result<Map> decode_r16(const std::vector<std::uint8_t>& bytes, const std::string& name, std::optional<std::pair<int, int>> size,
@@ -82,6 +107,13 @@ Result<Map> decode_asc(const std::vector<std::uint8_t>& bytes, const std::string
 /// Bilinear samples at the cell centres of an nx * ny grid over the same rectangle; an exact copy when the sizes are equal and
 /// the map's samples lie in the middles of cells.
 std::vector<float> resample(const Map& map, int nx, int ny);
+
+/// Makes a map of nx * ny samples in the middles of cells of it, as resample() does; a sample is a hole where the nearest one
+/// was.
+void resample_map(Map& map, int nx, int ny);
+
+/// Gives holes their heights, by the relief of the map and its cells' width [m].
+void raise_holes(Map& map, Holes how, double cell);
 
 /// The whole of a regular file of at most `limit` bytes.
 Result<std::vector<std::uint8_t>> read_file_bytes(const std::string& path, std::uint64_t limit);

@@ -99,6 +99,8 @@ Status fill_holes(Map& map, const std::string& name) {
     map.filled = static_cast<std::int64_t>(map.values.size() - front.size());
     if (map.filled == 0) return ok_status();
     if (front.empty()) return error(Code::bad_file, name + ": every value is NODATA_value");
+    map.holes.resize(map.values.size());
+    for (std::size_t cell = 0; cell < map.values.size(); ++cell) map.holes[cell] = std::isnan(map.values[cell]);
     const auto nx = static_cast<std::size_t>(map.nx);
     for (; !front.empty(); front.pop()) {
         const std::size_t cell = front.front();

@@ -1,9 +1,11 @@
 #include "engine/image/map.hpp"
+#include "engine/image/plausible.hpp"
 #include <algorithm>
 #include <array>
 #include <climits>
 #include <cstddef>
 #include <cstdlib>
+#include <limits>
 #include <memory>
 
 namespace {
@@ -95,6 +97,23 @@ Status why_not(const std::string& name) {
     return error(Code::bad_file, name + ": PNG cannot be decoded: " + reason);
 }
 
+/// Metres of packed colours; black, which tiles have where they know nothing, is a hole.
+float unpacked(const stbi_uc* rgb, Packing packing) {
+    const double r = rgb[0], g = rgb[1], b = rgb[2];
+    if (rgb[0] == 0 && rgb[1] == 0 && rgb[2] == 0) return std::numeric_limits<float>::quiet_NaN();
+    return static_cast<float>(packing == Packing::terrarium ? 256 * r + g + b / 256 - 32768
+                                                            : 0.1 * (65536 * r + 256 * g + b) - 10000);
+}
+
+std::vector<float> to_metres(const stbi_uc* samples, int nx, int ny, Packing packing) {
+    std::vector<float> metres;
+    const auto width = static_cast<std::size_t>(nx);
+    metres.reserve(width * static_cast<std::size_t>(ny));
+    for (auto row = static_cast<std::size_t>(ny); row-- > 0;)
+        for (std::size_t i = 0; i < width; ++i) metres.push_back(unpacked(&samples[3 * (row * width + i)], packing));
+    return metres;
+}
+
 template <class Sample> std::vector<float> to_grey(const Sample* samples, int nx, int ny, float white) {
     std::vector<float> grey;
     const auto width = static_cast<std::size_t>(nx);
@@ -106,7 +125,7 @@ template <class Sample> std::vector<float> to_grey(const Sample* samples, int nx
 
 } // namespace
 
-Result<Map> decode_png(const std::vector<std::uint8_t>& bytes, const std::string& name, FileRoom* room) {
+Result<Map> decode_png(const std::vector<std::uint8_t>& bytes, const std::string& name, FileRoom* room, Packing packing) {
     const std::size_t ihdr_end = SIGNATURE_BYTES + 25;
     if (bytes.size() < ihdr_end || bytes.size() > INT_MAX || !std::equal(SIGNATURE.begin(), SIGNATURE.end(), bytes.begin()))
         return error(Code::bad_file, name + ": not a PNG file");
@@ -131,13 +150,22 @@ Result<Map> decode_png(const std::vector<std::uint8_t>& bytes, const std::string
     int ny = 0;
     int found = 0;
     Map map;
-    map.integer = true;
+    const bool packed = packing != Packing::grey;
+    if (packed && (bytes[24] != 8 || bytes[25] == 0 || bytes[25] == 4))
+        return error(Code::bad_file, name + ": heights are packed into colours of 8 bits each, which this PNG has not");
+    map.integer = !packed;
     stbi__g_failure_reason = nullptr;
     // Chunks of data are put together first. Interlaced rows are more, shorter and padded; some writers pad the end.
     constexpr std::size_t smallest = 4096;
     grew_past = false;
     grow_most = std::max(2 * bytes.size(), 4 * static_cast<std::size_t>(decoded)) + smallest;
-    if (stbi_is_16_bit_from_memory(bytes.data(), size) != 0) {
+    if (packed) {
+        constexpr int rgb = 3;
+        const std::unique_ptr<stbi_uc, void (*)(void*)> samples(stbi_load_from_memory(bytes.data(), size, &nx, &ny, &found, rgb),
+                                                                stbi_image_free);
+        if (!samples) return why_not(name);
+        map.values = to_metres(samples.get(), nx, ny, packing);
+    } else if (stbi_is_16_bit_from_memory(bytes.data(), size) != 0) {
         const std::unique_ptr<stbi_us, void (*)(void*)> samples(stbi_load_16_from_memory(bytes.data(), size, &nx, &ny, &found, 1),
                                                                 stbi_image_free);
         if (!samples) return why_not(name);
@@ -150,6 +178,8 @@ Result<Map> decode_png(const std::vector<std::uint8_t>& bytes, const std::string
     }
     map.nx = nx;
     map.ny = ny;
+    if (packed)
+        if (Status status = fill_holes(map, name); !status) return status;
     return map;
 }
 

@@ -208,18 +208,13 @@ Result<Map> decode_hgt(const Bytes& bytes, const std::string& name, FileRoom* ro
     const double dy = along_meridian / cells, dx = south ? along_equator * std::cos(middle) / cells : dy;
     const double rows = std::round(cells * dy / dx);
     if (Status status = check_map_size(cells, static_cast<std::int64_t>(rows), name, room); !status) return status;
-    Map map;
-    map.nx = cells;
-    map.ny = static_cast<int>(rows);
-    map.cell_size = dx;
-    map.filled = tile.filled;
-    map.notes = std::move(tile.notes);
-    map.values = resample(tile, map.nx, map.ny);
-    map.notes.push_back(south ? "a tile of a degree at latitude " + number_text(*south) + ": " + size_text(map.nx, map.ny) +
-                                    " square cells of " + number_text(dx) + " m"
-                              : "its name says no latitude, as N46E007.hgt does: cells of " + number_text(dx) +
-                                    " m, as at the equator");
-    return map;
+    resample_map(tile, cells, static_cast<int>(rows));
+    tile.cell_size = dx;
+    tile.notes.push_back(south ? "a tile of a degree at latitude " + number_text(*south) + ": " + size_text(tile.nx, tile.ny) +
+                                     " square cells of " + number_text(dx) + " m"
+                               : "its name says no latitude, as N46E007.hgt does: cells of " + number_text(dx) +
+                                     " m, as at the equator");
+    return tile;
 }
 
 } // namespace wadi

@@ -4,6 +4,7 @@
 #include "engine/level/draw_work.hpp"
 #include "engine/level/lakes.hpp"
 #include "engine/level/layers.hpp"
+#include "engine/level/thin_lines.hpp"
 #include "engine/settings/data/quanta.hpp"
 #include "engine/settings/data/setting_table.hpp"
 #include "engine/settings/rules/messages.hpp"
@@ -43,10 +44,10 @@ inline double combined(double current, double value, Combine combine) {
     return current;
 }
 
-/// A layer's map as its file has it; of ground, odd values are noted.
-Result<Map> open_map(const MapSource& source, const std::string& path, LevelFiles& files, std::vector<std::string>& warnings,
-                     bool ground = false) {
-    auto map = read_map(source.file, source.size, files.read, files.room);
+/// A layer's map as its file has it, stretched over a grid of that length [m]; of ground, odd values are noted.
+Result<Map> open_map(const MapSource& source, const std::string& path, LevelFiles& files, double length,
+                     std::vector<std::string>& warnings, bool ground = false) {
+    auto map = read_map(source.file, source.form, files.read, files.room);
     if (!map) // a bad argument of ours is a bad field of the level's author
         return error(map.status().code == Code::bad_argument ? Code::bad_file : map.status().code,
                      path + ".file: " + map.status().message);
@@ -63,6 +64,7 @@ Result<Map> open_map(const MapSource& source, const std::string& path, LevelFile
                              " samples are taken for the corners of cells, as engines have them; \"samples\": \"cells\" or "
                              "\"corners\" says which they are");
     if (ground) note_odd_ground(*map);
+    raise_holes(*map, source.holes, length / (map->corners ? map->nx - 1 : map->nx));
     add_map_notes(*map, path + ".file: " + source.file, warnings);
     return map;
 }
@@ -254,7 +256,8 @@ class Drawing {
     Result<bool> draw_centers(const Layer& layer, LayerTarget target, std::vector<float>& field, std::vector<float>* at_cut) {
         std::vector<float> heights;
         if (layer.map) {
-            const auto map = open_map(*layer.map, layer.path, files_, warnings_, target == LayerTarget::terrain);
+            const auto map =
+                open_map(*layer.map, layer.path, files_, grid_.nx * grid_.dx, warnings_, target == LayerTarget::terrain);
             if (!map) return map.status();
             auto values = values_of(*map, *layer.map, layer.path, grid_.nx, grid_.ny);
             if (!values) return values.status();
@@ -265,21 +268,25 @@ class Drawing {
             if (at_cut != nullptr)
                 for (const std::size_t cell : cut_.cells) at_cut->push_back(heights[cell]);
         }
-        const CellRange range = reach_of(layer, grid_, lowest_);
+        CellRange range = reach_of(layer, grid_, lowest_);
+        const std::vector<std::size_t> line =
+            target == LayerTarget::terrain ? thin_line(layer, grid_) : std::vector<std::size_t>();
+        if (!line.empty()) range = {0, grid_.nx, 0, grid_.ny};
         const auto rows = static_cast<std::size_t>(std::max(range.end_y - range.begin_y, 0));
         std::atomic<bool> changed = false;
         in_bands(rows, row_band(static_cast<std::size_t>(std::max(range.end_x - range.begin_x, 0))),
                  [&](std::size_t, std::size_t begin, std::size_t end) {
                      for (std::size_t row = begin; row < end; ++row)
-                         if (draw_row(layer, target, field, heights, range, range.begin_y + static_cast<int>(row)))
+                         if (draw_row(layer, target, field, heights, line, range, range.begin_y + static_cast<int>(row)))
                              changed = true;
                  });
         return changed.load();
     }
 
-    /// Draws a layer at the middles of a row of its range; `heights`: its map. Whether it changed anything.
+    /// Draws a layer at the middles of a row of its range; `heights`: its map; `line`: its thin_line(). Whether it changed
+    /// anything.
     bool draw_row(const Layer& layer, LayerTarget target, std::vector<float>& field, const std::vector<float>& heights,
-                  const CellRange& range, int j) const {
+                  const std::vector<std::size_t>& line, const CellRange& range, int j) const {
         constexpr int piece = 64;
         std::array<double, piece> x, relative;
         const double y = cell_center(grid_, 0, j)[1];
@@ -296,6 +303,9 @@ class Drawing {
             } else {
                 for (std::size_t k = 0; k < count; ++k) x[k] = column_center(grid_, first + static_cast<int>(k));
                 relative_heights(layer.shape, {x.data(), count}, y, {relative.data(), count});
+                for (auto cell = std::lower_bound(line.begin(), line.end(), start); cell != line.end() && *cell < start + count;
+                     ++cell)
+                    relative[*cell - start] = 0;
             }
             for (std::size_t k = 0; k < count; ++k) {
                 const float current = cells[k];
@@ -356,22 +366,11 @@ class Drawing {
         field[cell] = static_cast<float>(nearest_quantum(height, grid_.quantum, Halves::away));
     }
 
-    /// Terrain is drawn at the middles of cells: a wall holds where its cells touch by their sides.
     void warn_thin(const Layer& layer) {
-        const Shape& shape = layer.shape;
-        const bool raises = layer.top > 0 && layer.combine != Combine::subtract && layer.combine != Combine::min;
-        if (layer.map || !raises || (shape.kind != ShapeKind::ridge && shape.kind != ShapeKind::box)) return;
-        double width = shape.width, least = grid_.dx;
-        if (shape.kind == ShapeKind::box)
-            width = std::min(shape.to[0] - shape.from[0], (shape.to[1] - shape.from[1]) * grid_.stretch_y);
-        for (std::size_t n = 1; n < shape.points.size(); ++n) {
-            const Point &a = shape.points[n - 1], &b = shape.points[n];
-            if (a[0] != b[0] && a[1] != b[1]) least = std::sqrt(2.0) * grid_.dx; // its cells may touch by their corners alone
-        }
-        if (width >= least * (1 - 1e-9)) return;
-        warnings_.push_back(layer.path + ": too thin to hold water back on this grid: a width of " + number_text(width) +
-                            " m on cells of " + number_text(grid_.dx) + " m leaves gaps, through which water passes; from " +
-                            number_text(least) + " m on there are none");
+        if (thin_line_work(layer, grid_) == 0) return;
+        warnings_.push_back(layer.path + ": a width of " + number_text(width_of(layer.shape, grid_)) +
+                            " m is thin for cells of " + number_text(grid_.dx) +
+                            " m; it is drawn as wide as the cells that its middle runs through, without gaps");
     }
 
     void warn_unchanged(const std::vector<Layer>& layers, const std::vector<char>& changed) {
@@ -415,6 +414,8 @@ Status draw_layers(const LayerLists& lists, const LevelGrid& grid, LevelFiles& f
                    std::vector<std::string>& warnings) {
     for (const auto* list : {&lists.terrain, &lists.sand, &lists.water})
         if (Status status = files.take_work(drawing_work(pointers(*list), grid, files.work_most)); !status) return status;
+    for (const Layer& layer : lists.terrain)
+        if (Status status = files.take_work(thin_line_work(layer, grid)); !status) return status;
     return Drawing(lists, grid, files, fields, warnings).draw();
 }
 
@@ -451,7 +452,7 @@ Status draw_velocities(const std::vector<VelocityLayer>& layers, bool of_sand, c
             velocity = to;
         };
         if (layer.map) {
-            const auto map = open_map(*layer.map, layer.path, files, warnings);
+            const auto map = open_map(*layer.map, layer.path, files, grid.nx * grid.dx, warnings);
             if (!map) return map.status();
             const auto values = values_of(*map, *layer.map, layer.path, grid.nx, grid.ny);
             if (!values) return values.status();

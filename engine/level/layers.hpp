@@ -44,9 +44,10 @@ struct MapMeaning {
 struct MapSource {
     std::string file;
     MapMeaning meaning;
-    std::optional<std::pair<int, int>> size; // of a raw map
-    std::optional<bool> corners;             // where samples lie; guessed when absent
-    bool grey_range = false;                 // grey 0 ... 1 becomes min ... max; otherwise value * scale + offset
+    MapForm form;
+    Holes holes = Holes::filled;
+    std::optional<bool> corners; // where samples lie; guessed when absent
+    bool grey_range = false;     // grey 0 ... 1 becomes min ... max; otherwise value * scale + offset
     double min = 0;
     double max = 1;
     bool scale_given = false;

@@ -40,6 +40,7 @@ Status read_root(const Json& json, LevelFiles& files, Level& level, Layers& laye
     root.string("name", level.name);
     root.string("description", level.description);
     root.number("duration", level.duration, 0, DURATION_MOST);
+    root.pair("origin", level.origin, -POSITION_MOST, POSITION_MOST);
     const auto accuracies = accuracy_names();
     int accuracy = -1;
     root.choice("accuracy", accuracies, accuracy);

@@ -3,6 +3,7 @@
 #include "engine/compute/status.hpp"
 #include "engine/image/map.hpp"
 #include "engine/settings/data/settings.hpp"
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@ struct Level {
     Settings settings;
     InitialFields fields;
     double duration = 10;              // [s] a recorder runs by default
+    std::array<double, 2> origin = {}; // of the grid's south-west corner on the map that the level was cut from [m]
     std::vector<std::string> variants; // names that LevelOverrides::variant takes
     std::vector<std::string> warnings; // advice with numbers, not errors
 };
@@ -47,7 +49,7 @@ Result<Level> parse_level(const std::string& text, const std::string& folder, co
 
 /// A level from a terrain map alone: the map's size unless overridden, cells of 1 m or the cellsize of an ASC map, dt and
 /// duration in proportion. Integer maps are scaled so that their relief is 1/8 of the longer side, NPY and ASC heights are
-/// metres as stored. A water source stands at the highest ground and every side is an outflow.
+/// metres as stored. Rain falls for half of the duration, every side is an outflow, and so are holes that reach the rim.
 Result<Level> level_from_terrain(const std::string& map_path, const LevelOverrides& overrides);
 
 /// Advice with numbers: waves slower than they should be for this dx and dt, cohesion too weak to hold a wall, columns near

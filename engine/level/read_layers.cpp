@@ -136,12 +136,20 @@ MapSource read_map_source(ObjectReader& reader, const MapMeaning& meaning) {
     if (reader.find("size") != nullptr) {
         Point size = {1, 1};
         reader.pair("size", size, 1, MAP_LIMIT);
-        map.size = {static_cast<int>(size[0]), static_cast<int>(size[1])};
-        if (size[0] != map.size->first || size[1] != map.size->second) reader.fail("size", "must be whole numbers");
+        map.form.size = {static_cast<int>(size[0]), static_cast<int>(size[1])};
+        if (size[0] != map.form.size->first || size[1] != map.form.size->second) reader.fail("size", "must be whole numbers");
     }
     int samples = -1;
     reader.choice("samples", {"cells", "corners"}, samples);
     if (samples >= 0) map.corners = samples == 1;
+    int packing = -1, flip = -1, holes = 0;
+    reader.choice("packed", {"terrarium", "mapbox"}, packing);
+    map.form.packing = static_cast<Packing>(packing + 1);
+    reader.choice("flip", {"x", "y", "xy"}, flip);
+    map.form.flip_x = flip == 0 || flip == 2;
+    map.form.flip_y = flip > 0;
+    reader.choice("holes", {"filled", "outside", "wall", "pit"}, holes);
+    map.holes = static_cast<Holes>(holes);
     return map;
 }
 

@@ -16,16 +16,15 @@
 namespace wadi {
 namespace {
 
-constexpr double CELL = 1;               // where the map does not say [m]
-constexpr double DT = 0.05;              // per metre of cell size: waves on 8 m of water keep their speed [s]
-constexpr double RELIEF = 0.125;         // height_range of integer maps, as a share of the longer side
-constexpr double HEADROOM = 1.5;         // largest_height over the highest terrain
-constexpr double LEAST_HEADROOM = 8;     // [m]
-constexpr double SOURCE_SHARE = 0.03;    // radius of the spring, as a share of the shorter side
-constexpr double SOURCE_LEAST_CELLS = 2; // and at least this many cells
-constexpr double SOURCE_RATE = 0.1;      // [m/s]
-constexpr double DURATION = 60;          // per metre of cell size, so that large cells get as many steps [s]
-constexpr double DEGREES = 0.02;         // cells below this are in degrees rather than metres
+constexpr double CELL = 1;           // where the map does not say [m]
+constexpr double DT = 0.02;          // per metre of cell size: streams of 17 m/s and waves of 27 keep their speed [s]
+constexpr double RELIEF = 0.125;     // height_range of integer maps, as a share of the longer side
+constexpr double HEADROOM = 1.5;     // largest_height over the highest terrain
+constexpr double LEAST_HEADROOM = 8; // [m]
+constexpr double DURATION = 60;      // per metre of cell size, so that large cells get as many steps [s]
+constexpr double RAIN = 0.15;    // falls in the first half of the duration, less on cells below 1 m; then streams are left [m]
+constexpr double MANNING = 0.03; // of a clean river
+constexpr double DEGREES = 0.02; // cells below this are in degrees rather than metres
 
 /// Integer maps: black = 0, white = the relief, whatever range of greys the map uses. NPY and ASC: as stored.
 Status scale_heights(Map& map, const std::string& path) {
@@ -41,37 +40,31 @@ Status scale_heights(Map& map, const std::string& path) {
     return ok_status();
 }
 
-Source spring(const std::vector<float>& terrain, const Grid& grid) {
-    const auto highest = static_cast<std::size_t>(std::max_element(terrain.begin(), terrain.end()) - terrain.begin());
-    const auto width = static_cast<std::size_t>(grid.nx);
-    const double lengths[2] = {grid.nx * grid.dx, grid.ny * grid.dx};
-    const double at[2] = {(static_cast<double>(highest % width) + 0.5) * grid.dx,
-                          (static_cast<double>(highest / width) + 0.5) * grid.dx};
-    Source source;
-    source.radius = std::max(SOURCE_SHARE * std::min(lengths[0], lengths[1]), SOURCE_LEAST_CELLS * grid.dx);
-    for (std::size_t axis = 0; axis < 2; ++axis) {
-        // Inside by its radius where the grid is wide enough: at the rim the water would leave at once.
-        const double margin = std::min(source.radius, lengths[axis] / 2);
-        source.center[axis] = std::clamp(at[axis], margin, lengths[axis] - margin);
-    }
-    source.rate.samples = {{0.0, SOURCE_RATE}};
-    return source;
+/// Holes that reach the rim are what the survey left out: outside, where water goes.
+void leave_outside(Map& map, double cell) {
+    const std::int64_t before = map.filled;
+    raise_holes(map, Holes::outside, cell);
+    if (map.filled == before) return;
+    map.notes.push_back(
+        std::to_string(before - map.filled) +
+        " cells without a height reach the map's rim: taken for outside, where water goes and does not come back; "
+        "\"holes\" of a level's map says otherwise");
 }
 
 Result<Level> build(const std::string& map_path, const LevelOverrides& overrides) {
     FileRoom room(std::int64_t{MAP_LIMIT} * MAP_LIMIT);
-    auto map = read_map(map_path, std::nullopt, files_in("", FilesFrom::anywhere), room); // named by the host
+    auto map = read_map(map_path, {}, files_in("", FilesFrom::anywhere), room); // named by the host
     if (!map) return map.status();
     map->corners = looks_like_corners(map->nx, map->ny);
     note_odd_ground(*map);
     if (map->corners) {
         map->notes.push_back(std::to_string(map->nx) + " x " + std::to_string(map->ny) +
                              " samples are taken for the corners of cells, as engines have them");
-        map->values = resample(*map, map->nx - 1, map->ny - 1);
-        --map->nx;
-        --map->ny;
-        map->corners = false;
+        if (map->origin)
+            for (double& at : *map->origin) at += map->cell_size / 2; // the grid begins at the middle of the file's first cell
+        resample_map(*map, map->nx - 1, map->ny - 1);
     }
+    leave_outside(*map, map->cell_size > 0 ? map->cell_size : CELL);
     if (Status status = scale_heights(*map, map_path); !status) return status;
 
     const double cell = map->cell_size > 0 ? map->cell_size : CELL;
@@ -80,7 +73,8 @@ Result<Level> build(const std::string& map_path, const LevelOverrides& overrides
 
     Level level;
     level.name = std::filesystem::path(map_path).stem().string();
-    level.description = "Water springs from the highest place and leaves over the sides.";
+    level.description = "Rain on a map, which leaves over the sides.";
+    level.origin = map->origin.value_or(level.origin);
     level.duration = DURATION * cell;
     Settings& settings = level.settings;
     settings.grid = {map->nx, map->ny, cell};
@@ -97,7 +91,9 @@ Result<Level> build(const std::string& map_path, const LevelOverrides& overrides
     level.fields.terrain = resample(*map, grid->nx, grid->ny);
     for (float& height : level.fields.terrain)
         height = static_cast<float>(nearest_quantum(static_cast<double>(height), quantum, Halves::away));
-    settings.sources.push_back(spring(level.fields.terrain, settings.grid));
+    settings.material.manning = MANNING;
+    const double rate = RAIN * std::min(cell, 1.0) / (level.duration / 2), end = level.duration / 2;
+    settings.rain.samples = {{0.0, rate}, {end, rate}, {end * (1 + 1e-6), 0.0}};
     if (Status status = validate(settings); !status) return status;
     if (Status status = validate(level.fields, settings); !status) return status;
     level.warnings = level_warnings(settings, level.fields);

@@ -4,7 +4,9 @@
 #include "engine/settings/data/accuracy_presets.hpp"
 #include "plugin/src/abi.hpp"
 #include "plugin/src/vulkan_host.hpp"
+#include <algorithm>
 #include <cstdio>
+#include <thread>
 
 using namespace wadi;
 using namespace wadi::plugin;
@@ -65,6 +67,14 @@ std::shared_ptr<const compute::Allocator> to_allocator(const wadi_device_options
         }});
 }
 
+/// By default one core is left to the host's frame: updates beside threads on every core wait for the system to give one back.
+/// A host's job system is its own to divide.
+int threads_of(const wadi_device_options& options) {
+    if (options.threads != 0 || options.run_jobs != nullptr) return options.threads;
+    constexpr int most = 256; // of the CPU backend
+    return std::clamp(static_cast<int>(std::thread::hardware_concurrency()) - 1, 1, most);
+}
+
 Result<std::unique_ptr<compute::Device>> open(const wadi_device_options& options, const compute::Log& log) {
     if (options.device < -1)
         return error(Code::bad_argument, "wadi_device_options.device: " + std::to_string(options.device) + " is below -1");
@@ -73,7 +83,7 @@ Result<std::unique_ptr<compute::Device>> open(const wadi_device_options& options
     compute::DeviceOptions o;
     o.log = log;
     o.allocator = to_allocator(options);
-    o.threads = options.threads;
+    o.threads = threads_of(options);
     o.run_jobs = to_run_jobs(options);
     o.validate = options.validate != 0;
     if (options.vulkan_host != nullptr) {
@@ -151,7 +161,8 @@ wadi_result host(Result<Level> level, const wadi_device_options& options, wadi_w
         log(2, level->name + ": " + std::to_string(grid.nx) + " x " + std::to_string(grid.ny) + " cells on " +
                    (*world)->device().capabilities().name + ", effects " + effect_names((*world)->state().effects().mask));
     }
-    *id = plugin::worlds().add({std::move(*world), level->name, level->duration, level->warnings, options.threads, {}});
+    *id = plugin::worlds().add(
+        {std::move(*world), level->name, level->duration, level->warnings, level->origin, options.threads, {}});
     return report(ok_status());
 }
 

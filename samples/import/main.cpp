@@ -1,217 +1,105 @@
-// wadi-import: a GeoTIFF or TIFF of heights as a level: terrain.asc and level.json in a folder.
+// wadi-import: a map of heights as a level: level.json and the map in a folder.
+#include "level.hpp"
+#ifdef WADI_IMPORT_TIFF
+#include "tiff.hpp"
+#endif
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <cstdio>
-#include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <limits>
-#include <memory>
-#include <numbers>
-#include <optional>
-#include <string>
-#include <tiffio.h>
-#include <vector>
+#include <cstdlib>
 
+namespace import_map {
 namespace {
 
-constexpr std::uint32_t MOST_SAMPLES = 16384; // along one side, as maps of levels
-constexpr std::uint32_t PIXEL_SCALE = 33550, TIE_POINT = 33922, GEO_KEYS = 34735, GDAL_NODATA = 42113;
+namespace fs = std::filesystem;
 
-/// Tags of GeoTIFF and GDAL that libtiff does not know by itself.
-void add_tags(TIFF* tiff) {
-    static const TIFFFieldInfo fields[] = {
-        {PIXEL_SCALE, TIFF_VARIABLE, TIFF_VARIABLE, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("ModelPixelScale")},
-        {TIE_POINT, TIFF_VARIABLE, TIFF_VARIABLE, TIFF_DOUBLE, FIELD_CUSTOM, 1, 1, const_cast<char*>("ModelTiepoint")},
-        {GEO_KEYS, TIFF_VARIABLE, TIFF_VARIABLE, TIFF_SHORT, FIELD_CUSTOM, 1, 1, const_cast<char*>("GeoKeyDirectory")},
-        {GDAL_NODATA, TIFF_VARIABLE, TIFF_VARIABLE, TIFF_ASCII, FIELD_CUSTOM, 1, 0, const_cast<char*>("GDAL_NODATA")},
-    };
-    TIFFMergeFieldInfo(tiff, fields, static_cast<std::uint32_t>(std::size(fields)));
+bool is_tiff(const std::string& map) {
+    std::string ending = fs::path(map).extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return ending == ".tif" || ending == ".tiff";
 }
 
-struct Heights {
-    std::uint32_t nx = 0, ny = 0;
-    double dx = 1, dy = 1, west = 0, south = 0; // of cells, of the corner
-    bool has_cells = false, degrees = false;
-    std::optional<double> nodata;
-    std::vector<float> rows; // from the north; holes are NaN
-    std::vector<std::string> notes;
-};
-
-[[noreturn]] void fail(const std::string& text) {
-    std::fprintf(stderr, "error: %s\n", text.c_str());
-    std::exit(2);
-}
-
-template <class T> double number(const std::uint8_t* at) {
-    T value;
-    std::memcpy(&value, at, sizeof value);
-    return static_cast<double>(value);
-}
-
-double sample(const std::uint8_t* at, int bits, int format, const std::string& name) {
-    if (format == SAMPLEFORMAT_IEEEFP && bits == 32) return number<float>(at);
-    if (format == SAMPLEFORMAT_IEEEFP && bits == 64) return number<double>(at);
-    const bool is_signed = format == SAMPLEFORMAT_INT;
-    if (bits == 8) return is_signed ? number<std::int8_t>(at) : number<std::uint8_t>(at);
-    if (bits == 16) return is_signed ? number<std::int16_t>(at) : number<std::uint16_t>(at);
-    if (bits == 32) return is_signed ? number<std::int32_t>(at) : number<std::uint32_t>(at);
-    fail(name + ": samples of " + std::to_string(bits) + " bits are not read; 8, 16 and 32, and floats of 32 and 64 are");
-}
-
-void read_places(TIFF* tiff, Heights& heights) {
-    std::uint16_t count = 0;
-    const double* values = nullptr;
-    if (TIFFGetField(tiff, PIXEL_SCALE, &count, &values) == 1 && count >= 2 && values[0] > 0 && values[1] > 0) {
-        heights.has_cells = true;
-        heights.dx = values[0];
-        heights.dy = values[1];
+/// The map in the folder, by its name there; a TIFF becomes an Esri ASCII grid.
+std::string put_into_folder([[maybe_unused]] Request& request) {
+    if (is_tiff(request.map)) {
+#ifdef WADI_IMPORT_TIFF
+        const Heights heights = read_tiff(request.map);
+        write_grid(heights, (request.folder / "terrain.asc").string());
+        for (const std::string& note : heights.notes) std::fprintf(stderr, "note: %s: %s\n", request.map.c_str(), note.c_str());
+        if (request.samples.empty()) request.samples = "cells"; // as GeoTIFF says
+        return "terrain.asc";
+#else
+        fail(request.map + ": this build has no libtiff (libtiff-dev)");
+#endif
     }
-    if (TIFFGetField(tiff, TIE_POINT, &count, &values) == 1 && count >= 6) {
-        heights.west = values[3] - values[0] * heights.dx;
-        heights.south = values[4] + values[1] * heights.dy - heights.ny * heights.dy;
+    const fs::path name = fs::path(request.map).filename();
+    std::error_code failure;
+    if (!fs::equivalent(request.map, request.folder / name, failure)) {
+        failure.clear();
+        fs::copy_file(request.map, request.folder / name, fs::copy_options::overwrite_existing, failure);
+        if (failure) fail(request.map + ": " + failure.message());
     }
-    const std::uint16_t* keys = nullptr;
-    if (TIFFGetField(tiff, GEO_KEYS, &count, &keys) == 1)
-        for (std::uint32_t n = 4; n + 3 < count; n += 4)
-            heights.degrees |= keys[n] == 1024 && keys[n + 3] == 2; // model: geographic
-    const char* text = nullptr;
-    if (TIFFGetField(tiff, GDAL_NODATA, &text) == 1 && text != nullptr) heights.nodata = std::strtod(text, nullptr);
+    return name.string();
 }
 
-/// Columns [x, x + count) of a row, from samples side by side.
-void put(Heights& heights, std::uint32_t x, std::uint32_t y, std::uint32_t count, const std::uint8_t* from, int bits, int format,
-         std::size_t pixel, const std::string& name) {
-    for (std::uint32_t i = 0; i < count && x + i < heights.nx; ++i) {
-        const double value = sample(from + i * pixel, bits, format, name);
-        const bool hole = !std::isfinite(value) || std::fabs(value) > 3.39e38 ||
-                          (heights.nodata && std::fabs(value - *heights.nodata) <= 1e-6 * std::fabs(*heights.nodata));
-        heights.rows[std::size_t{y} * heights.nx + x + i] = hole ? std::nanf("") : static_cast<float>(value);
+int run(Request request) {
+    if (request.folder.empty()) request.folder = fs::path(request.map).stem();
+    std::error_code failure;
+    fs::create_directories(request.folder, failure);
+    if (failure) fail(request.folder.string() + ": " + failure.message());
+    const std::string file = put_into_folder(request);
+    const Ground ground = ground_of(request, file, look_at(request, file), request.holes);
+    write_level(request, file, ground);
+    for (const std::string& warning : ground.warnings) std::fprintf(stderr, "note: %s\n", warning.c_str());
+    const auto [low, high] = std::minmax_element(ground.heights.begin(), ground.heights.end());
+    std::printf("%s: %d x %d cells of %g m, heights %g ... %g m, south-west corner at (%.12g, %.12g) -> %s\n",
+                request.map.c_str(), ground.nx, ground.ny, ground.dx, static_cast<double>(*low), static_cast<double>(*high),
+                ground.origin[0], ground.origin[1], (request.folder / "level.json").string().c_str());
+    if (request.preview) {
+        write_preview(request, file, ground);
+        std::printf("%s: shaded relief, holes in red\n", (request.folder / "preview.png").string().c_str());
     }
-}
-
-Heights read_tiff(const std::string& name) {
-    TIFFSetTagExtender(add_tags);
-    const std::unique_ptr<TIFF, void (*)(TIFF*)> tiff(TIFFOpen(name.c_str(), "r"), TIFFClose);
-    if (!tiff) fail(name + ": cannot be read as a TIFF");
-    Heights heights;
-    std::uint16_t bits = 1, format = SAMPLEFORMAT_UINT, samples = 1, planes = PLANARCONFIG_CONTIG;
-    TIFFGetField(tiff.get(), TIFFTAG_IMAGEWIDTH, &heights.nx);
-    TIFFGetField(tiff.get(), TIFFTAG_IMAGELENGTH, &heights.ny);
-    TIFFGetFieldDefaulted(tiff.get(), TIFFTAG_BITSPERSAMPLE, &bits);
-    TIFFGetFieldDefaulted(tiff.get(), TIFFTAG_SAMPLEFORMAT, &format);
-    TIFFGetFieldDefaulted(tiff.get(), TIFFTAG_SAMPLESPERPIXEL, &samples);
-    TIFFGetFieldDefaulted(tiff.get(), TIFFTAG_PLANARCONFIG, &planes);
-    if (heights.nx < 1 || heights.ny < 1 || heights.nx > MOST_SAMPLES || heights.ny > MOST_SAMPLES)
-        fail(name + ": " + std::to_string(heights.nx) + " x " + std::to_string(heights.ny) +
-             " samples are outside 1 ... 16384 a side");
-    if (bits % 8 != 0) fail(name + ": samples of " + std::to_string(bits) + " bits are not heights");
-    read_places(tiff.get(), heights);
-    if (samples > 1) heights.notes.push_back("it has " + std::to_string(samples) + " values per sample; the first is taken");
-    heights.rows.resize(std::size_t{heights.nx} * heights.ny);
-    const std::size_t pixel = std::size_t{bits} / 8 * (planes == PLANARCONFIG_CONTIG ? samples : 1);
-    if (TIFFIsTiled(tiff.get())) {
-        std::uint32_t width = 0, length = 0;
-        TIFFGetField(tiff.get(), TIFFTAG_TILEWIDTH, &width);
-        TIFFGetField(tiff.get(), TIFFTAG_TILELENGTH, &length);
-        const tmsize_t bytes = TIFFTileSize(tiff.get());
-        if (width < 1 || length < 1 || bytes < 1 || static_cast<std::size_t>(bytes) < pixel * width * length ||
-            bytes > (tmsize_t{1} << 30))
-            fail(name + ": damaged tiles");
-        std::vector<std::uint8_t> tile(static_cast<std::size_t>(bytes));
-        for (std::uint32_t y = 0; y < heights.ny; y += length)
-            for (std::uint32_t x = 0; x < heights.nx; x += width) {
-                if (TIFFReadTile(tiff.get(), tile.data(), x, y, 0, 0) < 0) fail(name + ": a tile cannot be read");
-                for (std::uint32_t j = 0; j < length && y + j < heights.ny; ++j)
-                    put(heights, x, y + j, width, &tile[j * width * pixel], bits, format, pixel, name);
-            }
-        return heights;
-    }
-    const tmsize_t bytes = TIFFScanlineSize(tiff.get());
-    if (bytes < 1 || static_cast<std::size_t>(bytes) < pixel * heights.nx) fail(name + ": damaged rows");
-    std::vector<std::uint8_t> row(static_cast<std::size_t>(bytes));
-    for (std::uint32_t y = 0; y < heights.ny; ++y) {
-        if (TIFFReadScanline(tiff.get(), row.data(), y, 0) < 0) fail(name + ": row " + std::to_string(y) + " cannot be read");
-        put(heights, 0, y, heights.nx, row.data(), bits, format, pixel, name);
-    }
-    return heights;
-}
-
-/// Degrees become metres at the middle of the map: an equirectangular projection, right for small maps.
-void to_metres(Heights& heights) {
-    if (!heights.has_cells) {
-        heights.notes.emplace_back("it does not say how large its cells are: 1 m");
-        return;
-    }
-    constexpr double along_meridian = 111132, along_equator = 111320; // of a degree [m]
-    if (!heights.degrees && heights.dx >= 0.02) return;
-    const double middle = heights.south + heights.ny * heights.dy / 2;
-    heights.notes.push_back("its cells of " + std::to_string(heights.dx) + " degrees are taken as metres at latitude " +
-                            std::to_string(middle));
-    heights.dx *= along_equator * std::cos(middle * std::numbers::pi / 180);
-    heights.dy *= along_meridian;
-    heights.west = heights.south = 0;
-}
-
-void write_grid(const Heights& heights, const std::string& path) {
-    std::ofstream file(path);
-    file.precision(12);
-    file << "ncols " << heights.nx << "\nnrows " << heights.ny << "\nxllcorner " << heights.west << "\nyllcorner "
-         << heights.south;
-    file << "\ndx " << heights.dx << "\ndy " << heights.dy << "\nNODATA_value nan\n";
-    file.precision(9); // each float back to its bits
-    for (std::size_t n = 0; n < heights.rows.size(); ++n) {
-        if (std::isnan(heights.rows[n]))
-            file << "nan";
-        else
-            file << heights.rows[n];
-        file << ((n + 1) % heights.nx == 0 ? '\n' : ' ');
-    }
-    if (!file.flush()) fail(path + ": cannot be written");
-}
-
-/// A level that shows something at once: rain runs down the ground and out over all sides.
-void write_level(const Heights& heights, const std::string& name, const std::string& path) {
-    double reach = 1;
-    for (const float height : heights.rows)
-        if (!std::isnan(height)) reach = std::max(reach, std::fabs(static_cast<double>(height)));
-    const double largest = std::exp2(std::ceil(std::log2(reach * 1.05 + 8)));
-    const auto rows = static_cast<long>(std::max(1.0, std::round(heights.ny * heights.dy / heights.dx)));
-    std::ofstream file(path);
-    file.precision(9);
-    file << "{\n  \"format_version\": 1,\n  \"name\": \"" << name
-         << "\",\n  \"description\": \"Rain on an imported map.\",\n  \"grid\": {\"nx\": " << heights.nx << ", \"ny\": " << rows
-         << ", \"dx\": " << heights.dx << "},\n  \"dt\": " << 0.05 * heights.dx << ",\n  \"duration\": " << 60 * heights.dx
-         << ",\n  \"method\": {\"largest_height\": " << largest
-         << "},\n  \"material\": {\"manning\": 0.03},\n  \"rain\": 2e-5,\n  \"sides\": {";
-    for (const char* side : {"west", "east", "south", "north"})
-        file << (side[0] == 'w' ? "" : ", ") << '"' << side << "\": {\"kind\": \"outflow\"}";
-    file << "},\n  \"terrain\": [{\"file\": \"terrain.asc\", \"samples\": \"cells\"}]\n}\n";
-    if (!file.flush()) fail(path + ": cannot be written");
+    return 0;
 }
 
 } // namespace
 
+void fail(const std::string& text) {
+    std::fprintf(stderr, "error: %s\n", text.c_str());
+    std::exit(2);
+}
+
+} // namespace import_map
+
 int main(int argc, char** argv) {
-    CLI::App app("Makes a level of a GeoTIFF or TIFF of heights; other maps are read by wadi-recorder --terrain MAP itself");
-    std::string map, out;
-    app.add_option("map", map, ".tif or .tiff")->required();
-    app.add_option("--out", out, "folder of the level; by default the map's name without its ending");
+    import_map::Request request;
+    std::string size;
+    CLI::App app("Makes a level of a map of heights: .png, .r16, .r32, .raw, .hgt, .npy, .asc, .tif or .tiff", "wadi-import");
+    app.add_option("map", request.map)->required()->check(CLI::ExistingFile);
+    app.add_option("--out", request.folder, "folder of the level; by default the map's name without its ending");
+    app.add_option("--cell", request.cell, "side of a cell [m], where the map does not say")->check(CLI::Range(1e-4, 1e4));
+    app.add_option("--size", size, "COLUMNSxROWS of a .raw, .r16 or .r32 map that is not square");
+    app.add_option("--min", request.black, "height of black [m] in maps of 8 and 16 bits")->check(CLI::Range(-1e6, 1e6));
+    app.add_option("--max", request.white, "height of white [m]; by default an eighth of the longer side")
+        ->check(CLI::Range(-1e6, 1e6));
+    app.add_option("--packed", request.packed, "terrarium or mapbox: heights in the colours of a PNG")
+        ->check(CLI::IsMember({"terrarium", "mapbox"}));
+    app.add_option("--flip", request.flip, "x, y or xy: east for west, north for south")->check(CLI::IsMember({"x", "y", "xy"}));
+    app.add_option("--samples", request.samples, "cells or corners: where samples lie")
+        ->check(CLI::IsMember({"cells", "corners"}));
+    app.add_option("--holes", request.holes,
+                   "outside: those that reach the rim lead off the map, others are filled; or filled, wall, pit")
+        ->check(CLI::IsMember({"outside", "filled", "wall", "pit"}))
+        ->capture_default_str();
+    app.add_flag("--preview", request.preview, "also write preview.png, shaded relief with holes in red");
     CLI11_PARSE(app, argc, argv);
-    Heights heights = read_tiff(map);
-    to_metres(heights);
-    const auto holes = std::count_if(heights.rows.begin(), heights.rows.end(), [](float height) { return std::isnan(height); });
-    const std::string name = std::filesystem::path(map).stem().string();
-    const std::filesystem::path folder = out.empty() ? std::filesystem::path(map).stem() : std::filesystem::path(out);
-    std::error_code failure;
-    std::filesystem::create_directories(folder, failure);
-    if (failure) fail(folder.string() + ": " + failure.message());
-    write_grid(heights, (folder / "terrain.asc").string());
-    write_level(heights, "imported map", (folder / "level.json").string());
-    for (const std::string& note : heights.notes) std::fprintf(stderr, "note: %s: %s\n", map.c_str(), note.c_str());
-    std::printf("%s: %u x %u samples, cells of %g x %g m, %ld holes -> %s\n", name.c_str(), heights.nx, heights.ny, heights.dx,
-                heights.dy, static_cast<long>(holes), (folder / "level.json").string().c_str());
-    return 0;
+    if (!size.empty()) {
+        int columns = 0, rows = 0, used = 0;
+        if (std::sscanf(size.c_str(), "%dx%d%n", &columns, &rows, &used) != 2 || used != static_cast<int>(size.size()) ||
+            columns < 1 || rows < 1 || columns > 16384 || rows > 16384)
+            import_map::fail("--size " + size + ": want COLUMNSxROWS, 1 ... 16384 each");
+        request.size = {columns, rows};
+    }
+    return import_map::run(std::move(request));
 }

@@ -143,7 +143,8 @@ int main_checked(int argc, char** argv) {
     CLI::App app("Records a Wadi level: shaded PNG frames, a contact sheet, fields as NPY, and a table of figures.",
                  "wadi-recorder");
     app.add_option("level", level, "level name (--list-levels), level file (.json) or level folder");
-    app.add_option("--terrain", terrain, "a terrain map (.png, .r16, .npy, .asc) instead of a level")->excludes("level");
+    app.add_option("--terrain", terrain, "a terrain map (.png, .r16, .r32, .raw, .hgt, .npy, .asc) instead of a level")
+        ->excludes("level");
     app.add_option("--backend", options.backend, "auto, or one of --list-backends")->capture_default_str();
     app.add_option("--device", options.device, "device number within the backend (--list-backends); -1 = best")
         ->capture_default_str();
@@ -174,10 +175,15 @@ int main_checked(int argc, char** argv) {
     app.add_option("--out", options.out, "folder for frames and fields; default: out/LEVEL");
     app.add_option("--dump", dumps, "FIELDS@TIMES, e.g. hs,W,us@1.5,3: writes FIELD_TIME.npy; repeatable")
         ->allow_extra_args(false);
+    app.add_option("--dump-as", options.dump_as, "npy, asc (Esri ASCII grid) or tif (GeoTIFF of floats): what --dump writes")
+        ->check(CLI::IsMember({"npy", "asc", "tif"}))
+        ->capture_default_str();
     app.add_option("--gauge", gauges, "x,y [m]: the state at this point at every frame's time, to gauges.csv; repeatable")
         ->allow_extra_args(false);
     app.add_option("--section", sections, "x0,y0,x1,y1 [m]: the state along this line likewise, to sections.csv; repeatable")
         ->allow_extra_args(false);
+    app.add_flag("--map-coordinates", options.map_coordinates,
+                 "gauges and sections are given and written in the coordinates of the map that the level was cut from");
     app.add_option("--summary", options.summary, "writes the figures as JSON to this file");
     app.add_flag("--mp4", options.mp4, "also write the frames as recording.mp4 (H.264); needs the ffmpeg program");
     app.add_option("--fps", options.frames_per_second, "frames per second of the MP4")
@@ -217,6 +223,7 @@ int main_checked(int argc, char** argv) {
     if (!terrain.empty()) {
         options.level_name = std::filesystem::path(terrain).stem().string();
         options.level_file = terrain;
+        options.terrain_alone = true;
     } else if (!level.empty()) {
         const common::FoundLevel found = common::find_level(level);
         if (!found.error.empty()) return fail(found.error);

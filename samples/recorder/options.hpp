@@ -61,7 +61,10 @@ struct Options {
     bool profile = false;
     bool print_plan = false;
     std::vector<DumpRequest> dumps;
+    std::string dump_as = "npy"; // ending of their files
     std::vector<PointRequest> gauges, sections;
+    bool map_coordinates = false; // of gauges and sections: those of the map that the level was cut from
+    bool terrain_alone = false;   // level_file is a map
     std::string out;
     std::string summary; // file, empty = none
 };

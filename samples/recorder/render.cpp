@@ -90,12 +90,22 @@ std::vector<float> sky_openness(const std::vector<float>& ground, const MapField
     return mean;
 }
 
+/// Rain lies on all of a map: what lies on half of it hides the ground and the streams, and is not drawn [m].
+float hidden_film(const MapFields& fields, const Look& look) {
+    if (look.wet_from_start) return 0;
+    std::vector<float> depths = fields.water;
+    const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
+    std::nth_element(depths.begin(), middle, depths.end());
+    return std::min(2 * *middle, 0.04f * look.water_scale);
+}
+
 std::vector<Cell> make_cells(const MapFields& fields, const Look& look) {
     const int nx = fields.nx, ny = fields.ny;
     const float dx = static_cast<float>(fields.dx);
     std::vector<float> ground(fields.terrain.size());
     for (std::size_t k = 0; k < ground.size(); ++k) ground[k] = fields.terrain[k] + fields.sand[k];
     const std::vector<float> openness = sky_openness(ground, fields, look.relief_gain);
+    const float hidden = hidden_film(fields, look);
     const float film = 0.002f * look.water_scale, sand_threshold = 0.01f * dx;
 
     std::vector<Cell> cells(ground.size());
@@ -111,7 +121,7 @@ std::vector<Cell> make_cells(const MapFields& fields, const Look& look) {
             cell.sand = fields.sand[k];
             const float phi = fields.saturation[k];
             cell.mixed = phi < 0.5f ? cell.sand * phi / (1.0f - phi) : cell.sand;
-            cell.water = fields.water[k];
+            cell.water = std::max(fields.water[k] - hidden, 0.0f);
             cell.sandy = glm::smoothstep(0.25f * sand_threshold, sand_threshold, cell.sand);
             cell.wet = glm::smoothstep(0.0f, film, cell.water);
             cell.openness = openness[k];
@@ -119,7 +129,9 @@ std::vector<Cell> make_cells(const MapFields& fields, const Look& look) {
                            (ground[at(nx, i, north)] - ground[at(nx, i, south)]) / spacing_y};
             // Across a shore the free surface is not smooth: only wet neighbours count.
             const float level = ground[k] + fields.water[k];
-            const auto level_at = [&](std::size_t n) { return fields.water[n] > film ? ground[n] + fields.water[n] : level; };
+            const auto level_at = [&](std::size_t n) {
+                return fields.water[n] > film + hidden ? ground[n] + fields.water[n] : level;
+            };
             cell.surface = {(level_at(at(nx, east, j)) - level_at(at(nx, west, j))) / spacing_x,
                             (level_at(at(nx, i, north)) - level_at(at(nx, i, south))) / spacing_y};
         }
@@ -218,7 +230,21 @@ Look choose_look(const MapFields& fields, double water_scale) {
     double scale = std::max(static_cast<double>(deepest), 0.2 * relief);
     if (scale <= 0) scale = fields.dx;
     look.water_scale = static_cast<float>(water_scale > 0 ? water_scale : round_up_125(scale));
+    look.wet_from_start = deepest > 0;
     return look;
+}
+
+bool scale_to_water(const MapFields& fields, double water_scale, Look& look) {
+    std::vector<float> depths;
+    for (const float depth : fields.water)
+        if (depth > 0) depths.push_back(depth);
+    if (depths.empty()) return false;
+    if (water_scale > 0 || look.wet_from_start) return true;
+    // Of the deepest hundredth, which is where streams gather out of a film; they are to grow.
+    const auto place = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() - 1 - depths.size() / 100);
+    std::nth_element(depths.begin(), place, depths.end());
+    look.water_scale = static_cast<float>(round_up_125(3 * static_cast<double>(*place)));
+    return true;
 }
 
 Scaling choose_scaling(int nx, int ny) {

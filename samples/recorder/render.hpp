@@ -18,14 +18,19 @@ struct MapFields {
 /// Means over factor x factor blocks of cells, for grids larger than a picture.
 MapFields reduced(const MapFields& fields, int factor);
 
-/// What stays fixed over a recording, so that colours mean the same in every frame.
+/// What stays fixed over a recording once there is water, so that colours mean the same in every frame.
 struct Look {
     float low = 0, high = 1; // range of the terrain's height [m] for its tint; equal on a plain
     float relief_gain = 1;   // ground slopes are multiplied by this before shading
     float water_scale = 1;   // depth [m] that is drawn in deep blue
+    bool wet_from_start = false;
 };
-/// From the first frame. `water_scale` > 0 overrides the one derived from the largest depth and the relief.
+/// From the first frame; a level that begins dry waits for scale_to_water(). `water_scale` > 0 overrides the one derived from the
+/// largest depth and the relief.
 Look choose_look(const MapFields& fields, double water_scale);
+
+/// Scales to the water of the first frame that has any, unless the first of all had or `water_scale` > 0; whether there was some.
+bool scale_to_water(const MapFields& fields, double water_scale, Look& look);
 
 /// How cells become pixels: enlarged until the longer side has at least 800 pixels, reduced above 1600 cells. A strip of a
 /// few cells' width is enlarged further across, to be seen at all.

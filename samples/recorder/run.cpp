@@ -1,5 +1,6 @@
 #include "run.hpp"
 #include "../common/files.hpp"
+#include "../common/grids.hpp"
 #include "../common/jpeg.hpp"
 #include "../common/platform.hpp"
 #include "../common/png.hpp"
@@ -65,6 +66,7 @@ class Recording {
     fs::path out_;
     Scaling scaling_;
     std::optional<Look> look_;
+    bool water_seen_ = false; // in some frame: look_ stays from then on
     std::optional<ContactSheet> sheet_;
     std::vector<PointTable> tables_; // gauges and sections, where asked for
     std::optional<Progress> progress_;
@@ -105,7 +107,7 @@ Failure Recording::plan_points() {
     for (auto* const part : {&gauges, &sections}) {
         std::uint32_t number = 0;
         for (const PointRequest& request : part == &gauges ? options_.gauges : options_.sections)
-            if (Failure failure = part->add(world_.info(), number++, request)) return failure;
+            if (Failure failure = part->add(world_.info(), number++, request, options_.map_coordinates)) return failure;
         if (!part->empty()) tables_.push_back(std::move(*part));
     }
     return {};
@@ -171,6 +173,7 @@ Failure Recording::sample_frame(bool last) {
     MapFields fields;
     if (Failure failure = world_.read_map(scaling_.reduce, fields)) return failure;
     if (!look_) look_ = choose_look(fields, options_.water_scale);
+    if (!water_seen_) water_seen_ = scale_to_water(fields, options_.water_scale, *look_);
     const Image map = render_map(fields, *look_, scaling_);
     const Image frame = compose_frame(map, *look_, caption_, time_, metres_per_pixel_);
     char name[32];
@@ -189,8 +192,13 @@ Failure Recording::write_dumps() {
     for (const DumpRequest& dump : options_.dumps) {
         if (step_at(dump.time, world_.info().dt) != done_) continue;
         if (Failure failure = world_.read_field(static_cast<wadi_field>(dump.field), values)) return failure;
-        const fs::path path = out_ / (dump.field_name + "_" + dump.time_text + ".npy");
-        const std::string error = common::write_file(path, common::encode_npy(values, world_.info().nx, world_.info().ny));
+        const fs::path path = out_ / (dump.field_name + "_" + dump.time_text + "." + options_.dump_as);
+        const wadi_world_info& info = world_.info();
+        const common::GridPlace place = {info.nx, info.ny, info.dx, info.origin_x, info.origin_y};
+        const std::string error =
+            common::write_file(path, options_.dump_as == "asc"   ? common::encode_asc(values, place)
+                                     : options_.dump_as == "tif" ? common::encode_geotiff(values, place)
+                                                                 : common::encode_npy(values, info.nx, info.ny));
         if (!error.empty()) return {EXIT_BAD_INPUT, error};
         char text[128];
         std::snprintf(text, sizeof text, "dump %s at t = %.9g s (step %llu, asked for %s s): ", dump.field_name.c_str(), time_,
@@ -297,6 +305,12 @@ int Recording::run() {
     }
     if (failure) return complain(failure);
     if (unwritten) return complain(unwritten);
+    if (options_.terrain_alone) {
+        std::printf(
+            "next: wadi-import MAP --out FOLDER makes a level of it, whose rain, sides, sources and holes are yours to change; "
+            "--seconds %.6g runs on until it has drained, --size %dx%d is coarser and quicker\n",
+            4 * seconds_, (info.nx + 1) / 2, (info.ny + 1) / 2);
+    }
     return EXIT_DONE;
 }
 

@@ -1,6 +1,7 @@
 #include "world.hpp"
 #include <algorithm>
 #include <cstdio>
+#include <thread>
 
 namespace recorder {
 namespace {
@@ -26,7 +27,9 @@ Failure World::create(const Options& options) {
     wadi_device_options device = wadi_default_device_options();
     device.backend = options.backend.c_str();
     device.device = options.device;
-    device.threads = options.threads;
+    // No frame wants the core that the library leaves by default.
+    device.threads = options.threads != 0 ? options.threads
+                                          : static_cast<std::int32_t>(std::clamp(std::thread::hardware_concurrency(), 1U, 256U));
     device.validate = options.validate ? 1 : 0;
     device.log = print_log;
 

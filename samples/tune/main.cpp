@@ -71,7 +71,7 @@ int run(int argc, char** argv) {
     app.add_option("--backend", request.device.backend, "auto, or a backend of wadi-recorder --list-backends")
         ->capture_default_str();
     app.add_option("--device", request.device.device, "device number within the backend; -1 = best")->capture_default_str();
-    app.add_option("--threads", request.device.threads, "threads of the cpu backend; 0 = all cores")
+    app.add_option("--threads", request.device.threads, "threads of the cpu backend; 0 = all but one")
         ->check(CLI::Range(0, 256))
         ->capture_default_str();
     app.add_flag("--processor-time", request.device.processor_time,

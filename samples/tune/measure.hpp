@@ -9,7 +9,7 @@ namespace tune {
 struct Device {
     std::string backend = "auto";
     int device = -1;
-    int threads = 0;             // of the CPU backend; 0 = all cores
+    int threads = 0;             // of the CPU backend; 0 = all cores but one
     bool processor_time = false; // what all threads worked, and not what a clock on the wall shows
 };
 

@@ -55,7 +55,11 @@ int view_number(const std::string& name) {
     throw std::runtime_error("view: \"" + name + "\" is none of" + known);
 }
 
-float default_clarity(const Grid& grid) { return 0.02f * std::max(grid.lengths().x, grid.lengths().y); }
+float default_clarity(const Grid& grid) {
+    constexpr float landscape = 5, stream = 1.5f; // [m]: the sea that a map's length stands for would hide what its valleys hold
+    const float model = 0.02f * std::max(grid.lengths().x, grid.lengths().y);
+    return grid.dx >= landscape ? std::min(model, stream) : model;
+}
 
 FrameParams frame_params(const Picture& picture, const Grid& grid, int width, int height, int sample) {
     const Camera& camera = picture.camera;

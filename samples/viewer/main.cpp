@@ -33,13 +33,14 @@ int main_checked(int argc, char** argv) {
     std::string level, size, grid;
     bool only_list_levels = false, only_list_gpus = false;
     CLI::App app("Shows a Wadi level in three dimensions: in a window, or as PNG pictures without one.", "wadi-viewer");
-    app.add_option("level", level,
-                   "level name (--list-levels), level file (.json), level folder or terrain map (.png, .r16, .npy, .asc)");
+    app.add_option(
+        "level", level,
+        "level name (--list-levels), level file (.json), level folder or terrain map (.png, .r16, .r32, .raw, .hgt, .npy, .asc)");
     app.add_option("--backend", options.simulation.backend, "of the simulation: auto, cpu, vulkan or cuda")
         ->capture_default_str();
     app.add_option("--device", options.simulation.device, "device number within the cpu or cuda backend; -1 = best")
         ->check(CLI::Range(-1, 64));
-    app.add_option("--threads", options.simulation.threads, "threads of the cpu backend; 0 = all cores")
+    app.add_option("--threads", options.simulation.threads, "threads of the cpu backend; 0 = all but one")
         ->check(CLI::Range(0, 256));
     app.add_option("--gpu", options.gpu, "Vulkan device that draws (--list-gpus); -1 = a real GPU first")
         ->check(CLI::Range(-1, 64));

@@ -260,6 +260,25 @@ static class Behaviour
             Expect(source.Contains("Native." + call.Name + "("), call.Name + " is used by the layer on top");
     }
 
+    static void ForgottenSaves()
+    {
+        using (var world = World.FromText(Pond, null, null, Cpu()))
+        {
+            var pinned = (System.Collections.IDictionary)typeof(World).GetField("pinnedSaves", BindingFlags.NonPublic | BindingFlags.Instance).GetValue(world);
+            int asked = 0, most = 0;
+            for (int n = 0; n < 2000 && asked < 8; ++n)
+            {
+                ulong ticket;
+                world.Step(1);
+                if (!world.TryBeginSave(out ticket)) continue;
+                ++asked;
+                world.TryEndSave(ticket); // once: whether it was there or not, nobody asks again
+                most = Math.Max(most, pinned.Count);
+            }
+            Expect(asked == 8 && most <= 1, "saves that nobody fetches hold one buffer at most, not " + most + " of " + asked);
+        }
+    }
+
     static int Main(string[] arguments)
     {
         Errors(arguments[0]);
@@ -267,6 +286,7 @@ static class Behaviour
         Callbacks();
         Outputs();
         Mirrors();
+        ForgottenSaves();
         Console.WriteLine(failures + " failures");
         return failures == 0 ? 0 : 1;
     }

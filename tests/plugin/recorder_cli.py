@@ -254,6 +254,22 @@ def test_points(recorder):
     assert moving > 5, f"{moving} points with water that moves: the case shows nothing"
 
 
+def test_gauge_beside_wall(recorder):
+    """Between the last cell of a lake and a wall the surface is half wall; that of the water is the lake's."""
+    level = {"format_version": 1, "name": "wall", "grid": {"nx": 16, "ny": 4, "dx": 1}, "dt": 0.02,
+             "terrain": [{"shape": "box", "from": [8, 0], "to": [16, 4], "height": 10}],
+             "water": [{"shape": "box", "from": [0, 0], "to": [8, 4], "surface": 3}]}
+    (recorder.folder / "wall.json").write_text(json.dumps(level), encoding="utf-8")
+    recorder.run("wall.json", "--backend", recorder.backend, "--seconds", "0", "--no-frames", "--out", "wall",
+                 *(f"--gauge={x},2" for x in (4, 7.9, 8, 12)))
+    rows = read_table(recorder.folder / "wall/gauges.csv")
+    lake, near, edge, wall = rows[-4:]
+    assert lake["surface"] == lake["water_surface"] == 3, lake
+    assert near["surface"] > 5 and edge["surface"] == 6.5, (near, edge)
+    assert abs(near["water_surface"] - 3) < 1e-5 and abs(edge["water_surface"] - 3) < 1e-5, (near, edge)
+    assert wall["surface"] == 10 and math.isnan(wall["water_surface"]), wall
+
+
 def test_summary(recorder):
     def summary(*arguments):
         recorder.record("--seconds", "0.5", "--no-frames", "--summary", "summary.json", *arguments)
@@ -379,7 +395,7 @@ def main():
     parser.add_argument("--backend", default="cpu")
     parser.add_argument("--nvml", help="libnvidia-ml.so.1 of fake_nvml.c")
     options = parser.parse_args()
-    tests = [test_frames, test_dumps, test_points, test_summary]
+    tests = [test_frames, test_dumps, test_points, test_gauge_beside_wall, test_summary]
     if options.backend == "cpu":  # what meets no device
         tests += [test_lists, test_plan, test_refusals, test_default_folder, test_video_refusals, test_video]
     if os.name == "posix":

@@ -189,4 +189,20 @@ TEST_CASE("the library's threads have names, and the priority of the thread that
     }).join();
     CHECK(named_threads_once_there_are(0).empty());
 }
+
+TEST_CASE("by default the CPU backend leaves one core to the host's frame") {
+    REQUIRE(named_threads_once_there_are(0).empty());
+    const auto wanted = std::max<std::size_t>(std::thread::hardware_concurrency(), 2) - 1;
+    auto options = cpu_device();
+    options.threads = 0;
+    wadi_world_id id{};
+    REQUIRE(
+        wadi_create_world_from_level_text(R"({ "format_version": 1, "name": "threads", "grid": { "nx": 8, "ny": 8, "dx": 0.5 },
+            "dt": 0.02, "water": [ { "shape": "plane", "height": 1 } ] })",
+                                          nullptr, nullptr, nullptr, &options, &id) == WADI_OK);
+    const AbiWorld world(id);
+    REQUIRE(wadi_world_step(id, 1) == WADI_OK);
+    std::this_thread::sleep_for(std::chrono::milliseconds(200)); // they take their names as they begin
+    CHECK(named_threads().size() == wanted); // that which takes steps in order shares their work
+}
 #endif

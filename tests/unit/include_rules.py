@@ -35,6 +35,7 @@ RULES = {
     "plugin/godot/source/scene": ["engine/"],
     "samples/common": [],
     "samples/recorder": ["wadi/", "../common/"],
+    "samples/import": ["wadi/", "../common/"],
     "samples/tune": ["wadi/", "../common/"],
     "samples/viewer": ["wadi/", "../common/", "../tune/print.hpp", "../tune/write_variant.hpp", "shaders/", "viewer_shaders/"],
     "samples": ["wadi/"],
@@ -46,6 +47,7 @@ FOR_ALL_TESTS = ("tests/support", "tests/reference")
 LAB = "tests/lab"  # uses all, and is used by nothing
 USES = {
     "samples/recorder": ("samples/common",),
+    "samples/import": ("samples/common",),
     "samples/tune": ("samples/common",),
     "samples/viewer": ("samples/common", "samples/tune"),
     "tests/faults": ("tests/unit",),

@@ -415,7 +415,7 @@ TEST_CASE("image: files by the ending of their name") {
     const Folder folder;
     const auto read_any = [](const std::string& path, std::optional<std::pair<int, int>> size) {
         FileRoom room(1000);
-        return read_map(path, size, files_in("", FilesFrom::anywhere), room);
+        return read_map(path, {size}, files_in("", FilesFrom::anywhere), room);
     };
     CHECK(read_any(folder.write("a.PNG", png16(1, 1, {7})), std::nullopt));
     CHECK(read_any(folder.write("a.r16", words({7}, false)), std::nullopt));

@@ -119,8 +119,9 @@ TEST_CASE("level: from a terrain map alone") {
     CHECK(level.settings.grid.dx == 1);
     CHECK(at(level, level.fields.terrain, 20, 10) == 4); // an eighth of the longer side
     CHECK(at(level, level.fields.terrain, 0, 0) == 0);
-    REQUIRE(level.settings.sources.size() == 1);
-    CHECK(level.settings.sources[0].center == std::array<double, 2>{20.5, 10.5});
+    CHECK(level.settings.material.manning == 0.03);
+    CHECK(level.settings.rain.at(0) * level.duration / 2 == doctest::Approx(0.15)); // then it stops
+    CHECK(level.settings.rain.at(0.51 * level.duration) == 0);
     for (const Side& side : level.settings.sides) CHECK(side.kind == SideKind::outflow);
     CHECK(level.warnings.empty());
 
@@ -140,18 +141,20 @@ TEST_CASE("level: from a terrain map alone") {
     const std::string header = "NCOLS 3\nNROWS 2\nXLLCENTER 512345.5\nYLLCENTER 5400000\nCELLSIZE 30\n";
     const Level real = must(level_from_terrain(folder.write("real.asc", header + "1400 1500 1450\n1300 1350 1250.5\n"), {}));
     CHECK(real.settings.grid.dx == 30);
-    CHECK(real.settings.dt == doctest::Approx(1.5));
+    CHECK(real.settings.dt == doctest::Approx(0.6));
     CHECK(real.duration == doctest::Approx(1800));
     CHECK(real.settings.method.largest_height == 4096);
     CHECK(at(real, real.fields.terrain, 1, 1) == 1500); // the file's first row is the north
     CHECK(at(real, real.fields.terrain, 2, 0) == 1250.5);
-    CHECK(real.settings.sources[0].center == std::array<double, 2>{45, 30}); // clamped to the middle of so small a grid
-    CHECK(real.warnings.empty());
+    CHECK(real.origin == std::array<double, 2>{512345.5 - 15, 5400000 - 15}); // of the corner
+    for (const std::string& warning : real.warnings) // of so small a grid in the mountains
+        CHECK_MESSAGE(says(warning, "less than a quantum of height"), warning);
     const std::string grid = "ncols 2\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize ";
     const Level hole = must(level_from_terrain(folder.write("hole.asc", grid + "1\n7 -9999\n"), {}));
-    CHECK(at(hole, hole.fields.terrain, 1, 0) == 7);
+    CHECK(at(hole, hole.fields.terrain, 0, 0) == 7);
+    CHECK(at(hole, hole.fields.terrain, 1, 0) < 6); // outside
     REQUIRE(hole.warnings.size() == 1);
-    CHECK(says(hole.warnings[0], "1 of 2 cells hold NODATA_value"));
+    CHECK(says(hole.warnings[0], "1 cells without a height reach the map's rim: taken for outside"));
     const Level degrees = must(level_from_terrain(folder.write("degrees.asc", grid + "0.000277\n7 8\n"), {}));
     CHECK_MESSAGE(says(degrees.warnings.back(), "0.000277 looks like degrees"), degrees.warnings.back());
     CHECK(says(message(level_from_terrain(folder.write("wide.asc", grid + "20000\n7 8\n"), {})),
@@ -195,12 +198,13 @@ TEST_CASE("level maps: samples at corners, as said or guessed for 2^n + 1, keep 
              "terrain[0].samples: \"vertices\" is not known"));
 }
 
-TEST_CASE("level maps: a wall that is thinner than its cells is named with its width, on the grid that it is drawn on") {
+TEST_CASE("level maps: a shape that is thinner than its cells is named with its width, on the grid that it is drawn on") {
     const auto warned = [](const std::string& shape, std::optional<std::pair<int, int>> size = {}) {
         LevelOverrides overrides;
         overrides.size = size;
         const auto made = must(parse_level(level(R"("terrain": [{"height": 2, )" + shape + "}]"), "", overrides));
-        return std::any_of(made.warnings.begin(), made.warnings.end(), [](const auto& w) { return says(w, "too thin"); });
+        return std::any_of(made.warnings.begin(), made.warnings.end(),
+                           [](const auto& w) { return says(w, "is thin for cells of"); });
     };
     const std::string slanting = R"("shape": "ridge", "points": [[0, 2], [10, 6]], "width": )";
     CHECK(!warned(slanting + "1.5"));
@@ -208,5 +212,57 @@ TEST_CASE("level maps: a wall that is thinner than its cells is named with its w
     CHECK(warned(slanting + "1.5", std::pair{5, 4}));
     CHECK(!warned(R"("shape": "ridge", "points": [[0, 2], [10, 2]], "width": 1)"));
     CHECK(warned(R"("shape": "box", "from": [2, 0], "to": [2.9, 8])"));
-    CHECK(!warned(R"("shape": "box", "from": [2, 0], "to": [2.9, 8], "combine": "subtract")"));
+    CHECK(warned(R"("shape": "box", "from": [2, 0], "to": [2.9, 8], "combine": "subtract")"));
+    CHECK(!warned(R"("shape": "ridge", "points": [[0, 2], [10, 6]], "width": 0.5, "side_slope": 1)"));
+}
+
+namespace {
+
+/// Cells below 1 m that can be reached from one of them over sides, or over corners as well.
+std::size_t reached(const std::vector<float>& ground, int nx, int ny, std::size_t start, bool corners_too) {
+    std::vector<char> seen(ground.size());
+    std::vector<int> front{static_cast<int>(start)};
+    seen[start] = 1;
+    std::size_t count = 0;
+    while (!front.empty()) {
+        const int cell = front.back(), i = cell % nx, j = cell / nx;
+        front.pop_back();
+        ++count;
+        for (int y = std::max(j - 1, 0); y <= std::min(j + 1, ny - 1); ++y)
+            for (int x = std::max(i - 1, 0); x <= std::min(i + 1, nx - 1); ++x) {
+                const auto next = static_cast<std::size_t>(y * nx + x);
+                if ((x != i && y != j && !corners_too) || seen[next] != 0 || ground[next] > 1) continue;
+                seen[next] = 1;
+                front.push_back(y * nx + x);
+            }
+    }
+    return count;
+}
+
+} // namespace
+
+TEST_CASE("level maps: a wall of any width holds on every grid, and a ditch runs through") {
+    const std::string from_rim_to_rim[] = {R"("points": [[-1, 1.3], [4.1, 2.2], [6.6, 6.9], [11, 7.1]])",
+                                           R"("points": [[4.7, -1], [4.7, 9]])", R"("points": [[11, 1], [4.5, 9]])",
+                                           R"("points": [[-1e9, 3.3], [1e9, 3.3]])"};
+    for (const std::string& points : from_rim_to_rim)
+        for (const char* width : {"0.01", "0.3", "1", "1.41"})
+            for (const auto& [nx, ny] : {std::pair{10, 8}, {5, 4}, {33, 26}, {7, 20}, {6, 6}}) {
+                CAPTURE(points + width);
+                CAPTURE(nx);
+                LevelOverrides overrides;
+                overrides.size = {nx, ny};
+                const auto drawn = [&](const std::string& before, const std::string& height) {
+                    const std::string layers = "\"terrain\": [" + before + "{\"combine\": \"set\", \"height\": " + height +
+                                               R"(, "shape": "ridge", )" + points + ", \"width\": " + width + "}]";
+                    return must(parse_level(level(layers), "", overrides)).fields.terrain;
+                };
+                const auto wall = drawn("", "2"), ditch = drawn(R"({"shape": "plane", "height": 2}, )", "0");
+                const auto low = [](const auto& field) {
+                    return static_cast<std::size_t>(std::count(field.begin(), field.end(), 0.0f));
+                };
+                CHECK(reached(wall, nx, ny, 0, true) < low(wall)); // not over corners either
+                const auto in_ditch = static_cast<std::size_t>(std::find(ditch.begin(), ditch.end(), 0.0f) - ditch.begin());
+                CHECK(reached(ditch, nx, ny, in_ditch, false) == low(ditch));
+            }
 }

@@ -10,7 +10,7 @@ namespace Wadi
         public string Backend = "auto";
         /// <summary>Index from Library.ListDevices, -1 = the backend's best.</summary>
         public int Device = -1;
-        /// <summary>Of the CPU backend, and for any to load levels and to count and hash states; 0 = all cores.</summary>
+        /// <summary>Of the CPU backend, and for any to load levels and to count and hash states; 0 = all cores, of which steps leave one to the frame.</summary>
         public int Threads;
         /// <summary>Vulkan validation layers; their messages go to Log.</summary>
         public bool Validate;

@@ -41,7 +41,10 @@ namespace Wadi
         public IntPtr Backend;
         /// <summary>index from wadi_list_devices, -1 = the backend's best</summary>
         public int Device;
-        /// <summary>of the CPU backend, and for any to load levels and to count and hash states; 0 = all cores</summary>
+        /// <summary>
+        /// of the CPU backend, and for any to load levels and to count and hash states; 0 = all cores, of which the CPU backend's
+        /// steps leave one to the host's frame
+        /// </summary>
         public int Threads;
         int validate;
         /// <summary>1 = Vulkan validation layers; messages go to the log callback</summary>
@@ -214,6 +217,16 @@ namespace Wadi
         /// <summary>1 = the device passed the exact-float self-test</summary>
         public bool ExactFloat { get { return exactFloat != 0; } set { exactFloat = value ? 1 : 0; } }
         public uint WarningCount;
+        /// <summary>
+        /// of the grid's south-west corner in the coordinates of the map that the level was cut from, 0 where none was: what a host
+        /// shows; every call counts from the corner [m]
+        /// </summary>
+        public double OriginX;
+        /// <summary>
+        /// of the grid's south-west corner in the coordinates of the map that the level was cut from, 0 where none was: what a host
+        /// shows; every call counts from the corner [m]
+        /// </summary>
+        public double OriginY;
         /// <summary>A struct with the size that the library asks for and the header's defaults.</summary>
         public static unsafe WorldInfo Default
         {

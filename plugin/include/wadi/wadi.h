@@ -143,7 +143,8 @@ typedef struct wadi_device_options {
     uint32_t struct_size;
     const char* backend;       /* "auto" (a real GPU first, else the CPU), or one that wadi_list_devices names: "cpu", "vulkan" ... */
     int32_t device;            /* index from wadi_list_devices, -1 = the backend's best */
-    int32_t threads;           /* of the CPU backend, and for any to load levels and to count and hash states; 0 = all cores */
+    int32_t threads;           /* of the CPU backend, and for any to load levels and to count and hash states; 0 = all cores, of which
+                                  the CPU backend's steps leave one to the host's frame */
     wadi_bool validate;        /* 1 = Vulkan validation layers; messages go to the log callback */
     wadi_log_callback log;     /* may be NULL */
     void* log_user;
@@ -283,6 +284,8 @@ typedef struct wadi_world_info {
     char device_name[256];
     wadi_bool exact_float;        /* 1 = the device passed the exact-float self-test */
     uint32_t warning_count;
+    double origin_x, origin_y;    /* of the grid's south-west corner in the coordinates of the map that the level was cut from, 0 where
+                                     none was: what a host shows; every call counts from the corner [m] */
 } wadi_world_info;
 static inline wadi_world_info wadi_default_world_info(void) {
     WADI_ZERO_STRUCT(wadi_world_info);

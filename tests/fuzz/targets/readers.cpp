@@ -33,9 +33,16 @@ template <class Decode> void map(const Bytes& bytes, Decode decode) {
     for (const float value : decoded->values)
         if (!std::isfinite(value)) std::abort();
     static_cast<void>(resample(*decoded, 7, 5));
+    for (const Holes how : {Holes::outside, Holes::wall, Holes::pit}) {
+        Map raised = *decoded;
+        raise_holes(raised, how, 1);
+        resample_map(raised, 5, 7);
+        if (!raised.holes.empty() && raised.holes.size() != 35) std::abort();
+    }
 }
 [[maybe_unused]] void png(const Bytes& bytes) {
     map(bytes, [](const Bytes& b) { return decode_png(b, "fuzz.png"); });
+    map(bytes, [](const Bytes& b) { return decode_png(b, "fuzz.png", nullptr, Packing::terrarium); });
 }
 [[maybe_unused]] void npy(const Bytes& bytes) {
     map(bytes, [](const Bytes& b) { return decode_npy(b, "fuzz.npy"); });

@@ -13,7 +13,7 @@ namespace Wadi
         public string level = "canyon/level.json";
         [Tooltip("\"auto\" takes a real GPU where there is one, else the CPU; \"cpu\", \"vulkan\", \"cuda\".")]
         public string backend = "auto";
-        [Tooltip("Threads of the CPU backend; 0 = all cores.")]
+        [Tooltip("Threads of the CPU backend; 0 = all cores but one.")]
         public int threads;
         [Tooltip("May be none: gets the surface texture copied, for shaders and effect graphs that are wired to an asset.")]
         public RenderTexture surfaceTarget;

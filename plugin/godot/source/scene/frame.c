@@ -1,10 +1,9 @@
+#include "due.h"
 #include "engine/engine.h"
 #include "float.h"
 #include "results.h"
 #include "shared_device.h"
 #include "terrain.h"
-
-#include <math.h>
 
 static wadi_output_mask mask_of(const Terrain* terrain) { return (wadi_output_mask)terrain->outputs; }
 
@@ -36,20 +35,13 @@ static void tell_changes(Terrain* terrain) {
         api.variant_destroy(&argument);
 }
 
-/* A tween may overshoot time_scale at any tick: below 0 and no number are no time, and what is more than any host means is dropped by
- * the library and told by time_dropped. */
-static double due_nanoseconds(const Terrain* terrain, double delta) {
-    const double most = 1e15, due = delta * terrain->time_scale * 1e9 + terrain->nanoseconds_left;
-    return due >= 0 ? fmin(due, most) : 0;
-}
-
 void frame_tick(Terrain* terrain) {
     if (!terrain->started || terrain->lost) return;
     double delta = 0;
     engine_call(ENGINE_Node_get_physics_process_delta_time, terrain->object, NULL, &delta);
     uint64_t nanoseconds = 0;
     if (terrain->running) {
-        const double due = due_nanoseconds(terrain, delta);
+        const double due = due_nanoseconds(delta, terrain->time_scale, terrain->nanoseconds_left);
         nanoseconds = (uint64_t)due;
         terrain->nanoseconds_left = due - (double)nanoseconds;
     }

@@ -38,7 +38,7 @@ static bool properties_good(Terrain* terrain) {
         return false;
     }
     if (terrain->threads < 0 || terrain->threads > INT32_MAX) {
-        world_refused(terrain, 0, "threads: %lld; 0 (all cores) or more", (long long)terrain->threads);
+        world_refused(terrain, 0, "threads: %lld; 0 (all cores but one) or more", (long long)terrain->threads);
         return false;
     }
     if (terrain->outputs < 0 || terrain->outputs >= WADI_OUTPUT_BIT(WADI_OUTPUT_COUNT)) {
