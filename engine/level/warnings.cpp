@@ -1,7 +1,7 @@
 // Advice on a level that loads but would not do what its author expects. Each message has the numbers and what to change.
 // Rules and constants: NUMERICS.md sections 2.4b, 2.4d, 2.7, 2.8 and 4.
-#include "engine/level/source_rates.hpp"
 #include "engine/level/level.hpp"
+#include "engine/level/source_rates.hpp"
 #include "engine/settings/data/setting_table.hpp"
 #include "engine/settings/rules/messages.hpp"
 #include "engine/threads/bands.hpp"

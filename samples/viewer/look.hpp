@@ -77,7 +77,8 @@ struct Grid {
     glm::vec2 lengths() const { return {static_cast<float>(nx) * dx, static_cast<float>(ny) * dx}; }
 };
 
-/// Depth that water of a level of this size is seen through, [m] as Look::clarity: models look like models, landscapes of large cells show streams.
+/// Depth that water of a level of this size is seen through, [m] as Look::clarity: models look like models, landscapes of large
+/// cells show streams.
 float default_clarity(const Grid& grid);
 
 /// Parameters of sample `sample` of a picture; sources and pyramid levels are the renderer's.

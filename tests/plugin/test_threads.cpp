@@ -203,6 +203,6 @@ TEST_CASE("by default the CPU backend leaves one core to the host's frame") {
     const AbiWorld world(id);
     REQUIRE(wadi_world_step(id, 1) == WADI_OK);
     std::this_thread::sleep_for(std::chrono::milliseconds(200)); // they take their names as they begin
-    CHECK(named_threads().size() == wanted); // that which takes steps in order shares their work
+    CHECK(named_threads().size() == wanted);                     // that which takes steps in order shares their work
 }
 #endif

@@ -212,7 +212,8 @@ template <class Real> void Solver<Real>::leave(Faces<Real>& velocity, const Axis
     u[ax.face(far_end ? ax.along() : 0, b)] = outward * std::clamp(outward * next, Real(0), fastest);
 }
 
-/// A straight line fitted to the bed inside a face as far as water stands on it: its rise per cell inward, and how far it lies above the bed of the last cell.
+/// A straight line fitted to the bed inside a face as far as water stands on it: its rise per cell inward, and how far it lies
+/// above the bed of the last cell.
 template <class Real> std::pair<Real, Real> Solver<Real>::bed_line(const Axis& ax, bool far_end, int b) const {
     const auto cell = [&](int n) { return ax.cell(far_end ? ax.along() - 1 - n : n, b); };
     int count = 1;

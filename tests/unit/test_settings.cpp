@@ -152,10 +152,7 @@ TEST_CASE("settings: sides") {
                }),
                "value[1]: the time 0 s does not come after 0 s"));
     CHECK(says(west([](Side& s) { s.kind = SideKind::level, s.value.samples = {{NOT_A_NUMBER, 2}}; }), "not a finite number"));
-    CHECK(says(west([](Side& s) {
-                   s.kind = SideKind::discharge, s.value.samples = {{0, -1}};
-               }),
-               "value: -1 is outside 0 ... "));
+    CHECK(says(west([](Side& s) { s.kind = SideKind::discharge, s.value.samples = {{0, -1}}; }), "value: -1 is outside 0 ... "));
     CHECK(says(refusal([](Settings& s) { s.sides[2].from = 10; }), "sides.south.from: 10 is outside 0 ... 10"));
 }
 
