@@ -110,8 +110,10 @@ class AscReader {
             const std::string word(words_.next());
             const Key key = key_of(lower_case(word));
             if (key == KEY_COUNT)
-                return refuse("\"" + word.substr(0, 40) + "\" is no key of an Esri ASCII grid; the keys are ncols, nrows, " +
-                              "xllcorner or xllcenter, yllcorner or yllcenter, cellsize or dx and dy, NODATA_value");
+                return refuse(
+                    std::string("\"").append(word, 0, 40) +
+                    "\" is no key of an Esri ASCII grid; the keys are ncols, nrows, xllcorner or xllcenter, yllcorner or "
+                    "yllcenter, cellsize or dx and dy, NODATA_value");
             if (given[key]) return refuse(word + " is given twice");
             given[key] = true;
             if (key == x_origin || key == y_origin) centre_[key - x_origin] = lower_case(word).ends_with("center") ? 0.5 : 0;
