@@ -179,7 +179,7 @@ struct EditInput {
     float inv_fade;             // 1/width of its falloff
     float inv_length2;          // 1/length^2 from start to end, 0 for a disc
     int rim_parts;              // of a brush with a hard rim: parts of a cell's side that it counts; 0 = it fades
-    int columns;                // of a stamp's image; balance: 1 for what the sand around takes of it, 0 for the rest
+    int columns;                // of a stamp's image
     int rows;
     int page;                   // where that begins among the images
 };
