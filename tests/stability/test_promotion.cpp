@@ -211,7 +211,7 @@ TEST_CASE("nothing is allocated or recorded by edits once a material is there") 
         CHECK(after.allocations == before.allocations);
         CHECK(after.recordings == before.recordings);
         CHECK(after.descriptor_writes == before.descriptor_writes);
-        CHECK(after.submits == before.submits + 40); // the edits between what the sand around has of their balance, and the step
+        CHECK(after.submits == before.submits + 20);
     }
 }
 
