@@ -1,6 +1,5 @@
 #include "engine/edits/edits.hpp"
 #include "engine/settings/rules/scripted_edits.hpp"
-#include "engine/step/run/prestress.hpp"
 #include "engine/step/run/step_number.hpp"
 #include <algorithm>
 
@@ -97,27 +96,6 @@ Status Edits::promote() {
     return content == state_.content ? ok_status() : stepper_.set_content(content);
 }
 
-namespace {
-
-/// The least region that has both the cells of another one, where it has any, and all that a packed edit reaches.
-Region with_edit(const Region& other, const EditInput& edit, const Grid& grid) {
-    const auto reach = [&](float from, float along, int first, int count, int cells) {
-        const float last = static_cast<float>(cells - 1);
-        int begin = static_cast<int>(std::clamp(std::min(from, from + along) - edit.radius - 1, 0.0F, last));
-        int end = static_cast<int>(std::clamp(std::max(from, from + along) + edit.radius + 1, 0.0F, last)) + 1;
-        if (count > 0) {
-            begin = std::min(begin, first);
-            end = std::max(end, first + count);
-        }
-        return std::pair(begin, end - begin);
-    };
-    const auto [i0, nx] = reach(edit.from_x, edit.along_x, other.i0, other.nx, grid.nx);
-    const auto [j0, ny] = reach(edit.from_y, edit.along_y, other.j0, other.ny, grid.ny);
-    return {i0, j0, nx, ny};
-}
-
-} // namespace
-
 Status Edits::submit() {
     if (recorded_with_ != state_.settings().material) {
         program_.forget();
@@ -126,22 +104,13 @@ Status Edits::submit() {
     while (!due_.empty()) {
         StepInput input{};
         input.step = stage_step(state_.steps);
-        Region shaped; // all that changes sand
         std::size_t taken = 0;
         for (; taken < due_.size() && input.edit_count < MAX_EDITS; ++taken) {
-            EditInput& edit = input.edit[input.edit_count];
-            if (!pack_edit(due_[taken], stamps_, state_.settings().grid, edit)) continue;
-            if (edit.layer == LAYER_SAND && edit.kind != EDIT_PUSH) shaped = with_edit(shaped, edit, state_.settings().grid);
-            ++input.edit_count;
+            if (pack_edit(due_[taken], stamps_, state_.settings().grid, input.edit[input.edit_count])) ++input.edit_count;
         }
-        const bool bounded = shaped.cells() > 0 && bounds_tension(state_);
-        std::vector<StepInput> inputs;
-        if (bounded) inputs.push_back(bound_input(state_, shaped, Balance::take));
-        if (input.edit_count > 0) inputs.push_back(input);
-        if (bounded) inputs.push_back(bound_input(state_, shaped, Balance::add));
-        for (const StepInput& each : inputs) {
-            state_.tiles().wake_edits(each);
-            if (auto ticket = program_.submit(each); !ticket) return ticket.status();
+        if (input.edit_count > 0) {
+            state_.tiles().wake_edits(input);
+            if (auto ticket = program_.submit(input); !ticket) return ticket.status();
         }
         due_.erase(due_.begin(), due_.begin() + static_cast<std::ptrdiff_t>(taken));
     }

@@ -155,11 +155,9 @@ Status write_region(WorldState& state, Stepper& stepper, EditLayer layer, const 
     const auto& method = state.settings().method;
     if (auto status = check_region("write_region", region, state.settings().grid, values.size()); !status) return status;
     const bool terrain = layer == EditLayer::terrain, sand = layer == EditLayer::sand;
-    // Rows at the rim bring their ghost rows with them, sand those whose balance changes.
-    const int around = sand ? balance_reach : 0;
-    const int first = terrain && region.j0 == 0 ? -GHOST : std::max(region.j0 - around, 0);
-    const int end = terrain && region.j0 + region.ny == layout.ny ? layout.ny + 1 + GHOST
-                                                                  : std::min(region.j0 + region.ny + around, layout.ny);
+    // Rows at the rim bring their ghost rows with them.
+    const int first = terrain && region.j0 == 0 ? -GHOST : region.j0;
+    const int end = terrain && region.j0 + region.ny == layout.ny ? layout.ny + 1 + GHOST : region.j0 + region.ny;
     std::vector<float> rounded(values.begin(), values.end());
     {
         Bands now(state, first, end);

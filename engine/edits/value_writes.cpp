@@ -9,18 +9,9 @@ using MemoryKind = compute::NativeBuffer::Kind;
 
 ValueWrites::ValueWrites(WorldState& state, Stepper& stepper)
     : state_(state), stepper_(stepper),
-      program_(state, "written values",
-               [this](compute::ProgramBuilder& builder, const Parity& parity) {
-                   return state_.append_stage(builder, "write_values", parity, {{"written_values", values_}});
-               }),
-      balance_(state, "balance", [this](compute::ProgramBuilder& builder, const Parity& parity) {
-          return state_.append_stage(builder, "apply_edits", parity, {{"stamp_images", no_stamps_}});
+      program_(state, "written values", [this](compute::ProgramBuilder& builder, const Parity& parity) {
+          return state_.append_stage(builder, "write_values", parity, {{"written_values", values_}});
       }) {}
-
-ValueWrites::~ValueWrites() {
-    free_all();
-    state_.device().destroy_buffer(no_stamps_);
-}
 
 void ValueWrites::free_all() {
     program_.forget();
@@ -93,17 +84,6 @@ Status ValueWrites::check_kind(MemoryKind kind) const {
                                          (own->kind == MemoryKind::host_pointer ? "" : " and " + name(own->kind)));
 }
 
-Status ValueWrites::bound(const Region& region, Balance change) {
-    if (no_stamps_.id == 0) {
-        auto made = state_.device().create_buffer({STAMP_PAGE * 4, "no stamps"});
-        if (!made) return made.status();
-        no_stamps_ = *made;
-    }
-    const StepInput input = bound_input(state_, region, change);
-    state_.tiles().wake_edits(input);
-    return balance_.submit(input).status();
-}
-
 Status ValueWrites::write(EditLayer layer, const Region& region, const ValueSource& from) {
     if (auto status = check_kind(from.kind); !status) return status;
     const Content brought{layer == EditLayer::sand, layer == EditLayer::water};
@@ -116,17 +96,13 @@ Status ValueWrites::write(EditLayer layer, const Region& region, const ValueSour
     }
     if (recorded_with_ != state_.settings().material) {
         program_.forget();
-        balance_.forget();
         recorded_with_ = state_.settings().material;
     }
     StepInput input{};
     input.step = stage_step(state_.steps);
     cover(region, input.edit[0]);
     input.edit[0].layer = static_cast<int>(layer);
-    const bool bounded = layer == EditLayer::sand && bounds_tension(state_);
-    if (auto status = bounded ? bound(region, Balance::take) : ok_status(); !status) return status;
     if (auto ticket = program_.submit(input); !ticket) return ticket.status();
-    if (auto status = bounded ? bound(region, Balance::add) : ok_status(); !status) return status;
     constexpr int margin = 2; // as the stages look
     state_.tiles().wake(region.i0 - margin, region.j0 - margin, region.i0 + region.nx + margin, region.j0 + region.ny + margin);
     return ok_status();

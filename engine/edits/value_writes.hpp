@@ -1,7 +1,7 @@
 // Rectangles of cells written from values on the device or in the host's memory, without waiting: the stage write_values rounds,
 // checks and counts what write_region() does on the host.
 #pragma once
-#include "engine/step/run/prestress.hpp"
+#include "engine/step/run/region.hpp"
 #include "engine/step/run/state_program.hpp"
 #include "engine/step/run/stepper.hpp"
 #include <array>
@@ -17,7 +17,7 @@ struct ValueSource {
 class ValueWrites {
   public:
     ValueWrites(WorldState& state, Stepper& stepper);
-    ~ValueWrites();
+    ~ValueWrites() { free_all(); }
     ValueWrites(const ValueWrites&) = delete;
     ValueWrites& operator=(const ValueWrites&) = delete;
 
@@ -39,7 +39,6 @@ class ValueWrites {
     Status upload(const Region& region, const ValueSource& from);
     Status make_upload(Upload& upload);
     Status bring(const Region& region, const ValueSource& from);
-    Status bound(const Region& region, Balance change);
 
     WorldState& state_;
     Stepper& stepper_;
@@ -47,9 +46,8 @@ class ValueWrites {
     compute::Buffer values_;
     std::array<Upload, 4> uploads_{};
     std::size_t next_ = 0;
-    StateProgram program_, balance_;
-    compute::Buffer no_stamps_;
-    Material recorded_with_; // what these know of sand in balance
+    StateProgram program_;
+    Material recorded_with_; // what program_ knows of sand in balance
 };
 
 } // namespace wadi

@@ -34,60 +34,25 @@ FN float stretch_under(float tension, float inv_bulk, float largest_tr) {
     return exp_minus_one(0.5f * wmin(tr, largest_tr));
 }
 
-// What sand at rest is pulled with and held by (NUMERICS 2.20).
-struct Bearing {
-    float surface, sand; // H + hs, hs
-    float weight;        // what pushes, as a share of the sand's own
-    float clings;        // cohesion on the ground [Pa]
-    float tension;       // in balance, where its cohesion can hold it [Pa]
-    float largest_tr;    // at the tip of the yield surface
-};
-
-// cohesive: cohesion follows the saturation, here the cell's own.
-FN Bearing bearing(WorldParams world, float ground, float height, float water, bool cohesive) {
+// V - I of sand at rest and in balance, where its cohesion can hold it; 0 without prestress. cohesive: its cohesion follows the
+// saturation, here the cell's own.
+FN float in_balance(WorldParams world, float height, float water, bool cohesive) {
+    if (world.prestress == 0.0f) return 0.0f;
     float saturation = cohesive ? divide_or_zero(water, water + height) : 0.0f;
-    float whole = cohesion(saturation, world.cohesion0, world.cohesion1, world.phi1, world.phi2, world.phi3, world.slope01, world.slope12,
-                           world.slope23);
-    float c = wmin(whole, world.cohesion_cap * height);
+    float c = cohesion(saturation, world.cohesion0, world.cohesion1, world.phi1, world.phi2, world.phi3, world.slope01, world.slope12,
+                       world.slope23);
+    c = wmin(c, world.cohesion_cap * height);
     float inv_height = divide_or_zero(1.0f, height);
     float mixed = wmin(water, height);
     PoreShares pores = pore_shares(full_depth(water, height, world.retained, world.inv_drainable), mixed, inv_height);
-    Bearing b;
-    b.surface = ground + height;
-    b.sand = height;
-    b.weight = effective_weight(pores, world.density_ratio);
-    b.clings = world.adhesion_slip * (whole * world.cliff_share) * (world.sand_density * world.inv_dts);
-    float weight = b.weight;
+    float weight = effective_weight(pores, world.density_ratio);
     if (world.slope_normal == 0.0f) {
         weight = level_weight(divide_or_zero(mixed, height), relative_permeability(water, height, world.retained, world.inv_drainable),
                               world.drag_kd > 0.0f, world.density_ratio);
     }
     float pushed = balancing_tension(height, weight, sand_gravity(world.gravity, height, world.sand_gravity_cap), world.sand_density);
     float least = least_cliff_push(wmin(1.0f, cohesive_share_of(c, lean_reciprocal_or_zero(height), world.cliff_share)), world.wedge_weight);
-    b.tension = wmin(pushed * least, c * world.tip_pressure);
-    b.largest_tr = c * world.inv_yield_slope;
-    return b;
-}
-
-// V - I of sand at rest and in balance, where its cohesion can hold it; 0 without prestress.
-FN float in_balance(WorldParams world, float height, float water, bool cohesive) {
-    if (world.prestress == 0.0f) return 0.0f;
-    Bearing own = bearing(world, 0.0f, height, water, cohesive);
-    return stretch_under(own.tension, world.inv_bulk, own.largest_tr);
-}
-
-// Cells that the bound of tension looks each way.
-#define BOUND_REACH 64
-
-// By how much depth times tension may at most be larger `here` than in the `next` cell: what push and friction of their face bear, or
-// what balance itself wants of two columns on level ground.
-FN float allowed_rise(WorldParams world, Bearing here, Bearing next) {
-    float unit = world.sand_density * world.gravity;
-    float weight = 0.5f * (here.weight + next.weight);
-    float depth = 0.5f * (here.sand + next.sand);
-    float borne = unit * weight * depth * ((here.surface - next.surface) + 0.8f * world.friction * world.dx) + 0.4f * world.dx * (here.clings + next.clings);
-    float level = 0.5f * unit * (here.weight * square(here.sand) - next.weight * square(next.sand));
-    return wmax(borne, level);
+    return stretch_under(wmin(pushed * least, c * world.tip_pressure), world.inv_bulk, c * world.inv_yield_slope);
 }
 
 #endif

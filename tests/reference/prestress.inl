@@ -18,8 +18,8 @@ template <class Real> Real Solver<Real>::cohesion(Real phi, Real depth) const {
     return c;
 }
 
-/// The tension at which sand `depth` deep with `held` of water is in balance [Pa].
-template <class Real> Real Solver<Real>::balancing_tension(Real depth, Real held) const {
+/// The strain V* - 1 at which sand `depth` deep with `held` of water is in balance.
+template <class Real> Real Solver<Real>::balance(Real depth, Real held) const {
     if (!settings.method.prestress || !(depth > Real(0)) || !has(EFFECT_ELASTOPLASTIC)) return Real(0);
     const auto real = [](double x) { return static_cast<Real>(x); };
     const Material& m = settings.material;
@@ -41,16 +41,9 @@ template <class Real> Real Solver<Real>::balancing_tension(Real depth, Real held
     }
     const Real whole = P.yield_friction * P.rho_s * P.gravity * depth;
     const Real w = whole > Real(0) ? std::min(Real(1), Real(4) * c / whole) : Real(0);
-    return std::min(T * w * (least + w * (Real(1) - least)), c / (Real(2) * P.yield_friction));
-}
-
-/// The strain V* - 1 at which it is, where neighbours leave it a share of that tension.
-template <class Real> Real Solver<Real>::balance(Real depth, Real held, Real share) const {
-    const Real tension = share * balancing_tension(depth, held);
-    if (!(tension > Real(0))) return Real(0);
-    const Real c = cohesion(has(EFFECT_COHESION) ? held / (held + depth) : Real(0), depth);
+    const Real tension = std::min(T * w * (least + w * (Real(1) - least)), c / (Real(2) * P.yield_friction));
     // The root of tr = strain exp(tr) below 1, by halves.
-    const Real strain = std::min(tension / (P.lambda + P.shear), static_cast<Real>(0.36));
+    const Real strain = std::min(tension / (P.lambda + P.shear), real(0.36));
     Real low(0), high(1);
     for (int n = 0; n < 60; ++n) {
         const Real half = (low + high) / Real(2);
@@ -60,44 +53,48 @@ template <class Real> Real Solver<Real>::balance(Real depth, Real held, Real sha
     return std::expm1(std::min(low, tip) / Real(2));
 }
 
-/// Depth times tension N falls no faster than push and friction bear: along each direction of the grid what a cell further on has
-/// and what may rise on the way back from it, nowhere below 0, is the most that N may be.
+/// Depth times tension falls no faster than push and friction bear: the least that all neighbours with sand allow.
 template <class Real> void Solver<Real>::bound_balance() {
     const Axis x = axis(false);
     const auto real = [](double value) { return static_cast<Real>(value); };
-    Field<Real> weight(cells()), clings(cells()), pull(cells());
-    for (std::size_t c = 0; c < cells(); ++c) {
-        if (!(sand[c] > Real(0))) continue;
+    const auto weight = [&](std::size_t c) { // what pushes of it
         const Real full = full_depth(sand[c], water[c]);
-        weight[c] = std::max(Real(1) + P.rho_w / P.rho_s * (std::min(water[c], sand[c]) - Real(2) * full) / sand[c], Real(0));
-        const Real whole = cohesion(water[c] / (water[c] + sand[c]), std::numeric_limits<Real>::infinity());
-        clings[c] = P.adhesion * whole / P.yield_cohesion;
-        pull[c] = sand[c] * balancing_tension(sand[c], water[c]);
-    }
-    const auto rise = [&](std::size_t c, std::size_t n) { // of N from n to c beside it
-        const Real unit = P.rho_s * P.gravity;
-        const Real fall = (terrain[c] + sand[c]) - (terrain[n] + sand[n]);
-        const Real borne = unit * mean(weight[c], weight[n]) * mean(sand[c], sand[n]) * (fall + real(0.8) * P.friction * P.dx) +
-                           real(0.8) * P.dx * mean(clings[c], clings[n]);
-        return std::max(borne, unit / Real(2) * (weight[c] * sand[c] * sand[c] - weight[n] * sand[n] * sand[n]));
+        return std::max(Real(1) + P.rho_w / P.rho_s * (std::min(water[c], sand[c]) - Real(2) * full) / sand[c], Real(0));
     };
-    for (int j = 0; j < x.ny; ++j) {
-        for (int i = 0; i < x.nx; ++i) {
-            const std::size_t c = x.cell(i, j);
-            Real most = pull[c];
-            for (const auto& [di, dj] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
-                for (int n = 1; n <= 64; ++n) {
-                    const int a = i + n * di, b = j + n * dj;
-                    if (a < 0 || b < 0 || a >= x.nx || b >= x.ny || sand[x.cell(a, b)] <= P.eps) break;
-                    Real back = pull[x.cell(a, b)];
-                    for (int k = n; k > 0; --k)
-                        back = std::max(back + rise(x.cell(i + (k - 1) * di, j + (k - 1) * dj), x.cell(i + k * di, j + k * dj)),
-                                        Real(0));
-                    most = std::min(most, back);
-                }
+    const auto clings = [&](std::size_t c) {
+        const Real whole = cohesion(water[c] / (water[c] + sand[c]), std::numeric_limits<Real>::infinity());
+        return P.adhesion * whole / P.yield_cohesion;
+    };
+    Field<Real> pull(cells());
+    for (std::size_t c = 0; c < cells(); ++c)
+        pull[c] = sand[c] * (P.lambda + P.shear) * Real(2) * std::log(Vxx[c]) / (Vxx[c] * Vxx[c]);
+    Field<Real> most = pull;
+    for (bool changed = true; changed;) {
+        changed = false;
+        const auto bound = [&](std::size_t c, std::size_t n) {
+            if (sand[n] <= P.eps || !(most[c] > Real(0))) return;
+            const Real w = mean(weight(c), weight(n)), unit = P.rho_s * P.gravity;
+            const Real rise = (terrain[c] + sand[c]) - (terrain[n] + sand[n]);
+            const Real borne = unit * w * mean(sand[c], sand[n]) * (rise + real(0.8) * P.friction * P.dx) +
+                               real(0.8) * P.dx * mean(clings(c), clings(n));
+            const Real balanced = unit / Real(2) * (weight(c) * sand[c] * sand[c] - weight(n) * sand[n] * sand[n]);
+            const Real allowed = std::max(most[n] + std::max(borne, balanced), Real(0));
+            if (allowed < most[c]) changed = true;
+            most[c] = std::min(most[c], allowed);
+        };
+        for (int j = 0; j < x.ny; ++j) {
+            for (int i = 0; i < x.nx; ++i) {
+                if (i > 0) bound(x.cell(i, j), x.cell(i - 1, j));
+                if (i + 1 < x.nx) bound(x.cell(i, j), x.cell(i + 1, j));
+                if (j > 0) bound(x.cell(i, j), x.cell(i, j - 1));
+                if (j + 1 < x.ny) bound(x.cell(i, j), x.cell(i, j + 1));
             }
-            if (most < pull[c]) Vxx[c] = Vyy[c] = Real(1) + balance(sand[c], water[c], most / pull[c]);
         }
+    }
+    for (std::size_t c = 0; c < cells(); ++c) {
+        if (!(most[c] < pull[c])) continue;
+        Vxx[c] = Real(1) + (Vxx[c] - Real(1)) * (most[c] / pull[c]);
+        Vyy[c] = Vxx[c];
     }
 }
 

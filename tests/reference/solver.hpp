@@ -171,8 +171,7 @@ template <class Real> class Solver {
     std::int64_t refused = 0;       // cell additions that would have passed the declared largest height
 
     /// 2.20: strain V* - 1 of sand `depth` deep with `held` of water at which it is in balance.
-    Real balancing_tension(Real depth, Real held) const;
-    Real balance(Real depth, Real held, Real share = Real(1)) const;
+    Real balance(Real depth, Real held) const;
 
   private:
     using Side = wadi::Side;

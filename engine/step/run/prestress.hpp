@@ -5,19 +5,12 @@
 
 namespace wadi {
 
-/// So far around sand that changes the balance of other sand changes [cells]: as far as sand leans on it.
-inline constexpr int balance_reach = 16;
-
 enum class Balance : std::int8_t { take = -1, add = 1 };
 
-/// Adds to a region's strain that at which its sand, as it lies there now, is in balance (NUMERICS 2.20), or takes it; also
-/// around it what sand there has less of it for its sake. Nothing without method.prestress or strain. Waits for the device.
+/// Adds to a region's strain that at which its sand, as it lies there now, is in balance (NUMERICS 2.20), or takes it. Nothing
+/// without method.prestress or strain. Waits for the device.
 Status change_balance(WorldState& state, const Region& region, Balance change);
-/// Whether sand in balance is bounded by the sand around it, so that a change of one's sand changes the other's balance.
-bool bounds_tension(const WorldState& state);
-/// The input of apply_edits that adds or takes that alone.
-StepInput bound_input(const WorldState& state, const Region& region, Balance change);
-/// Adds balance everywhere.
+/// Adds it everywhere.
 Status put_in_balance(WorldState& state);
 /// Leaves no other strain: of sand that has not moved yet, under another material than it was drawn with. Taking the balance of
 /// the one before would leave the rounding of 16-bit storage.

@@ -663,11 +663,10 @@ static inline wadi_edit wadi_default_edit(void) {
  *  Those of one step act in the order of the calls, ahead of that step; in the middle of a step that runs in parts "the next one" is the
  *  one after it. Depths change by whole quanta and every quantum is in the ledger; what finds no room below method.largest_height is
  *  refused and counted (wadi_world_stats.refused); no more is taken than there is. Sand and water keep their depth where terrain changes,
- *  added sand is unstrained. With method.prestress it is in balance, with the sand around it as well: a shape that rests when a level
- *  begins with it also rests when it is edited or written. An edit that adds a material the world has not held so far promotes it when
- *  its step comes: buffers are allocated and programs recorded anew, once, and that step may wait for the device. Edits of the level
- *  itself act ahead of these and are no part of the command log. wadi_world_load and every other way back in time drops the edits that
- *  wait: queue those of later steps again.
+ *  added sand is unstrained, or in balance with method.prestress. An edit that adds a material the world has not held so far promotes it
+ *  when its step comes: buffers are allocated and programs recorded anew, once, and that step may wait for the device. Edits of the
+ *  level itself act ahead of these and are no part of the command log. wadi_world_load and every other way back in time drops the edits
+ *  that wait: queue those of later steps again.
  *  Errors: BAD_ARGUMENT, naming edit, field and range, or `effects` when the level forces off what an edit adds; none is queued. */
 WADI_API wadi_result wadi_world_edit(wadi_world_id world, const wadi_edit* edits, uint32_t count);
 
@@ -678,7 +677,7 @@ WADI_API wadi_result wadi_world_edit(wadi_world_id world, const wadi_edit* edits
 WADI_API wadi_result wadi_world_create_stamp(wadi_world_id world, int32_t nx, int32_t ny, const float* values, uint32_t* stamp);
 
 /** Overwrites TERRAIN, SAND_DEPTH or TOTAL_WATER_DEPTH [m] in a region at once, after the steps asked for.
- *  Values are rounded to quanta; what that adds or takes is in the ledger; velocities stay, strain as with edits. Promotes like an edit.
+ *  Values are rounded to quanta; what that adds or takes is in the ledger; velocities stay. Promotes like an edit.
  *  Waits: the steps.
  *  Errors: BAD_ARGUMENT (another field, a region outside, NaN, a negative depth, a column above method.largest_height: the message
  *  names the cell; `effects` forced off), OUT_OF_MEMORY. */
