@@ -79,8 +79,9 @@ FN float outflow_limit(float height, FacePair x, FacePair y, float limiter, floa
 FN float limited_flux(float raw, float scale_low, float scale_high, float quantum, float inv_quantum, float phase) {
     float scale = raw > 0.0f ? scale_low : scale_high;
     float limited = raw * wabs(scale);
-    float depth = moved_quanta(limited, inv_quantum, scale > 0.0f ? phase : 0.0f) * quantum;
-    return flush(quantum > 0.0f ? (raw > 0.0f ? depth : -depth) : limited);
+    float up = (scale > 0.0f ? 1.0f : 0.0f) * phase; // factors choose: g++ would sink loads behind conditions
+    float share = limited > 0.0f ? up : -up;
+    return flush(whole_quanta(limited + share * quantum, quantum, inv_quantum));
 }
 
 FN float integrate_height(float height, float flux_west, float flux_east, float flux_south, float flux_north) {
