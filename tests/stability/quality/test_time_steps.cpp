@@ -1,5 +1,5 @@
 // Waves and stress at time steps far beyond what the grid can follow are slowed, but as smooth as within; at steps so short that
-// a flux is less than a quantum, velocities still gather.
+// a flux is a small part of a quantum, velocities still gather.
 #include "tests/stability/quality.hpp"
 
 using namespace wadi;
@@ -78,7 +78,7 @@ TEST_CASE("at dt = 1e-5 s water on a slope gathers speed as gravity says, though
         const auto before = cells_of(world, "water_height");
         step(world, 200);
         CHECK(cells_of(world, "water_velocity_x").at(12, 12) == doctest::Approx(-GRAVITY * 0.01 * 200e-5).epsilon(0.01));
-        // A flux below a quantum a step is none: NUMERICS 2.
+        // A quantum in 500 steps at most, and none of these has so high a phase: NUMERICS 2.2.
         CHECK(moved(before, cells_of(world, "water_height"), 1) == 0);
     });
     scene.settings.dt = 1e-2; // negative control: long steps do move quanta
