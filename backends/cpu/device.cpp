@@ -27,7 +27,7 @@ std::int64_t area(const compute::Range2& r) { return std::int64_t{std::max(0, r.
 } // namespace
 
 CpuDevice::CpuDevice(const InstructionSet& set, const compute::DeviceOptions& options)
-    : set_(set), full_barriers_(options.full_barriers), allocator_(options.allocator) {
+    : set_(set), full_barriers_(options.full_barriers), flush_denormals_(options.flush_denormals), allocator_(options.allocator) {
     capabilities_.backend = "cpu";
     capabilities_.name = processor_name();
     capabilities_.kind = compute::DeviceKind::cpu;
@@ -407,6 +407,7 @@ void CpuDevice::execute(Submission& submission) {
         program.progress[n].rows_to_run.store(program.steps[n].rows(), std::memory_order_relaxed);
     }
     const auto work = [&] {
+        const compute::FlushedDenormals flushed(flush_denormals_);
         std::size_t waited = 0; // all steps before this one are done
         for (std::size_t n = 0; n < count; ++n) {
             auto& step = program.steps[n];

@@ -133,6 +133,7 @@ class CpuDevice final : public compute::Device {
     const InstructionSet& set_;
     std::optional<ThreadPool> pool_;
     const bool full_barriers_;
+    const bool flush_denormals_;
     const std::shared_ptr<const compute::Allocator> allocator_; // null: pages of the system's
     compute::Capabilities capabilities_;
     compute::Tuning tuning_; // all 0: stages run one by one, and worlds do not choose tiles

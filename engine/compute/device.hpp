@@ -86,6 +86,7 @@ struct DeviceOptions {
     RunJobs run_jobs; // CPU backend: a host's threads in place of all but the device thread; `threads` calls a pass
     std::shared_ptr<const Allocator> allocator; // CPU backend: of all buffers; null = the system's pages
     std::string instruction_set;                // CPU backend: "" = best, "base", "avx2", "avx512"
+    bool flush_denormals = false;               // CPU backend, for tests: stages take denormal numbers for 0, as some GPUs do
     bool validate = false;                      // Vulkan: validation and synchronization validation layers
     bool full_barriers = false;                 // a barrier before every operation
     std::optional<HostDevice> host;             // Vulkan: run on the host's device; CUDA: beside it

@@ -39,9 +39,9 @@ FN float depth_beside(float surface, float top, float next_surface, float next_t
 }
 
 // What flows into sand from beside it is one with the water in there: both share their momentum. pure_*: depths of pure water;
-// mixed_height: the face's mean depth of mixed water.
+// mixed_height: the face's mean depth of mixed water. A velocity that is to be flushed flows nowhere: it may be a denormal, 0 on some GPUs.
 FN void enter_sand(REF(float) pure, REF(float) mixed, Beside beside, float pure_low, float pure_high, float mixed_height) {
-    float facing = wmax(pure > 0.0f ? beside.low : 0.0f, pure < 0.0f ? beside.high : 0.0f);
+    float facing = wmax(pure > 1.0e-20f ? beside.low : 0.0f, pure < -1.0e-20f ? beside.high : 0.0f);
     float donor = pure > 0.0f ? pure_low : pure_high;
     float share = donor > 1.0e-20f ? wmin(lean_quotient(facing, wmax(donor, 1.0e-20f)), 1.0f) : 0.0f; // less may be a denormal
     float entering = share * (0.5f * (pure_low + pure_high));

@@ -239,6 +239,7 @@ Result<Devices> open_devices(const std::vector<std::string>& backends, const std
             plain.threads = 1;
             plain.instruction_set = plain_set;
             best.threads = 2;
+            best.flush_denormals = true;
             devices.plain = std::make_unique<Session>(target, plain);
             if (std::find(backends.begin(), backends.end(), name) != backends.end())
                 devices.others.push_back(std::make_unique<Session>(target, best));
