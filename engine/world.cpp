@@ -53,11 +53,12 @@ Status World::set_update_settings(const UpdateSettings& settings) {
 
 Status World::after_step() {
     auto status = roll_back_.after_step();
-    return status ? at_boundary() : status;
+    if (status) status = at_boundary();
+    return status ? checking_.after_step() : status;
 }
 
 std::uint64_t World::undisturbed(std::uint64_t most) const {
-    return commands_.undisturbed(roll_back_.undisturbed(edits_.undisturbed(most)));
+    return checking_.undisturbed(commands_.undisturbed(roll_back_.undisturbed(edits_.undisturbed(most))));
 }
 
 Status World::jumped() {

@@ -4,6 +4,7 @@
 #include "engine/edits/command_log.hpp"
 #include "engine/frames/frame_driver.hpp"
 #include "engine/frames/outputs.hpp"
+#include "engine/reads/checking.hpp"
 #include "engine/reads/queries.hpp"
 #include "engine/reads/state_reader.hpp"
 #include "engine/saves/roll_back.hpp"
@@ -45,6 +46,8 @@ class World {
     Outputs& outputs() { return outputs_; }
     /// Fields, statistics, hash.
     StateReader& reader() { return reader_; }
+    /// Whether the state keeps what the solver promises.
+    Checking& checking() { return checking_; }
     Snapshots& snapshots() { return snapshots_; }
     RollBack& roll_back() { return roll_back_; }
     Queries& queries() { return queries_; }
@@ -67,6 +70,7 @@ class World {
     FrameDriver frames_{state_, stepper_};
     Outputs outputs_{state_};
     StateReader reader_{state_, stepper_};
+    Checking checking_{state_, stepper_, reader_};
     RollBack roll_back_{state_, stepper_};
     Snapshots snapshots_{state_, stepper_, roll_back_};
     Edits edits_{state_, stepper_};

@@ -84,6 +84,13 @@ wadi_result wadi_world_set_profiling(wadi_world_id id, int32_t on) {
     return with_world(__func__, id, [&](HostedWorld& hosted) { return report(hosted.world->stepper().set_profiling(on != 0)); });
 }
 
+wadi_result wadi_world_set_checking(wadi_world_id id, int32_t on) {
+    return with_world(__func__, id, [&](HostedWorld& hosted) {
+        hosted.world->checking().set(on != 0);
+        return report(ok_status());
+    });
+}
+
 wadi_result wadi_world_get_stage_timings(wadi_world_id id, wadi_stage_timing* timings, uint32_t* count) {
     return with_world(__func__, id, [&](HostedWorld& hosted) {
         if (count == nullptr) return bad_argument("wadi_world_get_stage_timings: count is NULL");

@@ -191,6 +191,7 @@ int main_checked(int argc, char** argv) {
         ->needs("--mp4")
         ->capture_default_str();
     app.add_flag("--profile", options.profile, "time every stage on the device");
+    app.add_flag("--check", options.check, "verify the state after every step and end where it breaks a promise; slow");
     app.add_flag("--jpeg", options.jpeg, "contact_sheet.jpg instead of contact_sheet.png, for pages");
     app.add_flag("--no-frames", no_frames, "no pictures, for benchmarks")->excludes("--mp4")->excludes("--jpeg");
     app.add_flag("--print-plan", options.print_plan, "print effects, passes and buffers, and exit");

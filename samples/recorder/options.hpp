@@ -59,6 +59,7 @@ struct Options {
     bool mp4 = false;
     int frames_per_second = 25; // of the MP4
     bool profile = false;
+    bool check = false;
     bool print_plan = false;
     std::vector<DumpRequest> dumps;
     std::string dump_as = "npy"; // ending of their files

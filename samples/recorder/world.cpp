@@ -52,6 +52,7 @@ Failure World::create(const Options& options) {
     for (std::uint32_t n = 0; n < info_.warning_count; ++n) {
         if (const char* warning = wadi_world_get_warning(id_, n)) warnings_.emplace_back(warning);
     }
+    if (options.check && wadi_world_set_checking(id_, 1) != WADI_OK) return {EXIT_BAD_INPUT, wadi_get_last_error()};
     if (options.profile && wadi_world_set_profiling(id_, 1) != WADI_OK) return {EXIT_BAD_INPUT, wadi_get_last_error()};
     return {};
 }

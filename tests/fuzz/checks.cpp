@@ -23,7 +23,7 @@ Base run_base(const Case& c, Session& session) {
         run.note("stats", stats.status());
         if (!stats) break;
         base.blown_up = blown_up(c.scene.settings, *stats);
-        run.failure = check_books(run, c, *stats);
+        run.failure = check_books(run, *stats);
         if (!run.failure.empty()) run.failure = "after step " + std::to_string(done + 1) + " " + run.failure;
         if (base.blown_up) break; // NaN may be gone in the end, what it did to bits is not
     }

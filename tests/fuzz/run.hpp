@@ -14,7 +14,6 @@ using conformance::Session;
 struct Run {
     std::unique_ptr<World> world;
     std::string refused, failure;
-    bool too_high = false; // a column may have passed largest_height: heights have been rounded, the ledger is not exact any more
     bool good() const { return refused.empty() && failure.empty(); }
     void note(const char* what, const Status& status);
 };
@@ -29,9 +28,9 @@ std::uint64_t hash(Run& run);
 /// in which GPUs divide exactly (a million times the declared largest height). From there on bits say nothing.
 bool blown_up(const Settings& settings, const WorldStats& stats);
 
-/// What is wrong with the state of a run; empty where nothing is. For every step: what piles up may be gone in the next.
-/// `raised`: metres by which others than the case's edits may have raised the ground.
-std::string check_books(Run& run, const Case& c, const WorldStats& stats, double raised = 0);
+/// Which promise the state of a run breaks (Checking); empty where none, and for method "published", which may blow up. For every step:
+/// what piles up may be gone in the next.
+std::string check_books(Run& run, const WorldStats& stats);
 
 /// The run that all others are compared with.
 struct Base {

@@ -484,6 +484,16 @@ namespace Wadi
         public static extern Result wadi_world_get_stage_timings(WorldId world, StageTiming* timings, uint* count);
 
         /// <summary>
+        /// 1 = after every step the whole state is read and verified: every number is finite, no depth is negative, no speed is above
+        /// its clamp, and every quantum is in the books (the last three not of method "published", the books not of columns near
+        /// method.largest_height); off at first. The call that takes a step which breaks one returns WADI_ERROR_INTERNAL, and
+        /// wadi_get_last_error() names step, field and cell. For who looks for a fault: each step is waited for, and takes many times
+        /// as long.
+        /// </summary>
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        public static extern Result wadi_world_set_checking(WorldId world, int on);
+
+        /// <summary>
         /// OK, or what broke the world for good (DEVICE_LOST) with wadi_get_last_error() saying how. A fault that the device has not
         /// reported yet is not known.
         /// </summary>

@@ -44,6 +44,12 @@ namespace Wadi
             Check(Native.wadi_world_set_profiling(Id, on ? 1 : 0));
         }
 
+        /// <summary>Every step is verified and throws, naming step, field and cell, where it breaks a promise; slow, off at first.</summary>
+        public void SetChecking(bool on)
+        {
+            Check(Native.wadi_world_set_checking(Id, on ? 1 : 0));
+        }
+
         /// <summary>Mean times of stages since profiling was switched on.</summary>
         public StageTiming[] GetStageTimings()
         {

@@ -67,6 +67,7 @@
     X(wadi_result, world_get_memory, (wadi_world_id world, wadi_memory_item* items, uint32_t* count)) \
     X(wadi_result, world_set_profiling, (wadi_world_id world, wadi_bool on)) \
     X(wadi_result, world_get_stage_timings, (wadi_world_id world, wadi_stage_timing* timings, uint32_t* count)) \
+    X(wadi_result, world_set_checking, (wadi_world_id world, wadi_bool on)) \
     X(wadi_result, world_get_error, (wadi_world_id world)) \
     X(wadi_result, cuda_wait, (wadi_world_id world, void* event)) \
     X(wadi_result, cuda_signal, (wadi_world_id world, void* event))
