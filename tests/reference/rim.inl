@@ -290,7 +290,7 @@ template <class Real> void Solver<Real>::run_off(const Axis& ax, bool far_end, i
     const Real comes = runs * before;
     const Real wanted = std::clamp(due - comes, -comes / Real(2), Real(2) * comes);
     const Real flows =
-        std::clamp(Real(50) * known.mean - Real(1), given > Real(0) && comes > Real(0) ? Real(1) : Real(0), Real(1));
+        std::clamp(Real(4) * known.mean - Real(1), given > Real(0) && comes > Real(0) ? Real(1) : Real(0), Real(1));
     const Real n = Real(cells);
     const Real extra = flows * ratio(wanted, h) / n;
     const Real arrives = next * (Real(1) + subcritical * (narrowed - Real(1))) * (Real(1) + subcritical * known.error);
@@ -305,7 +305,7 @@ template <class Real> void Solver<Real>::run_off(const Axis& ax, bool far_end, i
     const Real miss = std::clamp(ratio(wanted, comes), Real(-0.2), Real(0.2));
     memory.error += flows > Real(0) ? flows * subcritical * Real(2) / n * pace * miss : -std::min(pace, Real(1)) * known.error;
     memory.error = std::clamp(memory.error, Real(-0.1), Real(0.1));
-    memory.mean += std::min(pace / Real(8), Real(1)) * (std::clamp(ratio(next, c), Real(-1), Real(1)) - known.mean);
+    memory.mean += std::min(pace / Real(8), Real(1)) * (std::clamp(Real(50) * ratio(next, c), Real(-1), Real(1)) - known.mean);
 }
 
 /// Water falls off the edge: as fast as it comes, critical at least.
