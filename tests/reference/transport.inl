@@ -132,8 +132,8 @@ template <class Real> Real Solver<Real>::thinnest(const Field<Real>& height) con
     return &height == &sand ? P.film / Real(2) : P.eps;
 }
 
-/// 2.3: corners of upright banks beside a face. A corner within one of its cells is one where the cell's far face along and one of its two
-/// faces across stand at 0; one beside the face, where the next face to that side and just one of the two between do.
+/// 2.3: corners of upright banks beside a face. A corner within one of its cells is one where the cell's far face along and one
+/// of its two faces across stand at 0; one beside the face, where the next face to that side and just one of the two between do.
 template <class Real>
 typename Solver<Real>::Corners Solver<Real>::corners(const Faces<Real>& velocity, const Axis& ax, int a, int b) const {
     const Field<Real>& u = velocity.along(ax);
@@ -230,8 +230,8 @@ void Solver<Real>::advect_velocity_second_order(const Field<Real>& height, const
     });
 }
 
-/// A layer's momentum by the order that its effect chooses, of first order beside corners of banks; `carried` is what advection of second
-/// order carries.
+/// A layer's momentum by the order that its effect chooses, of first order beside corners of banks; `carried` is what advection
+/// of second order carries.
 template <class Real>
 void Solver<Real>::advect(std::uint32_t second_order, const Field<Real>& height, const Faces<Real>& flux,
                           const Faces<Real>& carried, Real k, Faces<Real>& velocity) const {
