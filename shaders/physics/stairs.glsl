@@ -28,4 +28,17 @@ FN Stairs stairs_beside(Around at, float left_low, float left_high, float right_
     return bank;
 }
 
+// What water that has turned into the axis within a cell brings beyond what comes from `near`, the velocity of the cell's far face: its speed,
+// up to the face's own velocity. inflow, turned: what comes through the cell's middle, and what the cell gains across, as fluxes of
+// advect_velocity; across_a, across_b: velocities at its faces across.
+FN float turned_gain(float inflow, float turned, float own, float near, float across_a, float across_b) {
+    float along = wabs(near);
+    float across = wmax(wabs(across_a), wabs(across_b));
+    float speed = wmax(along, across) + 0.25f * wmin(along, across); // of both, from 12 % below to 3 % above
+    float faster = wclamp(own, -speed, speed) - near;
+    float up = own > 0.0f ? 1.0f : 0.0f;
+    float down = own < 0.0f ? 1.0f : 0.0f;
+    return wmin(wmax(turned, 0.0f), wmax(inflow, 0.0f)) * (up * wmax(faster, 0.0f) + down * wmin(faster, 0.0f));
+}
+
 #endif

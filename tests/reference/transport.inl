@@ -162,8 +162,8 @@ void Solver<Real>::advect_velocity(const Field<Real>& height, const Faces<Real>&
         if (hb <= thinnest(height)) return;
         const Field<Real>& along = flux.along(ax);
         const Field<Real>& across = flux.across(ax);
-        Real Q_W = mean(along[ax.face(a - 1, b)], along[ax.face(a, b)]);
-        Real Q_E = mean(along[ax.face(a, b)], along[ax.face(a + 1, b)]);
+        const Real Q_W = mean(along[ax.face(a - 1, b)], along[ax.face(a, b)]);
+        const Real Q_E = mean(along[ax.face(a, b)], along[ax.face(a + 1, b)]);
         const Real Q_S = mean(across[ax.cross(a - 1, b)], across[ax.cross(a, b)]);
         const Real Q_N = mean(across[ax.cross(a - 1, b + 1)], across[ax.cross(a, b + 1)]);
         const Field<Real>& u_old = old.along(ax);
@@ -174,18 +174,25 @@ void Solver<Real>::advect_velocity(const Field<Real>& height, const Faces<Real>&
         Real u_S = b > 0 ? u_old[ax.face(a, b - 1)] : Q_S > Real(0) ? Real(0) : u;
         Real u_N = b + 1 < ax.across() ? u_old[ax.face(a, b + 1)] : Q_N < Real(0) ? Real(0) : u;
         const Corners bank = &height == &sand ? Corners() : corners(old, ax, a, b);
-        if (bank.any()) { // what has turned into the axis in a cell keeps the face's velocity
-            const auto turned = [&](int cell) {
-                return std::max(across[ax.cross(cell, b)] - across[ax.cross(cell, b + 1)], Real(0)) / Real(2);
-            };
-            Q_W -= turned(a - 1);
-            Q_E += turned(a);
+        Real turned(0); // what has turned into the axis in a cell brings its speed, up to u
+        const auto turn = [&](int cell, Real entering, Real near) {
+            const Real gained = std::max(across[ax.cross(cell, b)] - across[ax.cross(cell, b + 1)], Real(0)) / Real(2);
+            const Field<Real>& v = old.across(ax);
+            const Real w = std::max(std::abs(v[ax.cross(cell, b)]), std::abs(v[ax.cross(cell, b + 1)]));
+            const Real speed = std::max(w, std::abs(near)) + std::min(w, std::abs(near)) / Real(4);
+            const Real most = u > Real(0) ? std::min(u, speed) : std::max(u, -speed);
+            const bool slower = u > Real(0) ? near < most : u < Real(0) && near > most;
+            if (slower) turned += std::min(gained, std::max(entering, Real(0))) * (most - near);
+        };
+        if (bank.any()) {
+            turn(a - 1, Q_W, u_W);
+            turn(a, -Q_E, u_E);
         }
         if (b > 0 && (bank.within || bank.south)) u_S = u;
         if (b + 1 < ax.across() && (bank.within || bank.north)) u_N = u;
         const Real from_along = std::max(-Q_E, Real(0)) * (u_E - u) + std::max(Q_W, Real(0)) * (u_W - u);
         const Real from_across = std::max(-Q_N, Real(0)) * (u_N - u) + std::max(Q_S, Real(0)) * (u_S - u);
-        velocity.along(ax)[ax.face(a, b)] = u + (from_along + from_across) / hb;
+        velocity.along(ax)[ax.face(a, b)] = u + (from_along + from_across + turned) / hb;
     });
 }
 
