@@ -195,6 +195,11 @@ template <class Real> class Solver {
     void advect_velocity_second_order(const Field<Real>& height, const Faces<Real>& flux, const Faces<Real>& carried, Real k,
                                       Faces<Real>& velocity) const;
     void advect_velocity(const Field<Real>& height, const Faces<Real>& flux, Faces<Real>& velocity) const;
+    struct Corners {
+        bool within = false, south = false, north = false; // south and north along x: on the sides of low and high numbers
+        bool any() const { return within || south || north; }
+    };
+    Corners corners(const Faces<Real>& velocity, const Axis& ax, int a, int b) const;
     template <class Height, class Surface> void update_types(Height height, Surface surface, Faces<Real>& type) const;
     void extrapolate(const Faces<Real>& velocity, const Faces<Real>& type);
     void backtrace(const Faces<Real>& type, Real k, Faces<Real>& velocity) const;

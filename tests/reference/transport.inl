@@ -132,6 +132,27 @@ template <class Real> Real Solver<Real>::thinnest(const Field<Real>& height) con
     return &height == &sand ? P.film / Real(2) : P.eps;
 }
 
+/// 2.3: corners of upright banks beside a face. A corner within one of its cells is one where the cell's far face along and one
+/// of its two faces across stand at 0; one beside the face, where the next face to that side and just one of the two between do.
+template <class Real>
+typename Solver<Real>::Corners Solver<Real>::corners(const Faces<Real>& velocity, const Axis& ax, int a, int b) const {
+    const Field<Real>& u = velocity.along(ax);
+    const Field<Real>& v = velocity.across(ax);
+    const auto stands = [&](int cell, int row) { return v[ax.cross(cell, row)] == Real(0); };
+    const auto within = [&](int cell, int far_face) {
+        return u[ax.face(far_face, b)] == Real(0) && (stands(cell, b) || stands(cell, b + 1));
+    };
+    const auto beside = [&](int row, int between) {
+        const bool outside = row < 0 || row >= ax.across();
+        return (outside || u[ax.face(a, row)] == Real(0)) && stands(a - 1, between) != stands(a, between);
+    };
+    Corners found;
+    found.within = within(a - 1, a - 1) || within(a, a + 1);
+    found.south = beside(b - 1, b);
+    found.north = beside(b + 1, b + 1);
+    return found;
+}
+
 /// 2.3 with the layer's predicted height and its limited fluxes.
 template <class Real>
 void Solver<Real>::advect_velocity(const Field<Real>& height, const Faces<Real>& flux, Faces<Real>& velocity) const {
@@ -150,11 +171,28 @@ void Solver<Real>::advect_velocity(const Field<Real>& height, const Faces<Real>&
         const Real u_W = u_old[ax.face(a - 1, b)];
         const Real u_E = u_old[ax.face(a + 1, b)];
         // What enters from beyond the grid has no velocity along the side.
-        const Real u_S = b > 0 ? u_old[ax.face(a, b - 1)] : Q_S > Real(0) ? Real(0) : u;
-        const Real u_N = b + 1 < ax.across() ? u_old[ax.face(a, b + 1)] : Q_N < Real(0) ? Real(0) : u;
+        Real u_S = b > 0 ? u_old[ax.face(a, b - 1)] : Q_S > Real(0) ? Real(0) : u;
+        Real u_N = b + 1 < ax.across() ? u_old[ax.face(a, b + 1)] : Q_N < Real(0) ? Real(0) : u;
+        const Corners bank = &height == &sand ? Corners() : corners(old, ax, a, b);
+        Real turned(0); // what has turned into the axis in a cell brings its speed, up to u
+        const auto turn = [&](int cell, Real entering, Real near) {
+            const Real gained = std::max(across[ax.cross(cell, b)] - across[ax.cross(cell, b + 1)], Real(0)) / Real(2);
+            const Field<Real>& v = old.across(ax);
+            const Real w = std::max(std::abs(v[ax.cross(cell, b)]), std::abs(v[ax.cross(cell, b + 1)]));
+            const Real speed = std::max(w, std::abs(near)) + std::min(w, std::abs(near)) / Real(4);
+            const Real most = u > Real(0) ? std::min(u, speed) : std::max(u, -speed);
+            const bool slower = u > Real(0) ? near < most : u < Real(0) && near > most;
+            if (slower) turned += std::min(gained, std::max(entering, Real(0))) * (most - near);
+        };
+        if (bank.any()) {
+            turn(a - 1, Q_W, u_W);
+            turn(a, -Q_E, u_E);
+        }
+        if (b > 0 && (bank.within || bank.south)) u_S = u;
+        if (b + 1 < ax.across() && (bank.within || bank.north)) u_N = u;
         const Real from_along = std::max(-Q_E, Real(0)) * (u_E - u) + std::max(Q_W, Real(0)) * (u_W - u);
         const Real from_across = std::max(-Q_N, Real(0)) * (u_N - u) + std::max(Q_S, Real(0)) * (u_S - u);
-        velocity.along(ax)[ax.face(a, b)] = u + (from_along + from_across) / hb;
+        velocity.along(ax)[ax.face(a, b)] = u + (from_along + from_across + turned) / hb;
     });
 }
 
@@ -199,12 +237,21 @@ void Solver<Real>::advect_velocity_second_order(const Field<Real>& height, const
     });
 }
 
-/// A layer's momentum by the order that its effect chooses; `carried` is what advection of second order carries.
+/// A layer's momentum by the order that its effect chooses, of first order beside corners of banks; `carried` is what advection
+/// of second order carries.
 template <class Real>
 void Solver<Real>::advect(std::uint32_t second_order, const Field<Real>& height, const Faces<Real>& flux,
                           const Faces<Real>& carried, Real k, Faces<Real>& velocity) const {
-    has(second_order) ? advect_velocity_second_order(height, flux, carried, k, velocity)
-                      : advect_velocity(height, flux, velocity);
+    if (!has(second_order)) return advect_velocity(height, flux, velocity);
+    const Faces<Real> old = velocity;
+    Faces<Real> at_corners = velocity;
+    advect_velocity(height, flux, at_corners);
+    advect_velocity_second_order(height, flux, carried, k, velocity);
+    if (&height == &sand) return;
+    for_inner_faces([&](const Axis& ax, int a, int b) {
+        const std::size_t face = ax.face(a, b);
+        if (corners(old, ax, a, b).any()) velocity.along(ax)[face] = at_corners.along(ax)[face];
+    });
 }
 
 } // namespace wadi::reference

@@ -268,8 +268,9 @@ def seepage(height):
     return measure
 
 
-def channel(degrees):
-    """Depth in the middle of a channel of four cells between upright banks 4 m apart, over the normal depth of 0.5 m2/s; S 0.002."""
+def channel(degrees, cells=4, order=1):
+    """Depth in the middle of a channel so many cells wide between upright banks, over the normal depth of 0.5 m2/s; S 0.002. Its width is that
+    which its cells have: along the diagonal three or five of them stand in a row."""
     n, slope, manning, flow, angle = 120 if degrees else 200, 0.002, 0.03, 0.5, math.radians(degrees)
     x, y = np.meshgrid(np.arange(n) + 0.5, np.arange(n if degrees else 6) + 0.5)
     if degrees:
@@ -277,21 +278,23 @@ def channel(degrees):
     else:
         run, off = x, y - 3
     bed = slope * (run.max() - run)
-    wet = np.abs(off) < 2
+    wet = np.abs(off) < cells / 2
+    middle = wet & (np.abs(run - run[wet].max() / 2) < 15)
+    width = middle.sum() / 30
     spring = [[6 * math.cos(angle) + 2, 6 * math.sin(angle) + 2], [6, 3]][degrees == 0]
     sides = {"east": {"kind": "outflow"}, **({"north": {"kind": "outflow"}} if degrees > 30 else {})}
-    one = level(n, x.shape[0], 1, 0.05, terrain=[{"file": np.where(wet, bed, bed + 10)}], sides=sides, height=32,
-                sources=[{"shape": "disc", "center": spring, "radius": 2, "discharge": 4 * flow}], material={"bed_friction": 0, "manning": manning})
+    one = level(n, x.shape[0], 1, 0.05, order=order, terrain=[{"file": np.where(wet, bed, bed + 10)}], sides=sides, height=32,
+                sources=[{"shape": "disc", "center": spring, "radius": cells / 2, "discharge": width * flow}], material={"bed_friction": 0, "manning": manning})
 
     def measure(lab):
         h = lab.run(one, [900], ("W",), values={}).field("W", 900)
-        middle = wet & (np.abs(run - run[wet].max() / 2) < 15)
-        return float(h[middle].mean()) / (manning * flow / math.sqrt(slope)) ** 0.6, 1, 0.25
+        return float(h[middle].mean()) / (manning * flow / math.sqrt(slope)) ** 0.6, 1, 0.25 if cells > 2 else 0.5
     return measure
 
 
 def rows():
-    found = [Row(f"channel/{degrees:g}", False, channel(degrees)) for degrees in (0, 22.5, 45)]
+    found = [Row(f"channel/{cells}_cells/{degrees:g}/order_{order}", False, channel(degrees, cells, order))
+             for cells in (2, 4) for degrees in (0, 10, 22.5, 35, 45) for order in (1, 2)]
     for height in (16, 256, 1024, 4096):
         for dt in (0.01, 0.05, 0.2):
             found.append(Row(f"film/{height}/dt_{dt:g}", (height, dt) == (1024, 0.2), film(height, dt)))
