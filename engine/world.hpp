@@ -20,8 +20,8 @@ class World {
     static Result<std::unique_ptr<World>> create(const Settings& settings, const InitialFields& fields,
                                                  std::unique_ptr<compute::Device> device, compute::GroupSize group = {});
 
-    /// Where the world tells what happens to it (WorldState::log), limits at work among it, for which it looks from now on. Errors:
-    /// those of Limits::watch().
+    /// Where the world tells what happens to it (WorldState::log), limits at work among it, for which it looks from now on.
+    /// Errors: those of Limits::watch().
     Status set_log(compute::Log log);
 
     /// Submits water steps beside the clock of update(); returns before the device has finished them. A step that an update began

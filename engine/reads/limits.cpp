@@ -107,7 +107,8 @@ LimitCounts Limits::counts(std::uint64_t step) const {
         all.capped_sand = std::max(all.capped_sand, number(13));
         all.highest_column = std::max(all.highest_column, number(14));
     }
-    // No faster than the bed lets it run, nor than what has fallen from the highest surface of all; but faster than it is held at.
+    // No faster than the bed lets it run, nor than what has fallen from the highest surface of all; but faster than it is held
+    // at.
     if (all.water.clamped_faces > 0)
         all.clamped_speed = std::max(std::min(std::sqrt(driven2), std::sqrt(2 * settings.gravity * std::max(top - bottom, 0.0))),
                                      1.1 * clamp_speed(settings));
@@ -127,7 +128,7 @@ Result<LimitCounts> Limits::count() {
 
 Status Limits::watch() {
     auto status = prepare();
-    watching_ = status.ok();
+    watching_ = static_cast<bool>(status);
     return status;
 }
 
@@ -200,12 +201,13 @@ void Limits::tell(const LimitCounts& c) {
     });
     tell_once(water_outflow, many(w.limited_cells, w.wet_faces / 2), c, [&] {
         return "water would leave more than it has in " + share(w.limited_cells, w.wet_faces / 2, " wet cells") +
-               around(c.water_limited_at) + ", and is held back; use dt <= " +
-               at_most(s.dt / std::max(4 * s.method.velocity_clamp, 1.1)) + " s";
+               around(c.water_limited_at) +
+               ", and is held back; use dt <= " + at_most(s.dt / std::max(4 * s.method.velocity_clamp, 1.1)) + " s";
     });
     tell_once(sand_clamp, many(sand.clamped_faces, sand.wet_faces), c, [&] {
         return "sand is held at velocity_clamp dx/dts = " + rounded(s.method.velocity_clamp * s.grid.dx / dts) + " m/s at " +
-               share(sand.clamped_faces, sand.wet_faces, " faces with sand") + around(c.sand_clamped_at) + "; use " + more_substeps;
+               share(sand.clamped_faces, sand.wet_faces, " faces with sand") + around(c.sand_clamped_at) + "; use " +
+               more_substeps;
     });
     tell_once(sand_gravity, many(sand.capped_faces, sand.wet_faces), c, [&] {
         const double substeps = std::ceil(s.dt / s.grid.dx * std::sqrt(s.gravity * c.capped_sand / s.method.sand_gravity_cap));
@@ -218,8 +220,9 @@ void Limits::tell(const LimitCounts& c) {
                around(c.sand_limited_at) + ", and is held back; use " + more_substeps;
     });
     tell_once(high_columns, c.high_columns > 0, c, [&] {
-        return std::to_string(c.high_columns) + " columns are above method.largest_height " + number_text(s.method.largest_height) +
-               " m" + around(c.high_at) + ", where heights are rounded and the books drift; use " +
+        return std::to_string(c.high_columns) + " columns are above method.largest_height " +
+               number_text(s.method.largest_height) + " m" + around(c.high_at) +
+               ", where heights are rounded and the books drift; use " +
                number_text(std::exp2(std::ceil(std::log2(1.1 * c.highest_column)))) + " or more";
     });
 }

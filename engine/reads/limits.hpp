@@ -1,5 +1,5 @@
-// Limits at work: where guards hold a flow back, counted on the device. Statistics ask for it; a world with a log looks now and then
-// by itself, never waiting for the device, and tells once of each limit that changes what the world does.
+// Limits at work: where guards hold a flow back, counted on the device. Statistics ask for it; a world with a log looks now and
+// then by itself, never waiting for the device, and tells once of each limit that changes what the world does.
 #pragma once
 #include "engine/step/run/state_program.hpp"
 #include "engine/step/run/stepper.hpp"
@@ -69,9 +69,9 @@ class Limits {
     std::array<compute::Buffer, 3> buffers_{}; // marks, counts of tiles, their readback
     std::unique_ptr<StateProgram> program_;
     bool watching_ = false;
-    compute::Ticket pending_; // a look that has not been collected; 0 = none
+    compute::Ticket pending_;                   // a look that has not been collected; 0 = none
     std::uint64_t pending_step_ = 0, seen_ = 0; // its step; submissions so far, this one included
-    Material material_; // of the program: what the bed holds depends on it
+    Material material_;                         // of the program: what the bed holds depends on it
     std::optional<LimitCounts> newest_;
     std::array<bool, kinds> told_{};
 };

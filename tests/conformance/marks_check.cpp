@@ -1,6 +1,6 @@
-// mark_limits by its definition: counts of faces beside wet cells, at the clamp and with capped gravity, and whether the outflow of
-// a cell's layers exceeds what they hold. Where a float may fall on either side of a limit, both answers pass. count_limits: its
-// counts are those of the marks, its floats by their definitions in double precision.
+// mark_limits by its definition: counts of faces beside wet cells, at the clamp and with capped gravity, and whether the outflow
+// of a cell's layers exceeds what they hold. Where a float may fall on either side of a limit, both answers pass. count_limits:
+// its counts are those of the marks, its floats by their definitions in double precision.
 #include "tests/conformance/stage_checks.hpp"
 #include <algorithm>
 #include <array>
@@ -92,8 +92,8 @@ struct LayerMarks {
                limited.holds(marks >> 7 & 1u);
     }
     std::string text() const {
-        return std::to_string(wet.least) + " wet, " + std::to_string(clamped.least) + " clamped, " + std::to_string(capped.least) +
-               " capped, " + std::to_string(limited.least) + " limited";
+        return std::to_string(wet.least) + " wet, " + std::to_string(clamped.least) + " clamped, " +
+               std::to_string(capped.least) + " capped, " + std::to_string(limited.least) + " limited";
     }
 };
 
@@ -148,7 +148,12 @@ struct Limits {
         if ((run.scene.effects & EFFECT_BED_FRICTION) == 0) return 1e8;
         const double n = static_cast<double>(p.manning) + height("roughness", i, j);
         const double grip = static_cast<double>(p.bed_friction_dt) + static_cast<double>(p.gravity_dt) * n * n / std::cbrt(depth);
-        const double slope = std::hypot(surface(i - 1, j) - surface(i, j), surface(i, j - 1) - surface(i, j)) / static_cast<double>(p.dx);
+        const auto fall = [&](int a, int b) {
+            const bool inside = a >= 0 && a < p.nx && b >= 0 && b < p.ny;
+            return inside ? std::abs(surface(a, b) - surface(i, j)) : 0.0;
+        };
+        const double slope = std::hypot(std::max(fall(i - 1, j), fall(i + 1, j)), std::max(fall(i, j - 1), fall(i, j + 1))) /
+                             static_cast<double>(p.dx);
         return grip > 0 ? std::min(static_cast<double>(p.gravity_dt) * slope * depth / grip, 1e8) : 1e8;
     }
 };
@@ -197,15 +202,15 @@ Verdict check_limit_counts(const StageRun& run) {
         const auto got = run.buffer("limit_counts").words().subspan(static_cast<std::size_t>(tile) * LIMIT_WORDS, LIMIT_WORDS);
         for (std::size_t n = 0; n < counts.size(); ++n) {
             if (got[n] >= counts[n] && got[n] <= counts[n] + (n == 8 ? unsure : 0)) continue;
-            return failed("limit_counts " + std::to_string(n) + " of tile " + std::to_string(tile) + " is " + std::to_string(got[n]) +
-                          ", counted " + std::to_string(counts[n]));
+            return failed("limit_counts " + std::to_string(n) + " of tile " + std::to_string(tile) + " is " +
+                          std::to_string(got[n]) + ", counted " + std::to_string(counts[n]));
         }
         const double numbers[] = {driven2, wave, top, bottom, deep_sand, highest};
         for (std::size_t n = 0; n < std::size(numbers); ++n) {
             const double value = static_cast<double>(std::bit_cast<float>(got[9 + n]));
             if (std::abs(value - numbers[n]) <= 1e-4 * std::max(std::abs(numbers[n]), 1e-3)) continue;
-            return failed("limit_counts " + std::to_string(9 + n) + " of tile " + std::to_string(tile) + " is " + std::to_string(value) +
-                          ", by its definition " + std::to_string(numbers[n]));
+            return failed("limit_counts " + std::to_string(9 + n) + " of tile " + std::to_string(tile) + " is " +
+                          std::to_string(value) + ", by its definition " + std::to_string(numbers[n]));
         }
     }
     return {};
