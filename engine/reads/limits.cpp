@@ -12,6 +12,8 @@ namespace {
 
 // Of the faces or cells that have anything to hold: up to this share is a front or an impact that passes, and is not told.
 constexpr double told_share = 0.02;
+// Of the time step: a cap of gravity that a step this much shorter would lift slows waves by no more than it says.
+constexpr double told_dt = 0.95;
 
 std::string rounded(double value) { return number_text(std::round(value * 100) / 100); }
 
@@ -194,10 +196,10 @@ void Limits::tell(const LimitCounts& c) {
                rounded(c.clamped_speed) + " m/s: use dt <= " + at_most(s.method.velocity_clamp * s.grid.dx / c.clamped_speed) +
                " s";
     });
-    tell_once(water_gravity, many(w.capped_faces, w.wet_faces), c, [&] {
+    const double wave_dt = s.method.gravity_cap * s.grid.dx / std::max(c.wave_speed, 1e-30);
+    tell_once(water_gravity, many(w.capped_faces, w.wet_faces) && wave_dt < told_dt * s.dt, c, [&] {
         return "gravity of water is capped at " + share(w.capped_faces, w.wet_faces, " wet faces") + around(c.water_capped_at) +
-               ": waves are slower than they should be; use dt <= " +
-               at_most(s.method.gravity_cap * s.grid.dx / std::max(c.wave_speed, 1e-30)) + " s";
+               ": waves are slower than they should be; use dt <= " + at_most(wave_dt) + " s";
     });
     tell_once(water_outflow, many(w.limited_cells, w.wet_faces / 2), c, [&] {
         return "water would leave more than it has in " + share(w.limited_cells, w.wet_faces / 2, " wet cells") +
