@@ -88,8 +88,8 @@ struct Marks {
 struct LayerMarks {
     Marks::Range wet, clamped, capped, limited;
     bool holds(unsigned marks) const {
-        return wet.holds(marks & 3u) && clamped.holds(marks >> 2 & 7u) && capped.holds(marks >> 5 & 3u) &&
-               limited.holds(marks >> 7 & 1u);
+        return wet.holds(marks & 3u) && clamped.holds((marks >> 2 & 3u) + (marks >> 4 & 3u)) &&
+               capped.holds((marks >> 6 & 1u) + (marks >> 7 & 1u)) && limited.holds(marks >> 8);
     }
     std::string text() const {
         return std::to_string(wet.least) + " wet, " + std::to_string(clamped.least) + " clamped, " +
@@ -124,7 +124,7 @@ Verdict check_marks(const StageRun& run) {
                 marks.gravity(i, j, true, sand.capped);
             }
             const std::uint32_t got = run.buffer("limit_marks").words()[layout.index(i, j)];
-            if (water.holds(got & 255u) && sand.holds(got >> 8)) continue;
+            if (water.holds(got & 65535u) && sand.holds(got >> 16)) continue;
             return failed("limit_marks(" + std::to_string(i) + ", " + std::to_string(j) + ") is " + std::to_string(got) +
                           "; expected of water " + water.text() + ", of sand " + sand.text());
         }
@@ -173,20 +173,26 @@ Verdict check_limit_counts(const StageRun& run) {
         const int first_i = tile % layout.tile_columns() * STRIP, first_j = tile / layout.tile_columns() * STRIP;
         for (int j = first_j; j < std::min(first_j + STRIP, p.ny + 1); ++j) {
             for (int i = first_i; i < std::min(first_i + STRIP, p.nx + 1); ++i) {
-                const std::uint32_t mark = marks[layout.index(i, j)];
+                const auto marked = [&](int a, int b, std::size_t layer) { return marks[layout.index(a, b)] >> (16 * layer); };
                 for (std::size_t layer = 0; layer < 2; ++layer) {
-                    const std::uint32_t of = mark >> (8 * layer);
-                    const std::uint32_t found[] = {of & 3u, of >> 2 & 7u, of >> 5 & 3u, of >> 7 & 1u};
+                    const std::uint32_t of = marked(i, j, layer);
+                    const std::uint32_t found[] = {of & 3u, (of >> 2 & 3u) + (of >> 4 & 3u), (of >> 6 & 1u) + (of >> 7 & 1u),
+                                                   of >> 8 & 1u};
                     for (std::size_t n = 0; n < 4; ++n) counts[4 * layer + n] += found[n];
                 }
+                if (i == p.nx || j == p.ny) continue;
+                // Any of the cell's four faces: bits of the west and south one at its own place.
+                const auto beside = [&](std::size_t layer, std::uint32_t x, std::uint32_t y) {
+                    return ((marked(i, j, layer) & (x | y)) | (marked(i + 1, j, layer) & x) | (marked(i, j + 1, layer) & y)) != 0;
+                };
                 const double w = limits.height("water_height", i, j), s = limits.height("sand_height", i, j);
-                if ((mark >> 8 & 96u) != 0) deep_sand = std::max(deep_sand, s);
-                if ((mark & 96u) != 0 && water) {
-                    const double speed = std::max(std::abs(limits.height("water_velocity_x", i, j)),
-                                                  std::abs(limits.height("water_velocity_y", i, j)));
+                if (beside(1, 64, 128)) deep_sand = std::max(deep_sand, s);
+                if (water && beside(0, 64, 128)) {
+                    const auto size = [&](const char* name, int a, int b) { return std::abs(limits.height(name, a, b)); };
+                    const double speed = std::max({size("water_velocity_x", i, j), size("water_velocity_x", i + 1, j),
+                                                   size("water_velocity_y", i, j), size("water_velocity_y", i, j + 1)});
                     wave = std::max(wave, speed + std::sqrt(static_cast<double>(p.gravity) * w));
                 }
-                if (i == p.nx || j == p.ny) continue;
                 const double column = limits.height("terrain", i, j) + s + w, most = static_cast<double>(p.largest_height);
                 counts[8] += column > most * (1 + 1e-6) ? 1 : 0;
                 unsure += std::abs(column - most) <= 1e-6 * most ? 1 : 0;
@@ -194,7 +200,7 @@ Verdict check_limit_counts(const StageRun& run) {
                 const double depth = w - std::min(w, s);
                 if (!water || depth <= static_cast<double>(p.dry_threshold)) continue;
                 top = std::max(top, limits.surface(i, j));
-                if ((mark & 28u) == 0) continue;
+                if (!beside(0, 12, 48)) continue;
                 bottom = std::min(bottom, limits.surface(i, j));
                 driven2 = std::max(driven2, limits.driven2(i, j, depth));
             }
