@@ -9,6 +9,8 @@
 #define MARK_CAPPED_y 128u
 #define MARK_LIMITED 256u  // what leaves the cell is limited
 #define SAND_MARKS 16      // bits from those of water to those of sand
+#define FACE_MARKS_x ((3u * MARK_CLAMPED_x + MARK_CAPPED_x) * 65537u) // all of a west face
+#define FACE_MARKS_y ((3u * MARK_CLAMPED_y + MARK_CAPPED_y) * 65537u)
 
 struct LimitCount {
     uint wet, clamped, capped, limited;
@@ -30,12 +32,7 @@ FN void add_marks(REF(LimitCount) count, uint marks) {
     count.limited += (marks >> 8) & 1u;
 }
 
-// Whether one of a cell's four faces is at the clamp, or capped, by the marks of the cell and its neighbours to the east and north.
-FN bool clamped_beside(uint own, uint east, uint north) {
-    return ((own & (3u * MARK_CLAMPED_x + 3u * MARK_CLAMPED_y)) | (east & (3u * MARK_CLAMPED_x)) | (north & (3u * MARK_CLAMPED_y))) != 0u;
-}
-FN bool capped_beside(uint own, uint east, uint north) {
-    return ((own & (MARK_CAPPED_x + MARK_CAPPED_y)) | (east & MARK_CAPPED_x) | (north & MARK_CAPPED_y)) != 0u;
-}
+FN bool any_clamped(uint marks) { return (marks & (3u * MARK_CLAMPED_x + 3u * MARK_CLAMPED_y)) != 0u; }
+FN bool any_capped(uint marks) { return (marks & (MARK_CAPPED_x + MARK_CAPPED_y)) != 0u; }
 
 #endif
