@@ -62,8 +62,8 @@ struct Run {
     double speed = 0, slope = 0;
 };
 
-/// On the way to the lower ground that it falls to most steeply in the mean, over a quarter of the grid or more: shorter falls
-/// give it no time. No faster than water that has fallen so far.
+/// On the way to lower ground a quarter of the grid away or more: shorter falls give it no time. Of the ground that it falls to
+/// nearly as steeply in the mean as to any, the lowest: no water is faster than what has fallen so far.
 Run run_of(const Settings& s, const std::vector<float>& terrain, const Stream& stream) {
     const Grid& grid = s.grid;
     const auto place = [&](double at, int cells) { return std::clamp(static_cast<int>(at / grid.dx), 0, cells - 1); };
@@ -73,19 +73,23 @@ Run run_of(const Settings& s, const std::vector<float>& terrain, const Stream& s
     };
     const int i0 = place(stream.x, grid.nx), j0 = place(stream.y, grid.ny);
     const double least = 0.25 * std::max(grid.nx, grid.ny), from = height(i0, j0);
-    Run run;
-    double fall = 0;
-    for (int j = 0; j < grid.ny; ++j) {
-        for (int i = 0; i < grid.nx; ++i) {
-            const double down = from - height(i, j), x = i - i0, y = j - j0, cells2 = x * x + y * y;
-            if (down <= 0 || cells2 < least * least || down * down <= run.slope * run.slope * cells2 * grid.dx * grid.dx)
-                continue;
-            run.slope = down / (std::sqrt(cells2) * grid.dx);
-            fall = down;
-        }
-    }
-    if (run.slope > 0) run.speed = std::min(even_speed(s, stream.per_width, run.slope), std::sqrt(2 * s.gravity * fall));
-    return run;
+    const auto each = [&](const auto& see) { // squares spare a root for each cell
+        for (int j = 0; j < grid.ny; ++j)
+            for (int i = 0; i < grid.nx; ++i) {
+                const double down = from - height(i, j), x = i - i0, y = j - j0, cells2 = x * x + y * y;
+                if (down > 0 && cells2 >= least * least) see(down, down * down / (cells2 * grid.dx * grid.dx));
+            }
+    };
+    double steepest2 = 0, fall = 0, slope2 = 0;
+    each([&](double, double of2) { steepest2 = std::max(steepest2, of2); });
+    each([&](double down, double of2) {
+        if (down <= fall || of2 < 0.7 * steepest2) return;
+        fall = down;
+        slope2 = of2;
+    });
+    if (fall <= 0) return {};
+    const double slope = std::sqrt(slope2);
+    return {std::min(even_speed(s, stream.per_width, slope), std::sqrt(2 * s.gravity * fall)), slope};
 }
 
 } // namespace
@@ -102,11 +106,11 @@ void warn_streams(const Settings& s, const InitialFields& fields, std::vector<st
         if (stream.per_width <= 0) continue;
         const Run run = run_of(s, fields.terrain, stream);
         if (run.speed <= clamp) continue;
-        warnings.push_back(stream.name + ": " + at_most(stream.per_width) + " m2/s that run down a slope of " +
-                           at_most(run.slope) + " come to some " + number_text(std::round(run.speed * 100) / 100) +
-                           " m/s but will be held at velocity_clamp dx/dt = " + number_text(std::round(clamp * 100) / 100) +
-                           " m/s; use dt <= " + at_most(s.method.velocity_clamp * s.grid.dx / run.speed) +
-                           " s, or more bed_friction or manning");
+        const auto rounded = [](double value, double parts) { return number_text(std::round(value * parts) / parts); };
+        warnings.push_back(stream.name + ": " + rounded(stream.per_width, 1000) + " m2/s that run down a slope of " +
+                           rounded(run.slope, 1000) + " come to some " + rounded(run.speed, 100) +
+                           " m/s but will be held at velocity_clamp dx/dt = " + rounded(clamp, 100) + " m/s; use dt <= " +
+                           at_most(s.method.velocity_clamp * s.grid.dx / run.speed) + " s, or more bed_friction or manning");
     }
 }
 
