@@ -83,7 +83,7 @@ Run run_of(const Settings& s, const std::vector<float>& terrain, const Stream& s
     double steepest2 = 0, fall = 0, slope2 = 0;
     each([&](double, double of2) { steepest2 = std::max(steepest2, of2); });
     each([&](double down, double of2) {
-        if (down <= fall || of2 < 0.7 * steepest2) return;
+        if (of2 < 0.7 * steepest2 || down < fall || (down == fall && of2 <= slope2)) return;
         fall = down;
         slope2 = of2;
     });
