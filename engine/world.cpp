@@ -29,6 +29,11 @@ Result<std::unique_ptr<World>> World::create(const Settings& settings, const Ini
     return world;
 }
 
+Status World::set_log(compute::Log log) {
+    state_.log = std::move(log);
+    return state_.log ? limits_.watch() : ok_status();
+}
+
 Status World::step(std::uint32_t count) {
     if (auto status = stepper_.finish_step(); !status) return status;
     return stepper_.steps(count);
@@ -53,17 +58,19 @@ Status World::set_update_settings(const UpdateSettings& settings) {
 
 Status World::after_step() {
     auto status = roll_back_.after_step();
+    limits_.after_step();
     if (status) status = at_boundary();
     return status ? checking_.after_step() : status;
 }
 
 std::uint64_t World::undisturbed(std::uint64_t most) const {
-    return checking_.undisturbed(commands_.undisturbed(roll_back_.undisturbed(edits_.undisturbed(most))));
+    return checking_.undisturbed(commands_.undisturbed(roll_back_.undisturbed(limits_.undisturbed(edits_.undisturbed(most)))));
 }
 
 Status World::jumped() {
     frames_.went_back();
     outputs_.jumped();
+    limits_.jumped();
     commands_.went_to(state_.steps);
     return at_boundary();
 }

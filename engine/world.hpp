@@ -21,8 +21,9 @@ class World {
     static Result<std::unique_ptr<World>> create(const Settings& settings, const InitialFields& fields,
                                                  std::unique_ptr<compute::Device> device, compute::GroupSize group = {});
 
-    /// Where the world tells what happens to it; WorldState::log.
-    void set_log(compute::Log log) { state_.log = std::move(log); }
+    /// Where the world tells what happens to it (WorldState::log), limits at work among it, for which it looks from now on.
+    /// Errors: those of Limits::watch().
+    Status set_log(compute::Log log);
 
     /// Submits water steps beside the clock of update(); returns before the device has finished them. A step that an update began
     /// in parts is finished first and counts as that update's.
@@ -44,6 +45,7 @@ class World {
     /// Compiling ahead, profiling, a step in parts.
     Stepper& stepper() { return stepper_; }
     Outputs& outputs() { return outputs_; }
+    const Limits& limits() const { return limits_; }
     /// Fields, statistics, hash.
     StateReader& reader() { return reader_; }
     /// Whether the state keeps what the solver promises.
@@ -69,7 +71,8 @@ class World {
     Stepper stepper_{state_};
     FrameDriver frames_{state_, stepper_};
     Outputs outputs_{state_};
-    StateReader reader_{state_, stepper_};
+    Limits limits_{state_};
+    StateReader reader_{state_, stepper_, limits_};
     Checking checking_{state_, stepper_, reader_};
     RollBack roll_back_{state_, stepper_};
     Snapshots snapshots_{state_, stepper_, roll_back_};

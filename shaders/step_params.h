@@ -41,7 +41,7 @@
 #define SIDE_EAST 1
 #define SIDE_SOUTH 2
 #define SIDE_NORTH 3
-
+#define LIMIT_WORDS 15   // results per tile of count_limits
 // Ledger rows: each holds a 64-bit count of quanta in two words (low, high), one per strip and column.
 #define LEDGER_WATER_IN 0
 #define LEDGER_WATER_OUT 1

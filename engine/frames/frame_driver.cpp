@@ -6,8 +6,9 @@ namespace wadi {
 namespace {
 
 constexpr std::uint32_t most_steps_per_update = 1024;
-// What an update may submit behind its steps: published outputs, their copies for the host, the interpolated set.
-constexpr std::uint64_t reserved_submissions = 3;
+// What an update may submit behind its steps: a look at limits, published outputs, their copies for the host, the interpolated
+// set.
+constexpr std::uint64_t reserved_submissions = 4;
 
 Status check(const char* name, std::uint32_t value, std::uint32_t least, std::uint32_t most) {
     if (value >= least && value <= most) return ok_status();

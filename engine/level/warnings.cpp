@@ -2,6 +2,7 @@
 // Rules and constants: NUMERICS.md sections 2.4b, 2.4d, 2.7, 2.8 and 4.
 #include "engine/level/level.hpp"
 #include "engine/level/source_rates.hpp"
+#include "engine/level/stream_speeds.hpp"
 #include "engine/settings/data/setting_table.hpp"
 #include "engine/settings/rules/messages.hpp"
 #include "engine/threads/bands.hpp"
@@ -385,6 +386,7 @@ std::vector<std::string> level_warnings(const Settings& settings, const InitialF
     warn_water(settings, survey, warnings);
     warn_sand(settings, survey, warnings);
     warn_discharges(settings, warnings);
+    warn_streams(settings, fields, warnings);
     warn_levels(settings, fields, warnings);
     for (std::size_t n = 0; n < settings.sources.size(); ++n)
         if (!covers_a_cell(settings.sources[n], settings.grid))

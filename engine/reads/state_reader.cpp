@@ -35,16 +35,13 @@ std::uint64_t hash_of_row(std::uint64_t n, int j, std::span<const float> row) {
 } // namespace
 
 struct StateReader::Figures {
-    std::uint64_t hash = 0, not_finite = 0, clamped_faces = 0, capped_faces = 0, limited_cells = 0;
+    std::uint64_t hash = 0, not_finite = 0;
     std::int64_t quanta = 0;
     double largest = 0, smallest = 0; // finite values; of velocities the largest absolute one
 
     void add(const Figures& other) {
         hash += other.hash;
         not_finite += other.not_finite;
-        clamped_faces += other.clamped_faces;
-        capped_faces += other.capped_faces;
-        limited_cells += other.limited_cells;
         quanta = add_quanta(quanta, other.quanta);
         largest = std::max(largest, other.largest);
         smallest = std::min(smallest, other.smallest);
@@ -61,15 +58,6 @@ struct StateReader::Figures {
     void add_speeds(std::span<const float> row) {
         for (const float value : row)
             if (std::isfinite(value)) largest = std::max(largest, std::abs(static_cast<double>(value)));
-    }
-    void add_marks(std::span<const float> row) {
-        for (const float& value : row) { // not a float: its bits are three counts
-            std::uint32_t mark;
-            std::memcpy(&mark, &value, sizeof mark);
-            clamped_faces += mark & 255u;
-            capped_faces += mark >> 8 & 255u;
-            limited_cells += mark >> 16;
-        }
     }
 };
 
@@ -226,28 +214,6 @@ Result<std::uint64_t> StateReader::hash() {
     return status ? hash_fields(nullptr) : Result<std::uint64_t>(status);
 }
 
-Result<std::uint64_t> StateReader::high_columns() {
-    const auto& layout = state_.layout();
-    const double limit = state_.settings().method.largest_height;
-    const std::size_t width = static_cast<std::size_t>(layout.nx), height = static_cast<std::size_t>(layout.ny),
-                      most = std::min(rows_at_once(layout), height);
-    std::vector<float> sums(width * most), values(width * most);
-    std::uint64_t count = 0;
-    for (std::size_t first = 0; first < height; first += most) {
-        const Region rows{0, static_cast<int>(first), layout.nx, static_cast<int>(std::min(most, height - first))};
-        const std::size_t cells = rows.cells();
-        if (auto status = read("terrain", rows, std::span(sums).first(cells)); !status) return status;
-        for (const char* layer : {"sand_height", "water_height"}) {
-            if (state_.plan().find(layer) == nullptr) continue;
-            if (auto status = read(layer, rows, std::span(values).first(cells)); !status) return status;
-            for (std::size_t n = 0; n < cells; ++n) sums[n] += values[n];
-        }
-        count += static_cast<std::uint64_t>(std::count_if(sums.begin(), sums.begin() + static_cast<std::ptrdiff_t>(cells),
-                                                          [&](float sum) { return static_cast<double>(sum) > limit; }));
-    }
-    return count;
-}
-
 Result<WorldStats> StateReader::stats() {
     if (auto status = stepper_.finish_step(); !status) return status;
     WorldStats s;
@@ -270,17 +236,9 @@ Result<WorldStats> StateReader::stats() {
     } else if (state_.chooses_tiles()) {
         s.tiles = s.active_tiles = s.active_sand_tiles = state_.tiles().count();
     }
-    if (auto status = publish("mark_limits", {}, {"limit_marks"}); !status) return status;
-    Figures marks;
-    const auto look = [](int, std::span<const float> row, Figures& figures) { figures.add_marks(row); };
-    if (auto status = look_at(rows_of(output_[0]), state_.layout().nx + 1, state_.layout().ny + 1, look, marks); !status)
-        return status;
-    s.clamped_faces = marks.clamped_faces;
-    s.capped_faces = marks.capped_faces;
-    s.limited_cells = marks.limited_cells;
-    auto high = high_columns();
-    if (!high) return high.status();
-    s.high_columns = *high;
+    auto limits = limits_.count();
+    if (!limits) return limits.status();
+    s.limits = *limits;
     return s;
 }
 

@@ -1,5 +1,6 @@
 // Reading a world's state between two steps on the host: fields, ledger, statistics, hash. Every call waits for the device.
 #pragma once
+#include "engine/reads/limits.hpp"
 #include "engine/step/run/ledger.hpp"
 #include "engine/step/run/region.hpp"
 #include "engine/step/run/state_program.hpp"
@@ -15,15 +16,15 @@ struct WorldStats {
     Ledger ledger;
     double quantum = 0;
     double largest_sand = 0, largest_water = 0, largest_water_speed = 0, largest_sand_speed = 0, smallest_height = 0;
-    std::uint64_t high_columns = 0; // above method.largest_height
-    std::uint64_t not_finite = 0, clamped_faces = 0, capped_faces = 0, limited_cells = 0, hash = 0;
+    LimitCounts limits;
+    std::uint64_t not_finite = 0, hash = 0;
     std::uint64_t tiles = 0, active_tiles = 0,
                   active_sand_tiles = 0; // of the newest step, in the longer of its lists and in the sand's; 0 without
 };
 
 class StateReader {
   public:
-    StateReader(WorldState& state, Stepper& stepper) : state_(state), stepper_(stepper) {}
+    StateReader(WorldState& state, Stepper& stepper, Limits& limits) : state_(state), stepper_(stepper), limits_(limits) {}
 
     /// The floats in a region of a field by its plan name ("water_height", ...), at cell centres for velocities, or of a
     /// published field ("water_depth", "free_surface", "surface_saturation"). A field the mask lacks is zero.
@@ -53,11 +54,9 @@ class StateReader {
     /// Reads every hashed field; returns the hash, and adds the other figures to `stats` if there is one.
     Result<std::uint64_t> hash_fields(WorldStats* stats);
 
-    /// Columns of terrain, sand and water above method.largest_height.
-    Result<std::uint64_t> high_columns();
-
     WorldState& state_;
     Stepper& stepper_;
+    Limits& limits_;
     std::array<compute::Buffer, 2> output_{}; // of publish stages, made when first asked for
     std::map<std::string, std::unique_ptr<StateProgram>> programs_;
 };

@@ -154,7 +154,7 @@ wadi_result host(Result<Level> level, const wadi_device_options& options, wadi_w
     if (!device) return report(device.status());
     auto world = World::create(level->settings, level->fields, std::move(*device));
     if (!world) return report(world.status());
-    (*world)->set_log(log);
+    if (auto status = (*world)->set_log(log); !status) return report(status);
     if (log) {
         for (const auto& warning : level->warnings) log(1, level->name + ": " + warning);
         const auto& grid = level->settings.grid;

@@ -38,6 +38,18 @@ wadi_result wadi_world_update(wadi_world_id id, uint64_t host_nanoseconds, wadi_
         own.published_step = outputs.published() ? outputs.published_step() : UINT64_MAX;
         own.dropped_nanoseconds = done.dropped;
         own.dropped_nanoseconds_total = done.dropped_total;
+        own.limits_step = UINT64_MAX;
+        if (const auto& limits = hosted.world->limits().newest()) {
+            own.limits_step = limits->step;
+            own.wet_faces = limits->water.wet_faces;
+            own.clamped_water_faces = limits->water.clamped_faces;
+            own.capped_water_faces = limits->water.capped_faces;
+            own.sand_faces = limits->sand.wet_faces;
+            own.clamped_sand_faces = limits->sand.clamped_faces;
+            own.capped_sand_faces = limits->sand.capped_faces;
+            own.high_columns = limits->high_columns;
+            own.unlimited_dt = unlimited_dt(hosted.world->settings(), *limits);
+        }
         give(frame, own);
         return report(ok_status());
     });

@@ -29,6 +29,10 @@ void append_count(std::string& text, const char* name, const Count& count) {
     append(text, "  %-36s %12" PRIu64 " %12" PRIu64 "\n", name, count.last, count.largest);
 }
 
+void append_share(std::string& text, const char* name, const Share& share) {
+    append(text, "    %-34s %12.3g %12.3g\n", name, 100 * share.last, 100 * share.largest);
+}
+
 nlohmann::ordered_json ledger_json(double initial, double in, double out, double now, std::int64_t quanta) {
     return {{"initial_m3", initial},
             {"in_m3", in},
@@ -38,7 +42,9 @@ nlohmann::ordered_json ledger_json(double initial, double in, double out, double
             {"drift_quanta", quanta}};
 }
 
-nlohmann::ordered_json count_json(const Count& count) { return {{"last", count.last}, {"largest", count.largest}}; }
+template <class Figure> nlohmann::ordered_json figure_json(const Figure& figure) {
+    return {{"last", figure.last}, {"largest", figure.largest}};
+}
 
 } // namespace
 
@@ -64,7 +70,12 @@ void Report::sample(const wadi_world_stats& now) {
     clamped_faces.sample(now.clamped_faces);
     capped_faces.sample(now.capped_faces);
     limited_cells.sample(now.limited_cells);
+    high_columns.sample(now.high_columns);
     not_finite.sample(now.not_finite);
+    clamped_water.sample(now.clamped_water_faces, now.wet_faces);
+    capped_water.sample(now.capped_water_faces, now.wet_faces);
+    clamped_sand.sample(now.clamped_faces - now.clamped_water_faces, now.sand_faces);
+    capped_sand.sample(now.capped_faces - now.capped_water_faces, now.sand_faces);
 }
 
 double Report::ms_per_step() const { return timed_steps > 0 ? 1e3 * stepping_seconds / static_cast<double>(timed_steps) : 0; }
@@ -116,8 +127,13 @@ std::string format_table(const Report& report) {
     append(text, "  %-36s %12.5g %12.5g\n", "speed of water [m/s]", stats.largest_water_speed, report.largest_water_speed);
     append(text, "  %-36s %12.5g %12.5g\n", "speed of sand [m/s]", stats.largest_sand_speed, report.largest_sand_speed);
     append_count(text, "faces at the velocity clamp", report.clamped_faces);
+    append_share(text, "of those with water [%]", report.clamped_water);
+    append_share(text, "of those with sand [%]", report.clamped_sand);
     append_count(text, "faces with capped gravity", report.capped_faces);
+    append_share(text, "of those with water [%]", report.capped_water);
+    append_share(text, "of those with sand [%]", report.capped_sand);
     append_count(text, "cells with limited outflow", report.limited_cells);
+    append_count(text, "columns above the largest height", report.high_columns);
     append_count(text, "values that are not finite", report.not_finite);
     append(text, "  %-36s %12.5g (least of all frames)\n", "smallest depth [m]", report.smallest_depth);
     if (stats.tiles > 0)
@@ -164,10 +180,15 @@ std::string format_summary(const Report& report) {
                         {"largest_water_speed_m_per_s", report.largest_water_speed},
                         {"largest_sand_speed_m_per_s", report.largest_sand_speed},
                         {"smallest_depth_m", report.smallest_depth}};
-    json["counts"] = {{"clamped_faces", count_json(report.clamped_faces)},
-                      {"capped_faces", count_json(report.capped_faces)},
-                      {"limited_cells", count_json(report.limited_cells)},
-                      {"not_finite", count_json(report.not_finite)}};
+    json["counts"] = {{"clamped_faces", figure_json(report.clamped_faces)},
+                      {"capped_faces", figure_json(report.capped_faces)},
+                      {"limited_cells", figure_json(report.limited_cells)},
+                      {"high_columns", figure_json(report.high_columns)},
+                      {"not_finite", figure_json(report.not_finite)}};
+    json["shares"] = {{"clamped_water", figure_json(report.clamped_water)},
+                      {"capped_water", figure_json(report.capped_water)},
+                      {"clamped_sand", figure_json(report.clamped_sand)},
+                      {"capped_sand", figure_json(report.capped_sand)}};
     if (stats.tiles > 0) json["active_tiles"] = {{"last_step", stats.active_tiles}, {"of", stats.tiles}};
     json["hash"] = hash_text(stats.hash);
     json["passes"] = {{"per_water_step", info.passes_per_water_step},

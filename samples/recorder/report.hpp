@@ -15,6 +15,15 @@ struct Count {
     }
 };
 
+/// A share of the faces, at the last frame and its largest value over all frames.
+struct Share {
+    double last = 0, largest = 0;
+    void sample(std::uint64_t part, std::uint64_t whole) {
+        last = whole > 0 ? static_cast<double>(part) / static_cast<double>(whole) : 0;
+        largest = last > largest ? last : largest;
+    }
+};
+
 struct Report {
     std::string level;
     wadi_world_info info = {};
@@ -34,8 +43,9 @@ struct Report {
     wadi_world_stats stats = {};                                                                 // of the last successful reading
     double largest_sand = 0, largest_water = 0, largest_water_speed = 0, largest_sand_speed = 0; // over all frames
     double smallest_depth = 0;
-    Count clamped_faces, capped_faces, limited_cells, not_finite;
-    std::vector<wadi_stage_timing> stages; // empty without profiling
+    Count clamped_faces, capped_faces, limited_cells, high_columns, not_finite;
+    Share clamped_water, capped_water, clamped_sand, capped_sand; // of the faces that have water or sand
+    std::vector<wadi_stage_timing> stages;                        // empty without profiling
 
     void sample(const wadi_world_stats& now);
     double ms_per_step() const;

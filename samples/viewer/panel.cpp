@@ -104,7 +104,9 @@ void Panel::simulation(Session& session) {
     const wadi_world_info& info = session.simulation().info;
     ImGui::TextWrapped("%d x %d cells of %g m, dt %g s\n%s: %s", info.nx, info.ny, info.dx, info.dt, info.backend,
                        info.device_name);
-    ImGui::Text("t = %.2f s, step %" PRIu64, session.simulation().frame.time, session.simulation().frame.total_steps);
+    const wadi_frame& frame = session.simulation().frame;
+    ImGui::Text("t = %.2f s, step %" PRIu64, frame.time, frame.total_steps);
+    limits(frame);
     ImGui::Checkbox("pause", &session.paused);
     ImGui::SameLine();
     if (ImGui::Button("step")) {
@@ -114,6 +116,25 @@ void Panel::simulation(Session& session) {
     ImGui::SameLine();
     if (ImGui::Button("restart")) session.restart();
     ImGui::SliderFloat("speed", &session.speed, 0.02f, 4.0f, "%.2f x", ImGuiSliderFlags_Logarithmic);
+}
+
+/// What the newest look at limits found, where it found anything.
+void Panel::limits(const wadi_frame& frame) {
+    if (frame.limits_step == UINT64_MAX) return;
+    const auto line = [](const char* what, uint64_t held, uint64_t of, double dt) {
+        if (held == 0) return;
+        const double percent = 100 * static_cast<double>(held) / static_cast<double>(std::max<uint64_t>(of, 1));
+        if (dt > 0) {
+            ImGui::TextWrapped("%s at %.2g %% of its faces: dt %.3g s", what, percent, dt);
+        } else {
+            ImGui::TextWrapped("%s at %.2g %% of its faces: more substeps", what, percent);
+        }
+    };
+    line("water at the speed limit", frame.clamped_water_faces, frame.wet_faces, frame.unlimited_dt);
+    line("water with capped gravity", frame.capped_water_faces, frame.wet_faces, frame.unlimited_dt);
+    line("sand at the speed limit", frame.clamped_sand_faces, frame.sand_faces, 0);
+    line("sand with capped gravity", frame.capped_sand_faces, frame.sand_faces, 0);
+    if (frame.high_columns > 0) ImGui::TextWrapped("%" PRIu64 " columns above largest_height", frame.high_columns);
 }
 
 void Panel::budget(Session& session) {

@@ -18,6 +18,7 @@ class Panel {
     double stats_age_ = 1e9; // [s]
 
     void simulation(Session& session);
+    static void limits(const wadi_frame& frame);
     void budget(Session& session);
     void tools(Session& session);
     void quality(Session& session);

@@ -1,7 +1,10 @@
-// mark_limits by its definition: a count of faces at the clamp, of faces with capped gravity, and whether the outflow of a
-// cell's layers exceeds what they hold. Where a float may fall on either side of a limit, both answers pass.
+// mark_limits by its definition: counts of faces beside wet cells, at the clamp and with capped gravity, and whether the outflow
+// of a cell's layers exceeds what they hold. Where a float may fall on either side of a limit, both answers pass. count_limits:
+// its counts are those of the marks, its floats by their definitions in double precision.
 #include "tests/conformance/stage_checks.hpp"
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 
 namespace wadi::conformance {
@@ -36,6 +39,14 @@ struct Marks {
     }
     double u(char layer, int i, int j) const { return at(velocity(layer, 'x').c_str(), i, j); }
     double v(char layer, int i, int j) const { return at(velocity(layer, 'y').c_str(), i, j); }
+
+    // The two inner faces of (i, j): beside a cell deeper than the dry threshold.
+    void wet(const char* name, int i, int j, Range& range) const {
+        const WorldParams& p = run.params;
+        const double own = at(name, i, j), dry = static_cast<double>(p.dry_threshold);
+        if (i > 0 && i < p.nx && j < p.ny) range.add(std::max(own, at(name, i - 1, j)), dry);
+        if (j > 0 && i < p.nx && j < p.ny) range.add(std::max(own, at(name, i, j - 1)), dry);
+    }
 
     // The west and the south face: by the size of the velocity there, a hundredth of its square below the clamp's.
     void clamp(char layer, int i, int j, double limit, Range& range) const {
@@ -73,6 +84,19 @@ struct Marks {
     }
 };
 
+/// Of one layer.
+struct LayerMarks {
+    Marks::Range wet, clamped, capped, limited;
+    bool holds(unsigned marks) const {
+        return wet.holds(marks & 3u) && clamped.holds((marks >> 2 & 3u) + (marks >> 4 & 3u)) &&
+               capped.holds((marks >> 6 & 1u) + (marks >> 7 & 1u)) && limited.holds(marks >> 8);
+    }
+    std::string text() const {
+        return std::to_string(wet.least) + " wet, " + std::to_string(clamped.least) + " clamped, " +
+               std::to_string(capped.least) + " capped, " + std::to_string(limited.least) + " limited";
+    }
+};
+
 } // namespace
 
 Verdict check_marks(const StageRun& run) {
@@ -82,28 +106,117 @@ Verdict check_marks(const StageRun& run) {
     for (int j = 0; j <= p.ny; ++j) {
         for (int i = 0; i <= p.nx; ++i) {
             const bool cell = i < p.nx && j < p.ny;
-            Marks::Range clamped, capped, limited;
+            LayerMarks water, sand;
             if (marks.has(EFFECT_WATER)) {
-                marks.clamp('w', i, j, static_cast<double>(p.water_velocity_clamp), clamped);
-                Marks::Range water;
-                if (marks.has(EFFECT_MIXTURE)) marks.clamp('m', i, j, static_cast<double>(p.water_velocity_clamp), clamped);
-                if (cell) marks.outflow('w', i, j, static_cast<double>(p.k), water);
-                if (cell && marks.has(EFFECT_MIXTURE)) marks.outflow('m', i, j, static_cast<double>(p.k), water);
-                limited.least += std::min(water.least, 1u); // one mark for both layers of water
-                limited.most += std::min(water.most, 1u);
-                marks.gravity(i, j, false, capped);
+                marks.wet("water_height", i, j, water.wet);
+                marks.clamp('w', i, j, static_cast<double>(p.water_velocity_clamp), water.clamped);
+                if (marks.has(EFFECT_MIXTURE)) marks.clamp('m', i, j, static_cast<double>(p.water_velocity_clamp), water.clamped);
+                if (cell) marks.outflow('w', i, j, static_cast<double>(p.k), water.limited);
+                if (cell && marks.has(EFFECT_MIXTURE)) marks.outflow('m', i, j, static_cast<double>(p.k), water.limited);
+                water.limited.least = std::min(water.limited.least, 1u); // one mark for both layers of water
+                water.limited.most = std::min(water.limited.most, 1u);
+                marks.gravity(i, j, false, water.capped);
             }
             if (marks.has(EFFECT_SAND)) {
-                marks.clamp('s', i, j, static_cast<double>(p.sand_velocity_clamp), clamped);
-                if (cell) marks.outflow('s', i, j, static_cast<double>(p.ks), limited);
-                marks.gravity(i, j, true, capped);
+                marks.wet("sand_height", i, j, sand.wet);
+                marks.clamp('s', i, j, static_cast<double>(p.sand_velocity_clamp), sand.clamped);
+                if (cell) marks.outflow('s', i, j, static_cast<double>(p.ks), sand.limited);
+                marks.gravity(i, j, true, sand.capped);
             }
             const std::uint32_t got = run.buffer("limit_marks").words()[layout.index(i, j)];
-            if (clamped.holds(got & 255u) && capped.holds(got >> 8 & 255u) && limited.holds(got >> 16)) continue;
-            return failed("limit_marks(" + std::to_string(i) + ", " + std::to_string(j) + ") counts " +
-                          std::to_string(got & 255u) + " clamped, " + std::to_string(got >> 8 & 255u) + " capped, " +
-                          std::to_string(got >> 16) + " limited; expected " + std::to_string(clamped.least) + ", " +
-                          std::to_string(capped.least) + ", " + std::to_string(limited.least));
+            if (water.holds(got & 65535u) && sand.holds(got >> 16)) continue;
+            return failed("limit_marks(" + std::to_string(i) + ", " + std::to_string(j) + ") is " + std::to_string(got) +
+                          "; expected of water " + water.text() + ", of sand " + sand.text());
+        }
+    }
+    return {};
+}
+
+namespace {
+
+/// What count_limits reads, and its definitions.
+struct Limits {
+    const StageRun& run;
+    const WorldParams& p = run.params;
+
+    double height(const char* name, int i, int j) const { return static_cast<double>(run.before(name, i, j)); }
+    double surface(int i, int j) const {
+        return height("terrain", i, j) + std::max(height("water_height", i, j), height("sand_height", i, j));
+    }
+    /// Friction of the bed against the fall of the surface: u^2 = g S h/(c + g n^2 h^(-1/3)), at most 1e8.
+    double driven2(int i, int j, double depth) const {
+        if ((run.scene.effects & EFFECT_BED_FRICTION) == 0) return 1e8;
+        const double n = static_cast<double>(p.manning) + height("roughness", i, j);
+        const double grip = static_cast<double>(p.bed_friction_dt) + static_cast<double>(p.gravity_dt) * n * n / std::cbrt(depth);
+        const auto fall = [&](int a, int b) {
+            const bool inside = a >= 0 && a < p.nx && b >= 0 && b < p.ny;
+            return inside ? std::abs(surface(a, b) - surface(i, j)) : 0.0;
+        };
+        const double slope = std::hypot(std::max(fall(i - 1, j), fall(i + 1, j)), std::max(fall(i, j - 1), fall(i, j + 1))) /
+                             static_cast<double>(p.dx);
+        return grip > 0 ? std::min(static_cast<double>(p.gravity_dt) * slope * depth / grip, 1e8) : 1e8;
+    }
+};
+
+} // namespace
+
+Verdict check_limit_counts(const StageRun& run) {
+    const Limits limits{run};
+    const WorldParams& p = run.params;
+    const FieldLayout layout{p.nx, p.ny};
+    const auto& marks = run.buffer("limit_marks").before;
+    const bool water = (run.scene.effects & EFFECT_WATER) != 0;
+    for (int tile = 0; tile < layout.tile_columns() * layout.strips(); ++tile) {
+        std::array<std::uint32_t, 9> counts{};
+        double driven2 = 0, wave = 0, top = -1e30, bottom = 1e30, deep_sand = 0, highest = -1e30;
+        std::uint32_t unsure = 0; // columns so near to the largest height that a float may tell either way
+        const int first_i = tile % layout.tile_columns() * STRIP, first_j = tile / layout.tile_columns() * STRIP;
+        for (int j = first_j; j < std::min(first_j + STRIP, p.ny + 1); ++j) {
+            for (int i = first_i; i < std::min(first_i + STRIP, p.nx + 1); ++i) {
+                const auto marked = [&](int a, int b, std::size_t layer) { return marks[layout.index(a, b)] >> (16 * layer); };
+                for (std::size_t layer = 0; layer < 2; ++layer) {
+                    const std::uint32_t of = marked(i, j, layer);
+                    const std::uint32_t found[] = {of & 3u, (of >> 2 & 3u) + (of >> 4 & 3u), (of >> 6 & 1u) + (of >> 7 & 1u),
+                                                   of >> 8 & 1u};
+                    for (std::size_t n = 0; n < 4; ++n) counts[4 * layer + n] += found[n];
+                }
+                if (i == p.nx || j == p.ny) continue;
+                // Any of the cell's four faces: bits of the west and south one at its own place.
+                const auto beside = [&](std::size_t layer, std::uint32_t x, std::uint32_t y) {
+                    return ((marked(i, j, layer) & (x | y)) | (marked(i + 1, j, layer) & x) | (marked(i, j + 1, layer) & y)) != 0;
+                };
+                const double w = limits.height("water_height", i, j), s = limits.height("sand_height", i, j);
+                if (beside(1, 64, 128)) deep_sand = std::max(deep_sand, s);
+                if (water && beside(0, 64, 128)) {
+                    const auto size = [&](const char* name, int a, int b) { return std::abs(limits.height(name, a, b)); };
+                    const double speed = std::max({size("water_velocity_x", i, j), size("water_velocity_x", i + 1, j),
+                                                   size("water_velocity_y", i, j), size("water_velocity_y", i, j + 1)});
+                    wave = std::max(wave, speed + std::sqrt(static_cast<double>(p.gravity) * w));
+                }
+                const double column = limits.height("terrain", i, j) + s + w, most = static_cast<double>(p.largest_height);
+                counts[8] += column > most * (1 + 1e-6) ? 1 : 0;
+                unsure += std::abs(column - most) <= 1e-6 * most ? 1 : 0;
+                highest = std::max(highest, column);
+                const double depth = w - std::min(w, s);
+                if (!water || depth <= static_cast<double>(p.dry_threshold)) continue;
+                top = std::max(top, limits.surface(i, j));
+                if (!beside(0, 12, 48)) continue;
+                bottom = std::min(bottom, limits.surface(i, j));
+                driven2 = std::max(driven2, limits.driven2(i, j, depth));
+            }
+        }
+        const auto got = run.buffer("limit_counts").words().subspan(static_cast<std::size_t>(tile) * LIMIT_WORDS, LIMIT_WORDS);
+        for (std::size_t n = 0; n < counts.size(); ++n) {
+            if (got[n] >= counts[n] && got[n] <= counts[n] + (n == 8 ? unsure : 0)) continue;
+            return failed("limit_counts " + std::to_string(n) + " of tile " + std::to_string(tile) + " is " +
+                          std::to_string(got[n]) + ", counted " + std::to_string(counts[n]));
+        }
+        const double numbers[] = {driven2, wave, top, bottom, deep_sand, highest};
+        for (std::size_t n = 0; n < std::size(numbers); ++n) {
+            const double value = static_cast<double>(std::bit_cast<float>(got[9 + n]));
+            if (std::abs(value - numbers[n]) <= 1e-4 * std::max(std::abs(numbers[n]), 1e-3)) continue;
+            return failed("limit_counts " + std::to_string(9 + n) + " of tile " + std::to_string(tile) + " is " +
+                          std::to_string(value) + ", by its definition " + std::to_string(numbers[n]));
         }
     }
     return {};

@@ -181,6 +181,7 @@ constexpr Definition definitions[] = {
     {"apply_rain", check_rain_ledger},
     {"apply_sources", check_source_ledger},
     {"mark_limits", check_marks},
+    {"count_limits", check_limit_counts},
     {"sample_points", check_samples},
     {"apply_edits", check_edits},
     {"write_values", check_values},

@@ -23,10 +23,11 @@ bool has_definition(const std::string& stage);
 /// The direct check of a stage; ok where it has none.
 Verdict check_definition(const StageRun& run);
 
-Verdict check_marks(const StageRun& run);     // marks_check.cpp
-Verdict check_published(const StageRun& run); // published_check.cpp
-Verdict check_strips(const StageRun& run);    // tiles_check.cpp
-Verdict check_tiles(const StageRun& run);     // tiles_check.cpp
+Verdict check_marks(const StageRun& run);        // marks_check.cpp
+Verdict check_limit_counts(const StageRun& run); // marks_check.cpp
+Verdict check_published(const StageRun& run);    // published_check.cpp
+Verdict check_strips(const StageRun& run);       // tiles_check.cpp
+Verdict check_tiles(const StageRun& run);        // tiles_check.cpp
 
 /// Words of fold_tiles' inputs, in the layout of measure_strips' outputs.
 std::vector<std::uint32_t> strip_ranges(const FieldLayout& layout);

@@ -136,6 +136,13 @@ std::vector<std::uint32_t> point_words(const WorldParams& params) {
     return words;
 }
 
+// Marks of all kinds in a third of the places.
+std::vector<std::uint32_t> mark_words(std::size_t count) {
+    std::vector<std::uint32_t> words(count);
+    for (std::size_t n = 0; n < count; n += 3) words[n] = static_cast<std::uint32_t>(n) * 2654435761u & 0x01FF01FFu;
+    return words;
+}
+
 std::vector<std::uint32_t> ledger_words(std::size_t count) {
     std::vector<std::uint32_t> words(count);
     for (std::size_t n = 0; n < count; ++n) words[n] = ledger_start(n);
@@ -185,6 +192,12 @@ std::vector<BenchBuffer> stage_buffers(const compute::StageInfo& stage, const Sc
             fill_words(buffers[b], point_words(params), false);
         } else if (binding.name == "samples") {
             fill_words(buffers[b], std::vector<std::uint32_t>(std::size_t{sampled_points} * SAMPLE_FLOATS, nan_word), true);
+            buffers[b].must_change = buffers[b].may_change;
+        } else if (binding.name == "limit_marks" && binding.access == Access::in) {
+            fill_words(buffers[b], mark_words(layout.size()), false);
+        } else if (binding.name == "limit_counts") {
+            const auto tiles = static_cast<std::size_t>(layout.tile_columns() * layout.strips());
+            fill_words(buffers[b], std::vector<std::uint32_t>(tiles * LIMIT_WORDS, nan_word), true);
             buffers[b].must_change = buffers[b].may_change;
         } else if (binding.name == "stamp_images") {
             std::vector<std::uint32_t> words(STAMP_PAGE, nan_word);

@@ -216,9 +216,9 @@ TEST_CASE("a lost device is reported by every call, and only by worlds on it") {
         step(*world, 3);
         const auto saved = save(*world);
         std::vector<std::string> errors;
-        world->set_log([&](int severity, const std::string& message) {
+        REQUIRE(world->set_log([&](int severity, const std::string& message) {
             if (severity == 0) errors.push_back(message);
-        });
+        }));
         world->device().inject_device_lost();
         CHECK(world->step(1).code == Code::device_lost);
         CHECK(world->reader().stats().status().code == Code::device_lost);

@@ -112,9 +112,9 @@ template <class Note> void session(Device& device, FaultyDevice::Plan& plan, Not
     note(made.status());
     if (!made) return;
     World& world = **made;
-    world.set_log([&](int severity, const std::string& message) {
+    note(world.set_log([&](int severity, const std::string& message) {
         if (severity == 1 && message.find("for roll-back") != std::string::npos) note(error(Code::out_of_memory, message));
-    });
+    }));
     note(world.roll_back().set(2, 1));
     note(world.outputs().set_mask(1));
     note(world.step(2));

@@ -116,7 +116,7 @@ TEST_CASE("what outer faces remember is asked for sense, too") {
 TEST_CASE("a snapshot whose books do not tell what it holds says so when it is loaded") {
     auto world = make_world(mixed_scene(20, 17));
     std::vector<std::string> heard;
-    world->set_log([&](int, const std::string& text) { heard.push_back(text); });
+    REQUIRE(world->set_log([&](int, const std::string& text) { heard.push_back(text); }));
     step(*world, 5);
     auto bytes = save(*world);
     REQUIRE(world->snapshots().load(bytes));
@@ -135,7 +135,7 @@ TEST_CASE("columns above the declared largest height are counted") {
     scene.settings.method.largest_height = 1;
     scene.fill(scene.fields.water, [](double x, double) { return x < 2 ? 0.96 : 0.5; });
     auto world = make_world(scene);
-    CHECK(world->reader().stats()->high_columns == 0);
+    CHECK(world->reader().stats()->limits.high_columns == 0);
     Edit push;
     push.kind = EditKind::push;
     push.x0 = 3;
@@ -153,7 +153,7 @@ TEST_CASE("columns above the declared largest height are counted") {
     REQUIRE(world->reader().read("water_height", water));
     const auto high = std::count_if(water.begin(), water.end(), [](float height) { return height > 1; });
     CHECK(high > 0);
-    CHECK(stats->high_columns == static_cast<std::uint64_t>(high));
+    CHECK(stats->limits.high_columns == static_cast<std::uint64_t>(high));
 }
 
 TEST_CASE("a command log is refused for what its commands bring, not found out step by step") {

@@ -110,6 +110,20 @@ TEST_CASE("level warnings: a front onto dry ground") {
     CHECK(warnings(rest + R"(, "terrain": [{"shape": "box", "from": [2, 0], "to": [4, 3], "height": 1}])").empty());
 }
 
+TEST_CASE("level warnings: a stream that will run at the clamp") {
+    const std::string bed = R"("terrain": [{"shape": "plane", "height": 2, "slope_x": -0.5}], "material": {"bed_friction": 0.01})";
+    const std::string rest = bed + R"(, "sources": [{"shape": "box", "from": [0, 1], "to": [0.2, 2], "rate": 1.5}])";
+    // 0.3 m2/s: (9.81 * 0.3 * 0.5 / 0.01)^(1/3) = 5.28, but 1.9 m of fall give less further down: sqrt(2 * 9.81 * 1.9) = 6.1
+    CHECK_MESSAGE(says(warnings(rest), "sources[0]: 0.3 m2/s that run down a slope of 0.5 come to some 5.28 m/s but will be held at "
+                                       "velocity_clamp dx/dt = 3.89 m/s; use dt <= 0.00662 s"),
+                  warnings(rest));
+    CHECK(warnings(rest, 0.0066).empty());
+    CHECK(warnings(bed + R"(, "sources": [{"shape": "box", "from": [0, 1], "to": [0.2, 2], "rate": 0.5}])").empty());
+    // Up the slope it runs nowhere.
+    CHECK(warnings(bed + R"(, "sources": [{"shape": "box", "from": [3.8, 1], "to": [4, 2], "rate": 1.5}])").empty());
+    CHECK(says(warnings(bed + R"(, "sides": {"west": {"kind": "discharge", "value": 0.9}})"), "sides.west: 0.3 m2/s"));
+}
+
 TEST_CASE("level warnings: speed of a source, diffusion") {
     CHECK(says(warnings(R"("sources": [{"shape": "box", "from": [1, 1], "to": [2, 2], "rate": 1, "velocity": [0, -8]}])"),
                "sources[0].velocity: 8 m/s is more than velocity_clamp dx/dt = 3.88889 m/s; use dt <= 0.00437 s"));

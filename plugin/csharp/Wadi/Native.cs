@@ -6,6 +6,7 @@ namespace Wadi
 {
     /// <summary>
     /// Gets what the library has to tell: advice on a level (warning), each world made and each change of its effects (information),
+    /// where a running world is held back by a limit, with the time step or setting that would end it (warning, once for each kind),
     /// a lost device (error), messages of drivers and validation layers. Called during a call of the library, or from a driver's
     /// thread; it must not call the library; what it throws is lost.
     /// </summary>

@@ -296,6 +296,20 @@ namespace Wadi
         public ulong DroppedNanoseconds;
         /// <summary>and since the world was created</summary>
         public ulong DroppedNanosecondsTotal;
+        /// <summary>
+        /// a world with a log callback looks every 64 steps where limits are at work, told below as wadi_world_stats does; the step
+        /// of the newest look that has arrived, UINT64_MAX = none yet
+        /// </summary>
+        public ulong LimitsStep;
+        public ulong WetFaces;
+        public ulong ClampedWaterFaces;
+        public ulong CappedWaterFaces;
+        public ulong SandFaces;
+        public ulong ClampedSandFaces;
+        public ulong CappedSandFaces;
+        public ulong HighColumns;
+        /// <summary>[s]</summary>
+        public double UnlimitedDt;
         /// <summary>A struct with the size that the library asks for and the header's defaults.</summary>
         public static unsafe Frame Default
         {
@@ -439,6 +453,18 @@ namespace Wadi
         /// rounded like any float, and the books drift
         /// </summary>
         public ulong HighColumns;
+        /// <summary>faces beside water deeper than method.dry_threshold, inside it too: what the next three are of</summary>
+        public ulong WetFaces;
+        /// <summary>those of the counts above that hold water; the rest hold sand</summary>
+        public ulong ClampedWaterFaces;
+        public ulong CappedWaterFaces;
+        public ulong LimitedWaterCells;
+        /// <summary>faces beside sand deeper than method.dry_threshold</summary>
+        public ulong SandFaces;
+        /// <summary>
+        /// the time step with which, as far as this state tells, neither clamp nor cap would hold water; dt where none does [s]
+        /// </summary>
+        public double UnlimitedDt;
         /// <summary>A struct with the size that the library asks for and the header's defaults.</summary>
         public static unsafe WorldStats Default
         {

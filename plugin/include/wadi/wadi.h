@@ -102,8 +102,9 @@ typedef enum wadi_log_level WADI_ENUM {
     WADI_LOG_WARNING = 1,
     WADI_LOG_INFORMATION = 2
 } wadi_log_level;
-/** Gets what the library has to tell: advice on a level (warning), each world made and each change of its effects (information), a
- *  lost device (error), messages of drivers and validation layers. Called during a call of the library, or from a driver's thread;
+/** Gets what the library has to tell: advice on a level (warning), each world made and each change of its effects (information), where a
+ *  running world is held back by a limit, with the time step or setting that would end it (warning, once for each kind), a lost device
+ *  (error), messages of drivers and validation layers. Called during a call of the library, or from a driver's thread;
  *  it must not call the library; what it throws is lost. */
 typedef void (*wadi_log_callback)(void* user, wadi_log_level level, const char* message);
 
@@ -330,6 +331,12 @@ typedef struct wadi_frame {
     uint64_t published_step;       /* of the outputs' current set; UINT64_MAX = none yet */
     uint64_t dropped_nanoseconds;       /* host time that became no step in this update; steps is then less than it asks for */
     uint64_t dropped_nanoseconds_total; /* and since the world was created */
+    uint64_t limits_step;          /* a world with a log callback looks every 64 steps where limits are at work, told below as
+                                      wadi_world_stats does; the step of the newest look that has arrived, UINT64_MAX = none yet */
+    uint64_t wet_faces, clamped_water_faces, capped_water_faces;
+    uint64_t sand_faces, clamped_sand_faces, capped_sand_faces;
+    uint64_t high_columns;
+    double unlimited_dt;           /* [s] */
 } wadi_frame;
 static inline wadi_frame wadi_default_frame(void) {
     WADI_ZERO_STRUCT(wadi_frame);
@@ -528,6 +535,13 @@ typedef struct wadi_world_stats {
     uint64_t hash;                /* 64-bit state hash, ghosts excluded */
     uint64_t high_columns;        /* columns of terrain, sand and water above method.largest_height, which flow and pushes can pile up:
                                      there heights are rounded like any float, and the books drift */
+    uint64_t wet_faces;           /* faces beside water deeper than method.dry_threshold, inside it too: what the next three are of */
+    uint64_t clamped_water_faces; /* those of the counts above that hold water; the rest hold sand */
+    uint64_t capped_water_faces;
+    uint64_t limited_water_cells;
+    uint64_t sand_faces;          /* faces beside sand deeper than method.dry_threshold */
+    double unlimited_dt;          /* the time step with which, as far as this state tells, neither clamp nor cap would hold water; dt where
+                                     none does [s] */
 } wadi_world_stats;
 static inline wadi_world_stats wadi_default_world_stats(void) {
     WADI_ZERO_STRUCT(wadi_world_stats);
