@@ -385,7 +385,7 @@ TEST_CASE("what is not asked for costs nothing, and nothing published changes th
         CHECK(world.stats().hash == plain.stats().hash);
         REQUIRE(wadi_world_set_outputs(world.id, 0) == WADI_OK);
         REQUIRE(wadi_world_set_host_outputs(world.id, 0) == WADI_OK);
-        world.read(WADI_FIELD_FREE_SURFACE);
+        for (const World* each : {&world, &plain}) each->read(WADI_FIELD_FREE_SURFACE); // makes a buffer of the reader's
         CHECK(device_bytes(world.id) == device_bytes(plain.id));
     }
 }

@@ -111,11 +111,13 @@ TEST_CASE("level warnings: a front onto dry ground") {
 }
 
 TEST_CASE("level warnings: a stream that will run at the clamp") {
-    const std::string bed = R"("terrain": [{"shape": "plane", "height": 2, "slope_x": -0.5}], "material": {"bed_friction": 0.01})";
+    const std::string bed =
+        R"("terrain": [{"shape": "plane", "height": 2, "slope_x": -0.5}], "material": {"bed_friction": 0.01})";
     const std::string rest = bed + R"(, "sources": [{"shape": "box", "from": [0, 1], "to": [0.2, 2], "rate": 1.5}])";
     // 0.3 m2/s: (9.81 * 0.3 * 0.5 / 0.01)^(1/3) = 5.28, but 1.9 m of fall give less further down: sqrt(2 * 9.81 * 1.9) = 6.1
-    CHECK_MESSAGE(says(warnings(rest), "sources[0]: 0.3 m2/s that run down a slope of 0.5 come to some 5.28 m/s but will be held at "
-                                       "velocity_clamp dx/dt = 3.89 m/s; use dt <= 0.00662 s"),
+    CHECK_MESSAGE(says(warnings(rest),
+                       "sources[0]: 0.3 m2/s that run down a slope of 0.5 come to some 5.28 m/s but will be held at "
+                       "velocity_clamp dx/dt = 3.89 m/s; use dt <= 0.00662 s"),
                   warnings(rest));
     CHECK(warnings(rest, 0.0066).empty());
     CHECK(warnings(bed + R"(, "sources": [{"shape": "box", "from": [0, 1], "to": [0.2, 2], "rate": 0.5}])").empty());
