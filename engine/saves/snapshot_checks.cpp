@@ -14,8 +14,9 @@ namespace {
 
 // Flow may pile columns above method.largest_height, by how much no rule says: as far as the fuzzer calls a world finite.
 constexpr double PILED_MOST = 1e6;
-constexpr double STRAIN_MOST = 1e7; // as stages clamp it
-constexpr double RIM_MOST = 1e7;    // shares and speeds, no unit larger
+constexpr double STRAIN_MOST = 1e7;            // as stages clamp it
+constexpr double PUBLISHED_STRAIN_MOST = 1e30; // which the paper's method does not: as far as GPUs divide exactly
+constexpr double RIM_MOST = 1e7;               // shares and speeds, no unit larger
 constexpr std::uint64_t STEPS_MOST = std::uint64_t{1} << 53;
 constexpr double QUANTA_MOST = 0x1p62;
 
@@ -27,7 +28,8 @@ Range range_of(const std::string& field, const Settings& settings) {
     const double height = PILED_MOST * settings.method.largest_height;
     if (field == "terrain") return {-height, height};
     if (field.ends_with("_height") || field == "wedge_depth") return {0, height};
-    if (field.find("velocity") == std::string::npos) return {-STRAIN_MOST, STRAIN_MOST};
+    const double strain = settings.method.published() ? PUBLISHED_STRAIN_MOST : STRAIN_MOST;
+    if (field.find("velocity") == std::string::npos) return {-strain, strain};
     const double fastest =
         settings.method.velocity_clamp * settings.grid.dx / settings.dt * std::max(1, settings.method.substeps);
     const double speed = std::max(SPEED_MOST, 2 * fastest);
