@@ -28,8 +28,8 @@ std::uint64_t hash(Run& run);
 /// in which GPUs divide exactly (a million times the declared largest height). From there on bits say nothing.
 bool blown_up(const Settings& settings, const WorldStats& stats);
 
-/// Which promise the state of a run breaks (Checking); empty where none, and for method "published", which may blow up. For every step:
-/// what piles up may be gone in the next.
+/// Which promise the state of a run breaks (Checking); empty where none, and for method "published", which may blow up. For every
+/// step: what piles up may be gone in the next.
 std::string check_books(Run& run, const WorldStats& stats);
 
 /// The run that all others are compared with.

@@ -184,12 +184,17 @@ void Solver<Real>::advect_velocity(const Field<Real>& height, const Faces<Real>&
             const bool slower = u > Real(0) ? near < most : u < Real(0) && near > most;
             if (slower) turned += std::min(gained, std::max(entering, Real(0))) * (most - near);
         };
-        if (bank.any()) {
+        if (bank.any() && !has(EFFECT_SECOND_ORDER_WATER)) {
             turn(a - 1, Q_W, u_W);
             turn(a, -Q_E, u_E);
         }
-        if (b > 0 && (bank.within || bank.south)) u_S = u;
-        if (b + 1 < ax.across() && (bank.within || bank.north)) u_N = u;
+        // Of second order blocked faces alone count as u.
+        const auto counts_as_own = [&](bool beside, int row) {
+            if (row < 0 || row >= ax.across()) return false;
+            return has(EFFECT_SECOND_ORDER_WATER) ? bank.any() && u_old[ax.face(a, row)] == Real(0) : bank.within || beside;
+        };
+        if (counts_as_own(bank.south, b - 1)) u_S = u;
+        if (counts_as_own(bank.north, b + 1)) u_N = u;
         const Real from_along = std::max(-Q_E, Real(0)) * (u_E - u) + std::max(Q_W, Real(0)) * (u_W - u);
         const Real from_across = std::max(-Q_N, Real(0)) * (u_N - u) + std::max(Q_S, Real(0)) * (u_S - u);
         velocity.along(ax)[ax.face(a, b)] = u + (from_along + from_across + turned) / hb;
