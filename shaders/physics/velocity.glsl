@@ -62,15 +62,20 @@ FN float line_gain(float u, FaceLine at, float flux_low, float flux_high, float 
            side_gain(-flux_high, u, at.high, at.far_high, at.inside_high, own, inv_sum, high_courant);
 }
 
+// What fluxes of second order bring, kept between a velocity and its four neighbours.
+FN float between_neighbours(float moved, float u, float u_low, float u_high, float u_left, float u_right) {
+    float least = wmin(u, wmin(wmin(u_low, u_high), wmin(u_left, u_right)));
+    float most = wmax(u, wmax(wmax(u_low, u_high), wmax(u_left, u_right)));
+    return wclamp(moved, least, most);
+}
+
 // advect_velocity with limited slopes, kept between u and its four neighbours: no new extremum at any time step. `centered` and the lines
 // are the velocities that are advected, at the time of the height; u_*: the face's and its neighbours' own.
 FN float advect_velocity_second_order(float u, float u_low, float u_high, float u_left, float u_right, float centered, FaceLine along, FaceLine across,
                                       float flux_low, float flux_high, float flux_left, float flux_right, float height, float inv_sum, float k, float dry) {
     float gain = line_gain(centered, along, flux_low, flux_high, inv_sum, k * wabs(along.low), k * wabs(along.high)) +
                  line_gain(centered, across, flux_left, flux_right, inv_sum, wabs(flux_left) * inv_sum, wabs(flux_right) * inv_sum);
-    float least = wmin(u, wmin(wmin(u_low, u_high), wmin(u_left, u_right)));
-    float most = wmax(u, wmax(wmax(u_low, u_high), wmax(u_left, u_right)));
-    float moved = wclamp(u + gain * inv_sum, least, most);
+    float moved = between_neighbours(u + gain * inv_sum, u, u_low, u_high, u_left, u_right);
     return height > dry ? moved : u;
 }
 

@@ -197,7 +197,10 @@ void Solver<Real>::advect_velocity(const Field<Real>& height, const Faces<Real>&
         if (counts_as_own(bank.north, b + 1)) u_N = u;
         const Real from_along = std::max(-Q_E, Real(0)) * (u_E - u) + std::max(Q_W, Real(0)) * (u_W - u);
         const Real from_across = std::max(-Q_N, Real(0)) * (u_N - u) + std::max(Q_S, Real(0)) * (u_S - u);
-        velocity.along(ax)[ax.face(a, b)] = u + (from_along + from_across + turned) / hb;
+        Real& moved = velocity.along(ax)[ax.face(a, b)];
+        moved = u + (from_along + from_across + turned) / hb;
+        if (has(EFFECT_SECOND_ORDER_WATER) && &height != &sand) // of whose fluxes it need not be a mean
+            moved = std::clamp(moved, std::min({u, u_W, u_E, u_S, u_N}), std::max({u, u_W, u_E, u_S, u_N}));
     });
 }
 
