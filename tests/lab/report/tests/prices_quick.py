@@ -23,7 +23,7 @@ with tempfile.TemporaryDirectory() as folder:
     # One pair of runs. The ci preset has vector code of most masks for AVX-512 alone: checked code of -Og takes thirty times as long, and
     # where it runs beside other tests one pair scatters by more than half.
     if float(priced["everything"]["ms_per_step"]) < 3:
-        assert float(priced["effect elastoplastic off"]["saved"]) > 15, priced
+        assert float(priced["effect elastoplastic off"]["saved"]) > 5, priced
     page = (out / "README.md").read_text()
     assert "## What safety costs" in page and all(page.count(f"\n| {what} |") == 1 for what in priced), page
 refused = run("--backend", "vulkan", "--processor-time")
