@@ -16,7 +16,7 @@ import time
 import zlib
 from pathlib import Path
 
-OK, BAD_INPUT = 0, 2
+OK, BAD_INPUT, RUN_FAILED = 0, 2, 3
 LEVEL = "dam_break"
 SUMMARY_KEYS = {
     "level", "completed", "steps", "simulated_seconds", "wall_seconds", "processor_seconds", "loading_seconds", "figures_seconds",
@@ -270,6 +270,19 @@ def test_gauge_beside_wall(recorder):
     assert wall["surface"] == 10 and math.isnan(wall["water_surface"]), wall
 
 
+def test_check(recorder):
+    """--check ends at the step that breaks a promise, and names it; control: without it the same world goes on, a sound one with it too."""
+    level = {"format_version": 1, "name": "leaky", "grid": {"nx": 40, "ny": 36, "dx": 0.2}, "dt": 0.2,
+             "method": {"outflow_limiter": False, "velocity_clamp": 0.9},
+             "water": [{"shape": "box", "from": [0, 0], "to": [3, 4], "height": 2}]}
+    (recorder.folder / "leaky.json").write_text(json.dumps(level), encoding="utf-8")
+    leaky = ("leaky.json", "--backend", recorder.backend, "--seconds", "4", "--no-frames")
+    said = recorder.run(*leaky, "--check", code=RUN_FAILED).stderr
+    assert "checking: after step " in said and "promised: " in said, said
+    recorder.run(*leaky)
+    recorder.record("--seconds", "0.1", "--no-frames", "--check")
+
+
 def test_summary(recorder):
     def summary(*arguments):
         recorder.record("--seconds", "0.5", "--no-frames", "--summary", "summary.json", *arguments)
@@ -395,7 +408,7 @@ def main():
     parser.add_argument("--backend", default="cpu")
     parser.add_argument("--nvml", help="libnvidia-ml.so.1 of fake_nvml.c")
     options = parser.parse_args()
-    tests = [test_frames, test_dumps, test_points, test_gauge_beside_wall, test_summary]
+    tests = [test_frames, test_dumps, test_points, test_gauge_beside_wall, test_check, test_summary]
     if options.backend == "cpu":  # what meets no device
         tests += [test_lists, test_plan, test_refusals, test_default_folder, test_video_refusals, test_video]
     if os.name == "posix":
