@@ -67,12 +67,18 @@ FN float outflow_scale(float height, float outflow_depth, float limiter) {
 // equally often.
 FN float moved_quanta(float flux, float inv_quantum, float phase) { return wfloor(wabs(flux) * inv_quantum + phase); }
 
-// outflow_scale of a cell, negative where phase would let it give more than it holds: then its fluxes are cut toward 0.
+// outflow_scale of a cell, negative where phase would let it give more than it holds: then its fluxes are cut toward 0. Each of the four
+// moves less than a quantum more than what is meant, and as much again is kept for what rounding does.
 FN float outflow_limit(float height, FacePair x, FacePair y, float limiter, float quantum, float inv_quantum, float phase) {
-    float scale = outflow_scale(height, outflow(x, y), limiter);
-    float moved_x = moved_quanta(wmax(-x.low, 0.0f) * scale, inv_quantum, phase) + moved_quanta(wmax(x.high, 0.0f) * scale, inv_quantum, phase);
-    float moved_y = moved_quanta(wmax(-y.low, 0.0f) * scale, inv_quantum, phase) + moved_quanta(wmax(y.high, 0.0f) * scale, inv_quantum, phase);
-    return (moved_x + moved_y) * quantum > height ? -scale : scale;
+    float taken = outflow(x, y);
+    float scale = outflow_scale(height, taken, limiter);
+    bool short_of = false;
+    if (UNIFORM(taken * scale + 8.0f * quantum > height)) { // hardly ever
+        float moved_x = moved_quanta(wmax(-x.low, 0.0f) * scale, inv_quantum, phase) + moved_quanta(wmax(x.high, 0.0f) * scale, inv_quantum, phase);
+        float moved_y = moved_quanta(wmax(-y.low, 0.0f) * scale, inv_quantum, phase) + moved_quanta(wmax(y.high, 0.0f) * scale, inv_quantum, phase);
+        short_of = (moved_x + moved_y) * quantum > height;
+    }
+    return short_of ? -scale : scale;
 }
 
 // The flux after its donor's limiter, in whole quanta.

@@ -12,6 +12,13 @@ struct Stairs {
 // A face through which nothing runs stands at exactly 0.
 FN float shut(float velocity) { return velocity == 0.0f ? 1.0f : 0.0f; }
 
+// Whether any face around is shut: without one no corner stands beside.
+FN bool touches_bank(Around at, float left_low, float left_high, float right_low, float right_high) {
+    float along = wmin(wmin(wabs(at.low), wabs(at.high)), wmin(wabs(at.left), wabs(at.right)));
+    float across = wmin(wmin(wabs(left_low), wabs(left_high)), wmin(wabs(right_low), wabs(right_high)));
+    return wmin(along, across) == 0.0f;
+}
+
 // left_low, left_high, right_low, right_high: velocities across, at the faces on both sides of the face's two cells (NUMERICS 2.3).
 FN Stairs stairs_beside(Around at, float left_low, float left_high, float right_low, float right_high) {
     float shut_left_low = shut(left_low);

@@ -128,7 +128,11 @@ FN float clamped_speed(float along, float across, float limit) {
 }
 
 // A velocity after rain, which brings none (NUMERICS 2.9); inv_sum: 1 over both cells' depths behind the rain.
-FN float diluted(float velocity, float rain, float inv_sum) { return velocity - velocity * wmin(rain * (2.0f * inv_sum), 1.0f); }
+FN float diluted(float velocity, float rain, float inv_sum) {
+    float left = velocity;
+    if (UNIFORM(rain > 0.0f)) left = velocity - velocity * wmin(rain * (2.0f * inv_sum), 1.0f);
+    return left;
+}
 
 // Rest rule (NUMERICS 2.4e): a level and slow face stands still for ever.
 FN bool at_rest(float surface_low, float surface_high, float u, float rest_surface, float rest_velocity) {

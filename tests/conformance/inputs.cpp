@@ -319,9 +319,9 @@ Result<Scene> make_scene(const std::string& grid, const std::string& name, const
     return scene;
 }
 
-Result<Scene> make_large_scene(int size, std::uint32_t effects) {
+Result<Scene> make_large_scene(int size, const std::string& name, std::uint32_t effects) {
     constexpr int tile = 256;
-    auto scene = make_scene("256x256", "random", "default", effects);
+    auto scene = make_scene("256x256", name, "default", effects);
     if (!scene) return scene;
     scene->settings.grid.nx = scene->settings.grid.ny = size;
     if ((effects & EFFECT_ROUGHNESS) == 0) scene->settings.material.manning = 0; // as in most levels, whose time is meant

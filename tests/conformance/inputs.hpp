@@ -26,8 +26,9 @@ std::span<const char* const> method_names_of_cases();
 /// Errors: bad_argument for an unknown grid, scene or method.
 Result<Scene> make_scene(const std::string& grid, const std::string& scene, const std::string& method, std::uint32_t effects);
 
-/// The random scene of 256 x 256 cells laid side by side over size x size, for measurements: cheap to make at any size.
-Result<Scene> make_large_scene(int size, std::uint32_t effects);
+/// A scene of 256 x 256 cells laid side by side over size x size, for measurements: cheap to make at any size.
+/// Errors: bad_argument for an unknown scene.
+Result<Scene> make_large_scene(int size, const std::string& scene, std::uint32_t effects);
 
 /// Deterministic noise in [-1, 1] made of eight waves with at least four cells per wavelength.
 float band_limited(std::uint32_t seed, int i, int j);

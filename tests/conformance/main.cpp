@@ -273,6 +273,8 @@ int run(int argc, char** argv) {
     perf->add_option("--min-size", options.perf.min_size, "smallest grid side")->check(CLI::Range(128, 16384));
     perf->add_option("--max-size", options.perf.max_size, "largest grid side, by doubling from the smallest")
         ->check(CLI::Range(128, 16384));
+    perf->add_option("--scene", options.perf.scene, "what the grid holds, laid side by side")
+        ->check(CLI::IsMember(std::vector<std::string>(scene_names().begin(), scene_names().end())));
     perf->add_option("--repeats", options.perf.repeats, "runs per row")->check(CLI::Range(1, 10000));
     CLI::App* tiles =
         app.add_subcommand("perf-tiles", "time steps of worlds of which a part moves, with and without active tiles");

@@ -151,7 +151,7 @@ Result<double> measure_copy_stage(Device& device, PassRunner& runner, int repeat
 }
 
 Result<Ceiling> measure_ceiling(Device& device, int size, int repeats) {
-    auto scene = make_large_scene(size, EFFECT_WATER);
+    auto scene = make_large_scene(size, "random", EFFECT_WATER);
     if (!scene) return scene.status();
     PassRunner runner(device, *scene);
     if (auto status = runner.open(); !status) return status;
@@ -173,7 +173,7 @@ std::vector<StepInput> inputs_of(const Scene& scene, int count) {
 
 // Each stage of a step under all effects, once per pass; of a fused step only what the other has not.
 Status measure_stages(Device& device, int size, bool fused, const PerfOptions& options, std::vector<Row>& rows) {
-    auto scene = make_large_scene(size, ALL);
+    auto scene = make_large_scene(size, options.scene, ALL);
     if (!scene) return scene.status();
     PassRunner runner(device, *scene, {.fused = fused, .fused_slopes = device.tuning().fused_slopes});
     if (auto status = runner.open(); !status) return status;
@@ -201,7 +201,7 @@ Status measure_stages(Device& device, int size, bool fused, const PerfOptions& o
 // Whole steps; the least bytes a step can move are its state in and out once.
 Status measure_step(Device& device, int size, const std::string& name, std::uint32_t effects, bool fused,
                     const PerfOptions& options, std::vector<Row>& rows) {
-    auto scene = make_large_scene(size, effects);
+    auto scene = make_large_scene(size, options.scene, effects);
     if (!scene) return scene.status();
     PassRunner runner(device, *scene, {.fused = fused, .fused_slopes = device.tuning().fused_slopes});
     const auto passes = runner.passes();
@@ -273,7 +273,7 @@ Status measure_beside_step(Device& device, PassRunner& runner, const char* stage
 // What a host asks for beside the step: one brush 64 cells wide, 1000 points.
 Status measure_host_work(Device& device, int size, const PerfOptions& options, std::vector<Row>& rows) {
     constexpr int points = 1000;
-    auto scene = make_large_scene(size, ALL);
+    auto scene = make_large_scene(size, options.scene, ALL);
     if (!scene) return scene.status();
     PassRunner runner(device, *scene);
     if (auto status = runner.open(); !status) return status;

@@ -15,7 +15,7 @@ constexpr int first_steps = 40; // until the rock sleeps, and a device at rest h
 
 // The random scene in a basin of `share` of the area, 20 m below the rock around it.
 Result<Scene> make_basin(int size, double share) {
-    auto scene = make_large_scene(size, all_effects & ~std::uint32_t{EFFECT_SOURCES | EFFECT_RAIN | EFFECT_OPEN_SIDES});
+    auto scene = make_large_scene(size, "random", all_effects & ~std::uint32_t{EFFECT_SOURCES | EFFECT_RAIN | EFFECT_OPEN_SIDES});
     if (!scene) return scene;
     scene->settings.method.largest_height += 20;
     const int side = static_cast<int>(std::lround(size * std::sqrt(share))), low = (size - side) / 2, high = low + side;
