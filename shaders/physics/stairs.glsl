@@ -19,6 +19,9 @@ FN bool touches_bank(Around at, float left_low, float left_high, float right_low
     return wmin(along, across) == 0.0f;
 }
 
+// Whether anything goes through the four sides of a face's control volume.
+FN bool flows_through(float low, float high, float left, float right) { return (wabs(low) + wabs(high)) + (wabs(left) + wabs(right)) > 0.0f; }
+
 // left_low, left_high, right_low, right_high: velocities across, at the faces on both sides of the face's two cells (NUMERICS 2.3).
 FN Stairs stairs_beside(Around at, float left_low, float left_high, float right_low, float right_high) {
     float shut_left_low = shut(left_low);
