@@ -37,8 +37,8 @@ inline constexpr EffectRow effect_rows[] = {
     {EFFECT_ROUGHNESS, "roughness", EFFECT_BED_FRICTION, "Manning's n from cell to cell"},
 };
 
-/// Choices of method: bits of the same mask above those, from `method` and never from content. Without what it needs a choice has
-/// nothing to act on.
+/// Choices: bits of the same mask above those, from settings and never from content. Without what it needs a choice has nothing
+/// to act on.
 inline constexpr EffectRow choice_rows[] = {
     {EFFECT_PUBLISHED, "published", 0, "the paper's own method, Algorithm 1, in stages of its own"},
     {EFFECT_DIRECT_STRAIN, "direct_strain", EFFECT_PUBLISHED | EFFECT_ELASTOPLASTIC,
@@ -49,13 +49,15 @@ inline constexpr EffectRow choice_rows[] = {
      "heights and flux-form velocities of sand move by limited slopes"},
     {EFFECT_SHOCK_VISCOSITY, "shock_viscosity", EFFECT_WATER,
      "numerical viscosity of water where it is compressed: bores do not ring"},
+    {EFFECT_FLOW_FRICTION, "flow_friction", EFFECT_SAND | EFFECT_SLOPE_NORMAL,
+     "friction of sand rises with its speed, and where it is thin"},
 };
 
 inline constexpr std::uint32_t all_effects = (1u << std::size(effect_rows)) - 1;
 
 /// The paper's own stages know nothing of these.
-inline constexpr std::uint32_t never_published =
-    EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION | EFFECT_RETENTION | EFFECT_SECOND_ORDER_SAND | EFFECT_SHOCK_VISCOSITY;
+inline constexpr std::uint32_t never_published = EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION | EFFECT_RETENTION |
+                                                 EFFECT_SECOND_ORDER_SAND | EFFECT_SHOCK_VISCOSITY | EFFECT_FLOW_FRICTION;
 
 /// The mask with all that its effects and choices need.
 constexpr std::uint32_t with_needs(std::uint32_t mask) {

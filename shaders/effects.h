@@ -21,11 +21,12 @@
 #define EFFECT_RETENTION 16384u
 #define EFFECT_ROUGHNESS 32768u
 
-// Choices of method: bits of the same mask, from settings.method and never from content.
+// Choices: bits of the same mask, from settings and never from content.
 #define EFFECT_PUBLISHED 65536u
 #define EFFECT_DIRECT_STRAIN 131072u
 #define EFFECT_SECOND_ORDER_WATER 262144u
 #define EFFECT_SECOND_ORDER_SAND 524288u
 #define EFFECT_SHOCK_VISCOSITY 1048576u
+#define EFFECT_FLOW_FRICTION 2097152u
 
 #endif

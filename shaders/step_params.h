@@ -124,6 +124,10 @@ struct WorldParams {
     float passive;              // Rankine's coefficient of passive earth pressure, tan^2(45 deg + phi/2): how many times its own push sand bears
     float bed_adhesion;         // a: share of the cohesion with which sand clings to its ground
     float adhesion_slip;        // what it takes from a velocity in a substep, per cohesive share [m/s], NUMERICS 2.8
+    float flow_rise;            // (mu_2 - mu)/mu: what friction rises by at most, as a share of it (NUMERICS 2.8)
+    float flow_length;          // L [m]
+    float flow_beta;
+    float flow_gamma;
     float cliff_share;          // 4/(c_f rho_s g): share of the cohesion that a cliff needs, per cohesion over depth [m/Pa]
     float internal_friction;    // b: friction within spreading sand, a share of mu
     float viscosity_number;     // nu dts/dx^2 of sand in its plane, at most what the explicit step bears beside bulk_viscosity

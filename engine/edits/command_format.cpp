@@ -145,7 +145,7 @@ std::vector<std::byte> write_commands(std::uint64_t level, std::span<const Stamp
 }
 
 Result<CommandList> read_commands(std::span<const std::byte> bytes) {
-    if (auto status = check_sealed("command log", bytes, magic, version, lists_at); !status) return status;
+    if (auto status = check_sealed("command log", bytes, magic, {version, version}, lists_at); !status) return status;
     CommandList list;
     list.level = get<std::uint64_t>(bytes, sealed_header_bytes);
     const auto stamps = get<std::uint32_t>(bytes, stamps_at);

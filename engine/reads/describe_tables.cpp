@@ -97,7 +97,7 @@ std::string describe_effects() {
     std::string text = heading({"effect", "needs", "on by itself when", "meaning"});
     for (const Effect& effect : effect_table())
         text += row({code(effect.name), joined(names_of(effect.needs), ", "), effect.when, effect.meaning});
-    text += "\n" + heading({"choice of method", "needs", "setting", "meaning"});
+    text += "\n" + heading({"choice", "needs", "setting", "meaning"});
     for (const Choice& choice : choice_table())
         text += row({code(choice.name), joined(names_of(choice.needs), ", "), choice.when, choice.meaning});
     return text;

@@ -33,16 +33,17 @@ void seal(std::span<std::byte> bytes) {
     put(bytes, at, checksum_of(bytes));
 }
 
-Status check_sealed(const char* what, std::span<const std::byte> bytes, const char (&name)[9], std::uint32_t version,
+Status check_sealed(const char* what, std::span<const std::byte> bytes, const char (&name)[9], SealedVersions versions,
                     std::size_t least) {
     const auto broken = [&](const std::string& text) { return error(Code::bad_file, what + (": " + text)); };
     if (bytes.size() < least)
         return broken(std::to_string(bytes.size()) + " bytes are fewer than the " + std::to_string(least) + " of a header");
     if (std::memcmp(bytes.data(), name, 8) != 0) return broken(std::string("it does not begin with ") + name);
     const auto found = get<std::uint32_t>(bytes, version_at);
-    if (found != version) {
-        return broken("version " + std::to_string(found) + (found > version ? " is newer than" : " is not") + " the version " +
-                      std::to_string(version) + " that this library reads");
+    if (found > versions.newest || found < versions.oldest) {
+        const bool newer = found > versions.newest;
+        return broken("version " + std::to_string(found) + (newer ? " is newer than" : " is older than") + " the version " +
+                      std::to_string(newer ? versions.newest : versions.oldest) + " that this library reads");
     }
     const auto size = get<std::uint64_t>(bytes, bytes_at);
     if (size != bytes.size())
@@ -50,5 +51,7 @@ Status check_sealed(const char* what, std::span<const std::byte> bytes, const ch
     if (get<std::uint64_t>(bytes, checksum_at) != checksum_of(bytes)) return broken("its checksum is wrong: bytes were changed");
     return ok_status();
 }
+
+std::uint32_t sealed_version(std::span<const std::byte> bytes) { return get<std::uint32_t>(bytes, version_at); }
 
 } // namespace wadi

@@ -10,12 +10,15 @@ namespace {
 constexpr char magic[] = "WADISNAP";
 constexpr std::size_t fields_at = 12, material_at = 80, name_bytes = 32, field_bytes = name_bytes + 8, total_bytes = 16;
 
-std::size_t fixed_bytes() { return material_at + 8 * material_keys().size(); }
+// How many numbers of the material a version holds: keys are added at the end.
+std::size_t material_numbers(std::uint32_t version) { return version == 4 ? 23 : material_keys().size(); }
+
+std::size_t fixed_bytes(std::uint32_t version) { return material_at + 8 * material_numbers(version); }
 
 } // namespace
 
 std::uint64_t SnapshotHeader::begin_of(std::size_t field) const {
-    std::uint64_t at = fixed_bytes() + total_bytes * totals.inputs.size() + field_bytes * fields.size();
+    std::uint64_t at = fixed_bytes(version) + total_bytes * totals.inputs.size() + field_bytes * fields.size();
     for (std::size_t n = 0; n < field; ++n) at += fields[n].bytes;
     return at;
 }
@@ -49,9 +52,13 @@ void write_header(const SnapshotHeader& header, std::span<std::byte> to) {
 
 Result<SnapshotHeader> read_header(std::span<const std::byte> snapshot) {
     const auto broken = [](const std::string& what) { return error(Code::bad_file, "snapshot: " + what); };
-    if (auto status = check_sealed("snapshot", snapshot, magic, snapshot_version, fixed_bytes()); !status) return status;
+    const SealedVersions versions = {oldest_snapshot_version, snapshot_version};
+    if (auto status = check_sealed("snapshot", snapshot, magic, versions, fixed_bytes(oldest_snapshot_version)); !status)
+        return status;
     const std::uint64_t bytes = snapshot.size();
     SnapshotHeader header;
+    header.version = sealed_version(snapshot);
+    if (bytes < fixed_bytes(header.version)) return broken("it ends within its header");
     header.nx = get<std::int32_t>(snapshot, 32);
     header.ny = get<std::int32_t>(snapshot, 36);
     header.effects = get<std::uint32_t>(snapshot, 40);
@@ -59,7 +66,7 @@ Result<SnapshotHeader> read_header(std::span<const std::byte> snapshot) {
     header.totals = {get<std::uint64_t>(snapshot, 56), get<std::int64_t>(snapshot, 64), get<std::int64_t>(snapshot, 72), {}};
     const std::uint64_t totals = get<std::uint32_t>(snapshot, 44), fields = get<std::uint32_t>(snapshot, fields_at);
     std::size_t at = material_at;
-    for (int key = 0; key < static_cast<int>(material_keys().size()); ++key, at += 8)
+    for (int key = 0; key < static_cast<int>(material_numbers(header.version)); ++key, at += 8)
         set_material_value(header.material, key, get<double>(snapshot, at));
     if (auto status = validate(header.material); !status) return broken(status.message);
     if (at + totals * total_bytes + fields * field_bytes > bytes) return broken("its lists pass its end");

@@ -297,7 +297,7 @@ Result<Scene> make_scene(const std::string& grid, const std::string& name, const
     s.material.bed_adhesion = 0.7;
     s.method.shock_viscosity = 0; // a choice, on by default
     for (const auto& choice : choice_table())
-        if ((effects & choice.bit) != 0) choice.choose(s.method);
+        if ((effects & choice.bit) != 0) choice.choose(s);
     if (!set_method(s.method, method)) return error(Code::bad_argument, "method=" + method + ": no such choice");
     if (name == "deep") {
         make_deep(scene);

@@ -51,6 +51,7 @@ constexpr Step<Real> steps[] = {
     {"compute_momentum_exchange", &Solver<Real>::compute_momentum_exchange, EFFECT_MIXTURE, EFFECT_PUBLISHED},
     {"project_deformation_gradient", &Solver<Real>::project_deformation_gradient, EFFECT_ELASTOPLASTIC, EFFECT_PUBLISHED},
     {"bend_sand_velocity", &Solver<Real>::bend_sand_velocity, EFFECT_SAND | EFFECT_SLOPE_NORMAL, EFFECT_PUBLISHED},
+    {"raise_friction", &Solver<Real>::raise_friction, EFFECT_SAND | EFFECT_FLOW_FRICTION, EFFECT_PUBLISHED},
     {"integrate_sand_velocity", &Solver<Real>::integrate_sand_velocity, EFFECT_SAND, EFFECT_PUBLISHED},
     {"raise_failing_planes", &Solver<Real>::raise_failing_planes, EFFECT_SAND | EFFECT_SLOPE_NORMAL, EFFECT_PUBLISHED},
     {"apply_friction", &Solver<Real>::apply_friction, EFFECT_SAND, EFFECT_PUBLISHED},

@@ -255,6 +255,12 @@ Case make_case(std::uint64_t seed) {
         if (random.chance(0.4)) side.absorb = random.log(0.1, 1e4) * s.dt;
     }
     if (random.chance(0.5)) s.material.bed_adhesion = random.pick({0.0, random.log(1e-12, 1e-3), random.real(0, 1)});
+    if (random.chance(0.25)) {
+        s.material.flow_length = random.pick({random.log(1e-12, 1e-4), random.log(1e-4, 1e-2), random.log(1e-2, 10)});
+        s.material.flow_friction = random.real(0, 2);
+        s.material.flow_beta = random.log(0.01, 10);
+        s.material.flow_gamma = random.pick({0.0, random.real(0, 2)});
+    }
     return c;
 }
 

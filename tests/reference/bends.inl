@@ -70,6 +70,28 @@ template <class Real> void Solver<Real>::bend_sand_velocity() {
     });
 }
 
+/// 2.8: friction mu of thickness and speed in place of that of deep sand at rest, as gravity that presses by their ratio.
+template <class Real> void Solver<Real>::raise_friction() {
+    const Faces<Real>& old = sand_velocity;
+    for_inner_faces([&](const Axis& ax, int a, int b) {
+        const std::size_t L = ax.cell(a - 1, b);
+        const std::size_t R = ax.cell(a, b);
+        const Real hb = mean(sand[L], sand[R]);
+        if (hb <= P.film / Real(2) || P.friction <= Real(0)) return;
+        const Course at = course_at(old, ax, a, b);
+        const Real climb = at.a * at.u + at.e * at.w;
+        const Real speed = std::sqrt(at.u * at.u + at.w * at.w + climb * climb);
+        const Real cosine = Real(1) / std::sqrt(Real(1) + at.a * at.a + at.e * at.e);
+        const Real wave = std::sqrt(P.gravity * hb) * cosine;
+        // mu = mu_1 + (mu_2 - mu_1)/(1 + beta h/(L (Fr + gamma))), times the wave's speed above and below
+        const Real runs = P.flow_length * (speed + P.flow_gamma * wave);
+        const Real sum = runs + P.flow_beta * hb * cosine * wave;
+        const Real mu = P.friction + (sum > Real(0) ? (P.fast_friction - P.friction) * runs / sum : Real(0));
+        Real& lift = bed_lift.along(ax)[ax.face(a, b)];
+        lift += std::max(sand_gravity(std::max(sand[L], sand[R])) + lift, Real(0)) * (mu / P.friction - Real(1));
+    });
+}
+
 /// 2.4c for sand with a head: whether a face with the velocity u so far must stand.
 template <class Real> bool Solver<Real>::beyond_head(const Faces<Real>& old, const Axis& ax, int a, int b, Real u) const {
     const std::size_t L = ax.cell(a - 1, b);

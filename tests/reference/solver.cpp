@@ -44,6 +44,10 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
     const double rankine = material.yield_friction + std::sqrt(1 + material.yield_friction * material.yield_friction);
     P.rankine = static_cast<Real>(rankine);
     P.adhesion = static_cast<Real>(material.bed_adhesion);
+    P.fast_friction = static_cast<Real>(std::max(material.flow_friction, material.friction));
+    P.flow_length = static_cast<Real>(material.flow_length);
+    P.flow_beta = static_cast<Real>(material.flow_beta);
+    P.flow_gamma = static_cast<Real>(material.flow_gamma);
     const double measured = has(EFFECT_SLOPE_NORMAL) ? 0.78 : 1;
     const double apex = has(EFFECT_PUBLISHED) ? 1 : measured * 4 * material.yield_friction * rankine;
     P.yield_cohesion = static_cast<Real>(apex);
@@ -291,6 +295,7 @@ template <class Real> void Solver<Real>::step_robust() {
             project_deformation_gradient();
         }
         if (has(EFFECT_SLOPE_NORMAL)) bend_sand_velocity();
+        if (has(EFFECT_FLOW_FRICTION)) raise_friction();
         integrate_sand_velocity();
         if (has(EFFECT_SLOPE_NORMAL)) raise_failing_planes();
         if (has(EFFECT_MIXTURE)) compute_momentum_exchange();

@@ -41,6 +41,10 @@ struct Material {
     double retention = 0.4925;      // r of NUMERICS 2.19: W/hs that pores hold back
     double manning = 0;             // n of NUMERICS 2.4
     double bed_adhesion = 1;        // a of NUMERICS 2.8
+    double flow_friction = 0.95;    // mu_2 of NUMERICS 2.8
+    double flow_length = 0;         // L of NUMERICS 2.8; 0 = friction is the same at every speed
+    double flow_beta = 0.65;        // beta, gamma of NUMERICS 2.8
+    double flow_gamma = 0.77;
     friend bool operator==(const Material&, const Material&) = default;
 };
 

@@ -111,17 +111,21 @@ constexpr Effect effects[] = {
 };
 
 constexpr Choice choices[] = {
-    {row(EFFECT_PUBLISHED), "name published", [](const Method& m) { return m.published(); },
-     [](Method& m) { m.name = "published"; }},
+    {row(EFFECT_PUBLISHED), "name published", [](const Settings& s) { return s.method.published(); },
+     [](Settings& s) { s.method.name = "published"; }},
     {row(EFFECT_DIRECT_STRAIN), "strain_transport direct",
-     [](const Method& m) { return m.strain_transport == StrainTransport::direct; },
-     [](Method& m) { m.strain_transport = StrainTransport::direct; }},
-    {row(EFFECT_SECOND_ORDER_WATER), "water_transport_order 2", [](const Method& m) { return m.water_transport_order == 2; },
-     [](Method& m) { m.water_transport_order = 2; }},
-    {row(EFFECT_SECOND_ORDER_SAND), "sand_transport_order 2", [](const Method& m) { return m.sand_transport_order == 2; },
-     [](Method& m) { m.sand_transport_order = 2; }},
-    {row(EFFECT_SHOCK_VISCOSITY), "shock_viscosity > 0", [](const Method& m) { return m.shock_viscosity > 0; },
-     [](Method& m) { m.shock_viscosity = Method{}.shock_viscosity; }},
+     [](const Settings& s) { return s.method.strain_transport == StrainTransport::direct; },
+     [](Settings& s) { s.method.strain_transport = StrainTransport::direct; }},
+    {row(EFFECT_SECOND_ORDER_WATER), "water_transport_order 2",
+     [](const Settings& s) { return s.method.water_transport_order == 2; },
+     [](Settings& s) { s.method.water_transport_order = 2; }},
+    {row(EFFECT_SECOND_ORDER_SAND), "sand_transport_order 2",
+     [](const Settings& s) { return s.method.sand_transport_order == 2; },
+     [](Settings& s) { s.method.sand_transport_order = 2; }},
+    {row(EFFECT_SHOCK_VISCOSITY), "shock_viscosity > 0", [](const Settings& s) { return s.method.shock_viscosity > 0; },
+     [](Settings& s) { s.method.shock_viscosity = Method{}.shock_viscosity; }},
+    {row(EFFECT_FLOW_FRICTION), "flow_length > 0", [](const Settings& s) { return s.material.flow_length > 0; },
+     [](Settings& s) { s.material.flow_length = 2e-3; }},
 };
 
 constexpr bool has_rule(const Effect& effect) { return effect.why != nullptr; }

@@ -48,7 +48,7 @@ Result<EffectChoice> effects_required(const Settings& settings, Content content)
         choice.reasons.push_back(want.reason);
     }
     for (const auto& made : choice_table())
-        if (made.chosen(settings.method) && (choice.mask & made.needs) == made.needs) choice.mask |= made.bit;
+        if (made.chosen(settings) && (choice.mask & made.needs) == made.needs) choice.mask |= made.bit;
     const std::uint32_t unknown = choice.mask & never_published;
     if ((choice.mask & EFFECT_PUBLISHED) != 0 && unknown != 0)
         return error(Code::bad_argument, "method.name: \"published\" goes only without " + effect_names(unknown));

@@ -36,11 +36,11 @@ const std::vector<std::string>& effect_names();
 /// "sand, water": the effects of a mask, without the choices of method.
 std::string effect_names(std::uint32_t mask);
 
-/// A choice of method that has a bit in the same mask; a level makes it in `method`, not in `effects`.
+/// A choice that has a bit in the same mask; a level makes it in `method` or `material`, not in `effects`.
 struct Choice : EffectRow {
     const char* when; // the setting that makes it
-    bool (*chosen)(const Method& method);
-    void (*choose)(Method& method); // what makes `chosen` true
+    bool (*chosen)(const Settings& settings);
+    void (*choose)(Settings& settings); // what makes `chosen` true
 };
 
 std::span<const Choice> choice_table();

@@ -113,6 +113,7 @@ void plan_sand_forces(PlanBuilder b) {
     }
     if (b.fuses_forces() && b.fuse("accelerate_sand", fused, drag)) return;
     if (b.has(EFFECT_SLOPE_NORMAL)) b.run("bend_sand_velocity");
+    if (b.has(EFFECT_FLOW_FRICTION)) b.run("raise_friction");
     b.run("integrate_sand_velocity", sand);
     if (b.has(EFFECT_SLOPE_NORMAL)) b.run("raise_failing_planes", {"wedge_depth"});
     b.run("apply_friction", moved, drag);

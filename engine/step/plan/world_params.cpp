@@ -158,6 +158,10 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     p.passive = f(upright * upright);
     p.bed_adhesion = f(m.bed_adhesion);
     p.adhesion_slip = f(m.bed_adhesion * dts * gravity * m.yield_friction / (4 * yield_cohesion(m, effects)));
+    p.flow_rise = m.friction > 0 ? f(std::max(m.flow_friction - m.friction, 0.0) / m.friction) : 0.0F;
+    p.flow_length = f(m.flow_length);
+    p.flow_beta = f(m.flow_beta);
+    p.flow_gamma = f(m.flow_gamma);
     p.internal_friction = f(m.internal_friction);
     const bool retains = (effects & EFFECT_RETENTION) != 0;
     p.retained = retains ? f(m.retention) : -1.0F; // all water is free
