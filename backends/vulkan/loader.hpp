@@ -5,9 +5,8 @@
 
 namespace wadi::vulkan {
 
-/// The loader's entry point, opened on first use and never closed, because drivers do not survive unloading. It goes through volk's
-/// globals: one thread at a time.
-/// Null, with the reason in `why`, when there is none.
+/// The loader's entry point, opened on first use and never closed, because drivers do not survive unloading. It goes through
+/// volk's globals: one thread at a time. Null, with the reason in `why`, when there is none.
 PFN_vkGetInstanceProcAddr loader_entry(std::string& why);
 
 } // namespace wadi::vulkan

@@ -63,8 +63,8 @@ Status check_memory(const Grid& grid) {
     const std::uint64_t bytes = std::uint64_t(grid.nx) * std::uint64_t(grid.ny) * drawn, available = available_memory();
     if (available == 0 || bytes <= available / 10 * 9) return ok_status();
     return error(Code::out_of_memory, "grid: " + std::to_string(grid.nx) + " x " + std::to_string(grid.ny) + " cells need " +
-                                          std::to_string(bytes >> 20) + " MiB while they are drawn; " +
-                                          "9/10 of the " + std::to_string(available >> 20) + " MiB that are available are fewer");
+                                          std::to_string(bytes >> 20) + " MiB while they are drawn; " + "9/10 of the " +
+                                          std::to_string(available >> 20) + " MiB that are available are fewer");
 }
 
 } // namespace

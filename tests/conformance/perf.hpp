@@ -9,7 +9,7 @@ namespace wadi::conformance {
 struct PerfOptions {
     int min_size = 128, max_size = 1024; // doubled from one to the other
     int repeats = 20;
-    std::string stage; // "" = all stages and whole steps
+    std::string stage;            // "" = all stages and whole steps
     std::string scene = "random"; // hardest: every cell moves, at the clamps and limits
     bool csv = false;
 };

@@ -83,7 +83,8 @@ TEST_CASE("a healthy world has no error") {
     auto world = pond("cpu", 4, 4, 1, 1);
     CHECK(wadi_world_step(wadi_world_id{0, 0}, 1) == WADI_ERROR_BAD_ARGUMENT);
     CHECK(wadi_world_get_error(world.id) == WADI_OK);
-    CHECK(std::string(wadi_get_last_error()).find("wadi_world_step") != std::string::npos); // of the newest error, whatever succeeded since
+    CHECK(std::string(wadi_get_last_error()).find("wadi_world_step") !=
+          std::string::npos); // of the newest error, whatever succeeded since
     const char* const kept = wadi_get_last_error();
     CHECK(wadi_world_get_error(wadi_world_id{0, 0}) == WADI_ERROR_BAD_ARGUMENT);
     CHECK(kept == wadi_get_last_error());

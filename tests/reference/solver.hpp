@@ -13,30 +13,31 @@ namespace wadi::reference {
 
 /// Numbers that stay fixed while the time step does, in the solver's own precision.
 template <class Real> struct Constants {
-    Real dx{}, dt{}, substep{};                    // [m], [s], [s]: substep = dt / T
-    Real k{}, k_sand{};                            // dt/dx, substep/dx [s/m]
-    Real gravity{};                                // [m/s2]
-    Real rho_w{}, rho_s{};                         // [kg/m3]
-    Real friction{};                               // mu of Coulomb friction
-    Real yield_friction{};                         // c_f
-    Real rankine{};                                // s_f of 2.7
-    Real adhesion{};                               // a of 2.8
-    Real fast_friction{};                          // mu_2 of 2.8
-    Real flow_length{}, flow_beta{}, flow_gamma{}; // L [m], beta, gamma of 2.8
-    Real c0{}, c1{}, c2{};                         // cohesion of the yield surface [Pa]
-    Real yield_cohesion{};                         // its share of the material's
-    Real phi1{}, phi2{}, phi3{};                   // saturation
-    Real exchange{};                               // c_e [kg/(m3 s)], 0 without the drag effect
-    Real diffusion{};                              // min(c_d, 0.2 dx2/dt) [m2/s]
-    Real bed_friction{};                           // c of Chezy's law, 0 without its effect
-    Real manning{};                                // n of the material [s/m^(1/3)]
-    Real bed_shear{};                              // c, 0 without its effect
-    Real bed_threshold{}, bed_rate{};              // [m2/s2], [s2/m]
-    Real lambda{}, shear{};                        // Lame constants [Pa], capped (2.7)
-    Real eps{}, film{};                            // dry threshold, and that of moving sand [m]
-    Real quantum{}, largest_height{};              // [m]; quantum 0 = plain arithmetic
-    Real clamp{}, clamp_sand{};                    // alpha dx/dt, alpha dx/substep [m/s]
-    Real alpha{};                                  // the clamp's factor
+    Real dx{}, dt{}, substep{};       // [m], [s], [s]: substep = dt / T
+    Real k{}, k_sand{};               // dt/dx, substep/dx [s/m]
+    Real gravity{};                   // [m/s2]
+    Real rho_w{}, rho_s{};            // [kg/m3]
+    Real friction{};                  // mu of Coulomb friction
+    Real yield_friction{};            // c_f
+    Real rankine{};                   // s_f of 2.7
+    Real adhesion{};                  // a of 2.8
+    Real fast_friction{};             // mu_2 of 2.8
+    Real flow_length{}, flow_beta{};  // L [m], beta of 2.8
+    Real flow_gamma{};                // gamma of 2.8
+    Real c0{}, c1{}, c2{};            // cohesion of the yield surface [Pa]
+    Real yield_cohesion{};            // its share of the material's
+    Real phi1{}, phi2{}, phi3{};      // saturation
+    Real exchange{};                  // c_e [kg/(m3 s)], 0 without the drag effect
+    Real diffusion{};                 // min(c_d, 0.2 dx2/dt) [m2/s]
+    Real bed_friction{};              // c of Chezy's law, 0 without its effect
+    Real manning{};                   // n of the material [s/m^(1/3)]
+    Real bed_shear{};                 // c, 0 without its effect
+    Real bed_threshold{}, bed_rate{}; // [m2/s2], [s2/m]
+    Real lambda{}, shear{};           // Lame constants [Pa], capped (2.7)
+    Real eps{}, film{};               // dry threshold, and that of moving sand [m]
+    Real quantum{}, largest_height{}; // [m]; quantum 0 = plain arithmetic
+    Real clamp{}, clamp_sand{};       // alpha dx/dt, alpha dx/substep [m/s]
+    Real alpha{};                     // the clamp's factor
     Real gravity_cap{}, sand_gravity_cap{};
     Real rest_surface{}, rest_velocity{}; // [m], [m/s]
     Real passive_pressure{}, gradient_clamp{}, cohesion_cap{};

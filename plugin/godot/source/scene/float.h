@@ -16,7 +16,7 @@ struct Float {
     /* in the list of its terrain */
     Terrain* in;
     Float* next;
-    bool told;                         /* what keeps it from floating was logged */
+    bool told;                                      /* what keeps it from floating was logged */
     uint32_t asked_query, asked_first, asked_count; /* its points in one of the terrain's queries */
     uint32_t answer_count;
     wadi_query_result answers[MOST_POINTS];

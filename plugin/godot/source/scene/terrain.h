@@ -35,7 +35,7 @@ typedef struct Terrain {
     size_t save_bytes;
     uint64_t body_tickets[MOST_BODY_QUERIES]; /* of the queries for all bodies */
     uint32_t body_queries;                    /* how many are under way */
-    Float* floats; /* a list */
+    Float* floats;                            /* a list */
     char message[512];
 } Terrain;
 
