@@ -69,6 +69,7 @@ std::vector<CaseSpec> list() {
     add("static_pile", "33x17", EFFECT_SAND | SAND_SECOND, "static_pile", "default", 200);
     add("static_pile", "33x17", EFFECT_SAND | ELASTIC | SLOPES | SAND_SECOND, "static_pile", "default", 200);
     add("static_pile", "33x17", WET | SLOPES | EFFECT_RETENTION, "static_pile", "default", 200);
+    add("static_pile", "33x17", EFFECT_SAND | SLOPES | FLOWING, "static_pile", "default", 200);
     for (const char* symmetry : {"mirror_x", "mirror_y", "transpose"}) {
         add(symmetry, "33x17", EFFECT_WATER | EFFECT_OPEN_SIDES | EFFECT_BED_FRICTION, "islands", "default", 40);
         add(symmetry, "33x17", EFFECT_SAND | ELASTIC, "cliff", "default", 40);
@@ -77,6 +78,7 @@ std::vector<CaseSpec> list() {
         add(symmetry, "33x17", WET | ELASTIC | EFFECT_COHESION | SLOPES | EFFECT_RETENTION, "cliff", "default", 40);
         add(symmetry, "33x17", ALL, "random", "default", 40);
         add(symmetry, "33x17", ALL | SECOND, "random", "default", 40);
+        add(symmetry, "33x17", ALL | FLOWING, "random", "default", 40);
         add(symmetry, "33x17", ALL | SAND_SECOND, "random", "default", 40);
         add(symmetry, "33x17", ALL_PUBLISHED | DIRECT, "random", "default", 40);
         add(symmetry, "33x17", ALL_PUBLISHED, "random", "default", 40);

@@ -75,6 +75,8 @@ constexpr Row against_reference[] = {
     {"64x4", EFFECT_SAND | ELASTIC | SLOPES | SAND_SECOND, "cliff", "default", 3},
     {"33x17", WET | ELASTIC | EFFECT_COHESION | SLOPES | EFFECT_RETENTION | SECOND | SAND_SECOND, "slope", "default", 2},
     {"33x17", WET | EFFECT_BED_SHEAR | SAND_SECOND, "dam_break", "default", 2},
+    {"33x17", EFFECT_SAND | SLOPES | FLOWING, "slope", "default", 3},
+    {"33x17", WET | ELASTIC | EFFECT_COHESION | SLOPES | EFFECT_RETENTION | FLOWING, "slope", "default", 2},
     {"33x17", ALL, "flat", "default", 2},
     {"1x1", ALL, "flat", "default", 2},
 };
@@ -96,6 +98,7 @@ constexpr Row in_bits[] = {
     {"33x17", WET | SLOPES | EFFECT_RETENTION, "dam_break", "default", 40},
     {"33x17", EFFECT_WATER | SECOND, "dam_break", "default", 40},
     {"64x4", WET | SECOND, "slope", "coarse", 30},
+    {"33x17", ALL | FLOWING, "random", "default", 20},
     {"33x17", ALL | SECOND, "random", "default", 20},
     {"33x17", ALL | SECOND, "random", "bare", 20},
     {"1x1", ALL | SECOND, "random", "default", 20},
