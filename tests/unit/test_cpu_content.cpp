@@ -112,6 +112,7 @@ WorldParams content_params(std::uint32_t effects) {
     m.internal_friction = 0.4;
     m.sand_viscosity = 0.05;
     m.retention = 0.3;
+    m.flow_length = 2e-3;
     m.exchange_rate = 3e4;
     m.cohesion_dry = 500;
     settings.method.shock_viscosity = 0.25;
