@@ -51,7 +51,7 @@ void terrain_begin_save(void* self, const GDExtensionConstTypePtr* arguments, vo
     if (!world_needed(terrain, "begin_save")) return;
     *(int64_t*)result = ERROR_BUSY;
     if (terrain->save_data) return; /* a worker may be filling it */
-    uint64_t ticket;
+    uint64_t ticket = 0;
     wadi_result outcome = wadi_world_begin_save(terrain->world, &ticket);
     if (outcome == WADI_NOT_READY) return;
     terrain->save_bytes = 0;

@@ -104,8 +104,12 @@ int64_t world_start(Terrain* terrain) {
     if (result == WADI_OK) result = frame_sync(terrain);
     if (result != WADI_OK) {
         const GDObjectInstanceID id = api.object_get_instance_id(terrain->object);
+        const wadi_world_id failed = terrain->world;
         const int64_t error = world_failed(terrain, "start", result);
-        if (api.object_get_instance_from_id(id)) world_stop(terrain); /* device_lost may be told to who frees the node */
+        /* device_lost may be told to who frees the node, or has started another world in it */
+        if (api.object_get_instance_from_id(id) && terrain->world.index == failed.index &&
+            terrain->world.generation == failed.generation)
+            world_stop(terrain);
         return error;
     }
     emit(terrain->object, "started", NULL, 0);
