@@ -37,6 +37,7 @@ int environment();
 int memory();
 int hosts(double seconds);
 int files();
+int cost();
 int soak(long steps);
 int cycles(long count);
 
