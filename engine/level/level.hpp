@@ -45,7 +45,7 @@ struct LevelOverrides {
 /// What a level will cost, all but `device_bytes`, which follow from the settings and from what the world may hold.
 struct LevelCost {
     Cost cost;
-    Settings settings; // of a map alone, whose heights are not known: without what follows from them
+    Settings settings;                // of a map alone, whose heights are not known: without what follows from them
     bool sand = false, water = false; // what its layers may bring
 };
 

@@ -21,6 +21,7 @@ run "$attack" environment
 run "$attack" memory
 run "$attack" files
 run "$attack" cost
+run "$attack" numbers
 run "$attack" hosts "$seconds"
 run "$attack" soak cpu "$steps"
 run "$attack" cycles cpu "$count"

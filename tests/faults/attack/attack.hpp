@@ -38,6 +38,7 @@ int memory();
 int hosts(double seconds);
 int files();
 int cost();
+int numbers();
 int soak(long steps);
 int cycles(long count);
 
