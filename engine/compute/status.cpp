@@ -24,6 +24,8 @@ const char* code_name(Code code) {
         return "not_ready";
     case Code::busy:
         return "busy";
+    case Code::cancelled:
+        return "cancelled";
     }
     return "unknown";
 }

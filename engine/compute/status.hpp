@@ -17,6 +17,7 @@ enum class Code {
     internal,      // our own bug
     not_ready,     // not an error: ask again later
     busy,          // another thread is inside a call on the same world
+    cancelled,     // not an error: the host's progress callback ended the call
 };
 
 /// The name of a code as it is printed: "bad_argument" and so on.

@@ -164,6 +164,25 @@ Status CommandLog::check(const CommandList& list) const {
     return ok_status();
 }
 
+Result<Cost> CommandLog::cost(std::span<const std::byte> bytes) const {
+    auto list = read_commands(bytes);
+    if (!list) return list.status();
+    if (auto status = check(*list); !status) return status;
+    Cost cost;
+    cost.cells = static_cast<std::uint64_t>(state_.layout().nx) * static_cast<std::uint64_t>(state_.layout().ny);
+    cost.file_bytes = bytes.size();
+    cost.host_bytes = 2 * bytes.size() + 2 * list->commands.size() * sizeof(Command); // the list, and what waits for its step
+    for (const auto& stamp : list->stamps) cost.device_bytes += 4 * stamp.values.size();
+    std::map<std::uint64_t, CommandCounts> counts;
+    for (const auto& command : list->commands) count(counts, command);
+    for (const auto& [step, of_step] : counts) {
+        cost.steps = step;
+        cost.edits_per_step = std::max<std::uint64_t>(cost.edits_per_step, of_step.edits);
+        cost.commands_per_step = std::max<std::uint64_t>(cost.commands_per_step, of_step.others);
+    }
+    return cost;
+}
+
 Status CommandLog::play(std::span<const std::byte> bytes) {
     auto list = read_commands(bytes);
     if (!list) return list.status();

@@ -3,6 +3,7 @@
 #pragma once
 #include "engine/edits/regions.hpp"
 #include "engine/edits/value_writes.hpp"
+#include "engine/settings/rules/cost.hpp"
 #include <map>
 #include <variant>
 
@@ -67,6 +68,8 @@ class CommandLog {
     /// Queues the commands of a log. Errors: bad_file (read_commands), bad_argument (of another level, or with a command that
     /// this world would refuse), out_of_memory; nothing is queued then.
     Status play(std::span<const std::byte> bytes);
+    /// What play() would cost; nothing is queued. Errors: those of play().
+    Result<Cost> cost(std::span<const std::byte> bytes) const;
 
     /// Runs what was played for this boundary between two steps.
     Status at_boundary();

@@ -77,10 +77,12 @@ class AscReader {
 
     Result<Map> read(FileRoom* room) {
         Status status = read_header();
-        if (status) status = check_map_size(map_.nx, map_.ny, name_, room);
+        if (status) status = check_map_size(map_.nx, map_.ny, name_, nullptr);
+        if (status) status = find_square_rows();
+        if (status && room != nullptr) status = room->take({values_in_all(), map_.nx, square_rows_}, name_);
         if (status) status = read_values();
         if (status) status = fill_holes(map_, name_);
-        if (status) status = make_square(room);
+        if (status) make_square();
         if (!status) return status;
         return std::move(map_);
     }
@@ -198,24 +200,36 @@ class AscReader {
         return "\"" + text + "\" " + (comma ? "has a decimal comma; save the grid with decimal points" : "is not a number");
     }
 
-    /// Rows anew where cells are not square: as many as give them the width of the columns.
-    Status make_square(FileRoom* room) {
+    /// As many rows as give cells that are not square the width of the columns.
+    Status find_square_rows() {
+        square_rows_ = map_.ny;
         if (cell_height_ == map_.cell_size) return ok_status();
         const double height = std::round(map_.ny * cell_height_ / map_.cell_size);
         if (!(height >= 1 && height <= MAP_LIMIT))
             return error(Code::bad_file, name_ + ": cells of " + number_text(map_.cell_size) + " by " +
                                              number_text(cell_height_) + " m would be " + number_text(height) +
                                              " rows of square ones");
-        if (Status status = check_map_size(map_.nx, static_cast<std::int64_t>(height), name_, room); !status) return status;
-        map_.notes.push_back("cells of " + number_text(map_.cell_size) + " by " + number_text(cell_height_) + " m: its " +
-                             std::to_string(map_.ny) + " rows are resampled to " + number_text(height));
-        resample_map(map_, map_.nx, static_cast<int>(height));
+        square_rows_ = static_cast<int>(height);
         return ok_status();
+    }
+
+    /// The file's own, and those of rows anew.
+    std::int64_t values_in_all() const {
+        const bool square = cell_height_ == map_.cell_size;
+        return std::int64_t{map_.nx} * (map_.ny + (square ? 0 : square_rows_));
+    }
+
+    void make_square() {
+        if (cell_height_ == map_.cell_size) return;
+        map_.notes.push_back("cells of " + number_text(map_.cell_size) + " by " + number_text(cell_height_) + " m: its " +
+                             std::to_string(map_.ny) + " rows are resampled to " + number_text(square_rows_));
+        resample_map(map_, map_.nx, square_rows_);
     }
 
     Words words_;
     const std::string& name_;
     double no_data_ = NO_DATA, cell_height_ = 0, centre_[2] = {};
+    int square_rows_ = 0;
     Map map_;
 };
 

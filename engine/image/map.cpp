@@ -45,17 +45,24 @@ int places(int source, int target) { return (source + target - 1) / target; }
 
 } // namespace
 
-Status FileRoom::take(std::int64_t values, const std::string& name) {
-    if (values > left_)
-        return error(Code::bad_file, name + ": its " + std::to_string(values) + " values are more than the " +
+FileRoom FileRoom::that_listens(std::int64_t values) {
+    FileRoom room(values);
+    room.listens_ = true;
+    return room;
+}
+
+Status FileRoom::take(const Asked& asked, const std::string& name) {
+    asked_ = asked;
+    if (asked.values > left_)
+        return error(Code::bad_file, name + ": its " + std::to_string(asked.values) + " values are more than the " +
                                          std::to_string(left_) + " that are left of what a level's files may hold together");
-    left_ -= values;
-    return ok_status();
+    left_ -= asked.values;
+    return listens_ ? error(Code::not_ready, name + ": not decoded") : ok_status();
 }
 
 Status check_map_size(std::int64_t nx, std::int64_t ny, const std::string& name, FileRoom* room) {
     if (nx >= 1 && ny >= 1 && nx <= MAP_LIMIT && ny <= MAP_LIMIT)
-        return room != nullptr ? room->take(nx * ny, name) : ok_status();
+        return room != nullptr ? room->take({nx * ny, static_cast<int>(nx), static_cast<int>(ny)}, name) : ok_status();
     return error(Code::bad_file, name + ": a map of " + std::to_string(nx) + " x " + std::to_string(ny) + " is outside 1 ... " +
                                      std::to_string(MAP_LIMIT) + " on each side");
 }
@@ -154,6 +161,20 @@ Result<Map> read_map(const std::string& path, const MapForm& form, const FileRea
     flip(map->values, map->nx, map->ny, form.flip_x, form.flip_y);
     if (!map->holes.empty()) flip(map->holes, map->nx, map->ny, form.flip_x, form.flip_y);
     return map;
+}
+
+Result<MapCost> cost_of_map(const std::string& path, const MapForm& form, const FileReader& files, std::int64_t most_values) {
+    MapCost cost;
+    const FileReader measured = [&](const std::string& name, std::uint64_t limit) {
+        auto bytes = files(name, limit);
+        if (bytes) cost.file_bytes = bytes->size();
+        return bytes;
+    };
+    FileRoom room = FileRoom::that_listens(most_values);
+    const auto map = read_map(path, form, measured, room);
+    if (!map && map.status().code != Code::not_ready) return map.status();
+    cost.asked = room.asked();
+    return cost;
 }
 
 std::vector<float> resample(const Map& map, int nx, int ny) {

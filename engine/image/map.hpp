@@ -54,14 +54,26 @@ enum class Holes : std::uint8_t {
 /// cannot ask for much memory and time.
 class FileRoom {
   public:
+    /// What a file asked for: values, and the map's size where it is one.
+    struct Asked {
+        std::int64_t values = 0;
+        int nx = 0, ny = 0;
+    };
+
     explicit FileRoom(std::int64_t values) : left_(values) {}
+    /// One that hears what a file asks for and then ends its reading: with not_ready nothing is decoded.
+    static FileRoom that_listens(std::int64_t values);
     void add(std::int64_t values) { left_ += values; }
     std::int64_t left() const { return left_; }
     /// Errors: bad_file, which names the file; nothing is taken then.
-    Status take(std::int64_t values, const std::string& name);
+    Status take(const Asked& asked, const std::string& name);
+    /// Of the last file.
+    const Asked& asked() const { return asked_; }
 
   private:
     std::int64_t left_;
+    bool listens_ = false;
+    Asked asked_;
 };
 
 /// The whole of a file of at most `limit` bytes, by the name that a level gives it. Errors: not_found, bad_file.
@@ -80,6 +92,14 @@ Status check_below(const std::string& name);
 /// Reads a map by the ending of its name: .png, .raw, .r16, .r32, .hgt, .npy and .asc. Errors: not_found, bad_file, bad_argument
 /// (a form that the format does not have); the message names the file.
 Result<Map> read_map(const std::string& path, const MapForm& form, const FileReader& files, FileRoom& room);
+
+/// What a map's file asks for: its bytes are read, but no more than its header is looked at.
+struct MapCost {
+    std::uint64_t file_bytes = 0;
+    FileRoom::Asked asked;
+};
+/// Errors: those of read_map() that the header shows.
+Result<MapCost> cost_of_map(const std::string& path, const MapForm& form, const FileReader& files, std::int64_t most_values);
 
 /// The same from bytes already read; `name` is used in messages. `room`: null = as large as a map may be.
 /// PNG with 8 or 16 bits: grey, or the luma of a colour image; alpha is ignored. The file's first row is the north.

@@ -144,7 +144,9 @@ Result<Map> decode_png(const std::vector<std::uint8_t>& bytes, const std::string
         return error(Code::bad_file, name + ": " + std::to_string(decoded) + " bytes when decoded are more than the " +
                                          std::to_string(INT_MAX) + " bytes of the largest PNG");
     if (room != nullptr)
-        if (Status status = room->take(width * height * channels, name); !status) return status;
+        if (Status status = room->take({width * height * channels, static_cast<int>(width), static_cast<int>(height)}, name);
+            !status)
+            return status;
     const auto size = static_cast<int>(bytes.size());
     int nx = 0;
     int ny = 0;

@@ -192,22 +192,27 @@ Result<Map> decode_raw(const Bytes& bytes, const std::string& name, Size size, F
 }
 
 Result<Map> decode_hgt(const Bytes& bytes, const std::string& name, FileRoom* room) {
-    auto shape = shape_of(bytes, name, std::nullopt, 2, room);
+    auto shape = shape_of(bytes, name, std::nullopt, 2, nullptr);
     if (!shape) return shape.status();
     const int cells = shape->first - 1;
     if (cells < 1) return error(Code::bad_file, name + ": one sample is no tile");
+    constexpr double along_meridian = 111132, along_equator = 111320; // of a degree [m]
+    const auto south = latitude_of(name);
+    const double middle = south ? (*south + 0.5) * std::numbers::pi / 180 : 0;
+    const double dy = along_meridian / cells, dx = south ? along_equator * std::cos(middle) / cells : dy;
+    const double rows = std::round(cells * dy / dx);
+    if (Status status = check_map_size(cells, static_cast<std::int64_t>(rows), name, nullptr); !status) return status;
+    const std::int64_t samples = std::int64_t{shape->first} * shape->second;
+    if (room != nullptr)
+        if (Status status = room->take({samples + cells * static_cast<std::int64_t>(rows), cells, static_cast<int>(rows)}, name);
+            !status)
+            return status;
     Map tile = map_of(*shape, [&](std::size_t n) {
         const int value = 256 * bytes[2 * n] + bytes[2 * n + 1];
         return static_cast<float>(value < 32768 ? value : value - 65536);
     });
     tile.corners = true;
     if (Status status = fill_holes(tile, name); !status) return status;
-    constexpr double along_meridian = 111132, along_equator = 111320; // of a degree [m]
-    const auto south = latitude_of(name);
-    const double middle = south ? (*south + 0.5) * std::numbers::pi / 180 : 0;
-    const double dy = along_meridian / cells, dx = south ? along_equator * std::cos(middle) / cells : dy;
-    const double rows = std::round(cells * dy / dx);
-    if (Status status = check_map_size(cells, static_cast<std::int64_t>(rows), name, room); !status) return status;
     resample_map(tile, cells, static_cast<int>(rows));
     tile.cell_size = dx;
     tile.notes.push_back(south ? "a tile of a degree at latitude " + number_text(*south) + ": " + size_text(tile.nx, tile.ny) +

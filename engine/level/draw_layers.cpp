@@ -119,25 +119,18 @@ inline double after_layer(const Layer& layer, LayerTarget target, const LevelGri
     return nearest_quantum(next, grid.quantum, Halves::away);
 }
 
-std::vector<const Layer*> pointers(const std::vector<Layer>& first, const std::vector<Layer>& second = {}) {
-    std::vector<const Layer*> layers;
-    for (const auto* list : {&first, &second})
-        for (const Layer& layer : *list) layers.push_back(&layer);
-    return layers;
-}
-
 class Drawing {
   public:
-    Drawing(const LayerLists& lists, const LevelGrid& grid, LevelFiles& files, InitialFields& fields,
+    Drawing(const LayerLists& lists, const LevelGrid& grid, LevelFiles& files, LayersWork work, InitialFields& fields,
             std::vector<std::string>& warnings)
-        : lists_(lists), grid_(grid), files_(files), fields_(fields), warnings_(warnings),
-          cut_(cut_cells(pointers(lists.sand, lists.water), grid)), map_heights_(lists.sand.size() + lists.water.size()) {}
+        : lists_(lists), grid_(grid), files_(files), fields_(fields), warnings_(warnings), cut_(std::move(work.cut)),
+          map_heights_(lists.sand.size() + lists.water.size()) {
+        // Those of sand alone, and of both where there is water.
+        const std::size_t samplings = cut_.cells.size() * (lists.sand.empty() || lists.water.empty() ? 1 : 2);
+        if (samplings > 0) cell_work_ = work.sampling / static_cast<std::int64_t>(samplings);
+    }
 
     Status draw() {
-        // Sand's samples are taken again with those of water.
-        const std::int64_t times = lists_.sand.empty() || lists_.water.empty() ? 1 : 2;
-        const auto work = sampling_work(pointers(lists_.sand, lists_.water), grid_, cut_, files_.work_most);
-        if (Status status = files_.take_work(times * work); !status) return status;
         if (Status status = draw_terrain(); !status) return status;
         if (Status status = draw_sand(); !status) return status;
         return draw_water();
@@ -229,6 +222,7 @@ class Drawing {
                 at.values.assign(at.samples.count(), 0.0);
                 draw(at);
             }
+            files_.did(static_cast<std::int64_t>(end - begin) * cell_work_);
             const std::lock_guard lock(collecting);
             for (std::size_t n = 0; n < changed.size(); ++n) changed[n] = changed[n] != 0 || at.changed[n] != 0;
         });
@@ -255,6 +249,7 @@ class Drawing {
     /// Whether it changed anything.
     Result<bool> draw_centers(const Layer& layer, LayerTarget target, std::vector<float>& field, std::vector<float>* at_cut) {
         std::vector<float> heights;
+        files_.did(0); // ahead of a file that takes long
         if (layer.map) {
             const auto map =
                 open_map(*layer.map, layer.path, files_, grid_.nx * grid_.dx, warnings_, target == LayerTarget::terrain);
@@ -273,12 +268,16 @@ class Drawing {
             target == LayerTarget::terrain ? thin_line(layer, grid_) : std::vector<std::size_t>();
         if (!line.empty()) range = {0, grid_.nx, 0, grid_.ny};
         const auto rows = static_cast<std::size_t>(std::max(range.end_y - range.begin_y, 0));
+        const std::int64_t row_work = files_.progress == nullptr || rows == 0
+                                          ? 0
+                                          : drawing_work({&layer}, grid_, files_.work_most) / static_cast<std::int64_t>(rows);
         std::atomic<bool> changed = false;
         in_bands(rows, row_band(static_cast<std::size_t>(std::max(range.end_x - range.begin_x, 0))),
                  [&](std::size_t, std::size_t begin, std::size_t end) {
                      for (std::size_t row = begin; row < end; ++row)
                          if (draw_row(layer, target, field, heights, line, range, range.begin_y + static_cast<int>(row)))
                              changed = true;
+                     files_.did(static_cast<std::int64_t>(end - begin) * row_work);
                  });
         return changed.load();
     }
@@ -319,14 +318,10 @@ class Drawing {
 
     /// Levels the lakes of a map of depths on this grid, by the ground that the level has on the map's own.
     Status level_lakes_of(const Layer& layer, const Map& map, std::vector<float>& depths) {
-        LevelGrid own = grid_;
-        own.nx = map.nx;
-        own.ny = map.ny;
-        own.dx = grid_.nx * grid_.dx / map.nx;
-        own.stretch_y = grid_.stretch_y * (own.ny * own.dx) / (grid_.ny * grid_.dx);
+        const LevelGrid own = map_grid(grid_, map.nx, map.ny);
         // The map chooses these cells, not the level's grid.
         const auto layers = static_cast<std::int64_t>(lists_.terrain.size() + lists_.sand.size());
-        if (Status status = files_.room.take(std::int64_t{own.nx} * own.ny * layers, layer.path + ".file: " + layer.map->file);
+        if (Status status = files_.room.take({std::int64_t{own.nx} * own.ny * layers}, layer.path + ".file: " + layer.map->file);
             !status)
             return status;
         InitialFields ground;
@@ -393,6 +388,7 @@ class Drawing {
     const CutCells cut_;                                       // by the edges of sand and water
     double lowest_ = -std::numeric_limits<double>::infinity(); // terrain, once it is drawn [m]
     std::vector<std::vector<float>> map_heights_;              // of the maps among sand's layers, then water's, in cut_
+    std::int64_t cell_work_ = 0;                               // of a cut cell, in the mean
 };
 
 } // namespace
@@ -404,6 +400,15 @@ void add_map_notes(const Map& map, const std::string& path, std::vector<std::str
     for (const std::string& note : map.notes) warnings.push_back(path + ": " + note);
 }
 
+LevelGrid map_grid(const LevelGrid& grid, int nx, int ny) {
+    LevelGrid own = grid;
+    own.nx = nx;
+    own.ny = ny;
+    own.dx = grid.nx * grid.dx / nx;
+    own.stretch_y = grid.stretch_y * (own.ny * own.dx) / (grid.ny * grid.dx);
+    return own;
+}
+
 bool looks_like_corners(int nx, int ny) {
     constexpr int least = 32; // cells: smaller maps are drawn by hand
     const auto power = [](int n) { return n >= least && (n & (n - 1)) == 0; };
@@ -412,11 +417,9 @@ bool looks_like_corners(int nx, int ny) {
 
 Status draw_layers(const LayerLists& lists, const LevelGrid& grid, LevelFiles& files, InitialFields& fields,
                    std::vector<std::string>& warnings) {
-    for (const auto* list : {&lists.terrain, &lists.sand, &lists.water})
-        if (Status status = files.take_work(drawing_work(pointers(*list), grid, files.work_most)); !status) return status;
-    for (const Layer& layer : lists.terrain)
-        if (Status status = files.take_work(thin_line_work(layer, grid)); !status) return status;
-    return Drawing(lists, grid, files, fields, warnings).draw();
+    LayersWork work = layers_work(lists, grid, files.work_most);
+    if (Status status = files.take_work(work.looks); !status) return status;
+    return Drawing(lists, grid, files, std::move(work), fields, warnings).draw();
 }
 
 Status LevelFiles::take_work(std::int64_t more) {
@@ -463,6 +466,7 @@ Status draw_velocities(const std::vector<VelocityLayer>& layers, bool of_sand, c
             std::vector<double> columns(width);
             for (std::size_t i = 0; i < width; ++i) columns[i] = column_center(grid, static_cast<int>(i));
             in_bands(static_cast<std::size_t>(grid.ny), row_band(width), [&](std::size_t, std::size_t begin, std::size_t end) {
+                files.did(static_cast<std::int64_t>((end - begin) * width));
                 std::vector<double> relative(width);
                 for (std::size_t j = begin; j < end; ++j) {
                     relative_heights(layer.shape, columns, cell_center(grid, 0, static_cast<int>(j))[1], relative);

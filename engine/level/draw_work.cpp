@@ -1,4 +1,5 @@
 #include "engine/level/draw_work.hpp"
+#include "engine/level/thin_lines.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -67,6 +68,29 @@ std::int64_t sampling_work(const std::vector<const Layer*>& layers, const LevelG
         const Near& here = near[block_of(cut.cells[n])];
         work += here.segments + parts * (here.looks + (1 + cut.edges[n]) * here.layers);
     }
+    return work;
+}
+
+std::vector<const Layer*> pointers(const std::vector<Layer>& first, const std::vector<Layer>& second) {
+    std::vector<const Layer*> layers;
+    for (const auto* list : {&first, &second})
+        for (const Layer& layer : *list) layers.push_back(&layer);
+    return layers;
+}
+
+LayersWork layers_work(const LayerLists& lists, const LevelGrid& grid, std::int64_t most) {
+    LayersWork work;
+    for (const auto* list : {&lists.terrain, &lists.sand, &lists.water}) {
+        work.looks += drawing_work(pointers(*list), grid, most);
+        if (work.looks > most) return work;
+    }
+    for (const Layer& layer : lists.terrain) work.looks += thin_line_work(layer, grid);
+    if (work.looks > most) return work;
+    work.cut = cut_cells(pointers(lists.sand, lists.water), grid);
+    // Sand's samples are taken again with those of water.
+    const std::int64_t times = lists.sand.empty() || lists.water.empty() ? 1 : 2;
+    work.sampling = times * sampling_work(pointers(lists.sand, lists.water), grid, work.cut, most);
+    work.looks += work.sampling;
     return work;
 }
 

@@ -69,6 +69,9 @@ struct Layer {
 /// Advice for a map with cells of no known height, Map::filled, and its notes.
 void add_map_notes(const Map& map, const std::string& path, std::vector<std::string>& warnings);
 
+/// The grid of a map's own samples over the same ground.
+LevelGrid map_grid(const LevelGrid& grid, int nx, int ny);
+
 /// Maps of 2^n + 1 samples come from engines whose samples lie at the corners of cells.
 bool looks_like_corners(int nx, int ny);
 

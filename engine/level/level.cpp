@@ -1,6 +1,8 @@
 #include "engine/level/level.hpp"
 #include "engine/image/map.hpp"
+#include "engine/level/draw_work.hpp"
 #include "engine/level/overrides.hpp"
+#include "engine/level/read_level.hpp"
 #include "engine/level/settings_reader.hpp"
 #include "engine/level/variants.hpp"
 #include "engine/settings/data/accuracy_presets.hpp"
@@ -13,13 +15,7 @@ namespace wadi {
 namespace {
 
 constexpr int FORMAT_VERSION = 1;
-constexpr std::uint64_t LEVEL_BYTES_MOST = 16u << 20;
 constexpr double DURATION_MOST = 1e9; // [s]
-
-struct Layers : LayerLists {
-    std::vector<VelocityLayer> velocities;
-    std::vector<Layer> roughness;
-};
 
 void read_version(ObjectReader& root) {
     int version = 0;
@@ -30,7 +26,7 @@ void read_version(ObjectReader& root) {
                   std::to_string(version) + " is newer than this build reads, " + std::to_string(FORMAT_VERSION));
 }
 
-Status read_root(const Json& json, LevelFiles& files, Level& level, Layers& layers, LevelOverrides& overrides) {
+Status read_root(const Json& json, LevelFiles& files, Level& level, LevelLayers& layers, LevelOverrides& overrides) {
     Status status;
     ObjectReader root(json, "", status);
     read_version(root);
@@ -56,7 +52,7 @@ Status read_root(const Json& json, LevelFiles& files, Level& level, Layers& laye
     return status;
 }
 
-Status draw(const Layers& layers, const LevelGrid& grid, LevelFiles& files, Level& level) {
+Status draw(const LevelLayers& layers, const LevelGrid& grid, LevelFiles& files, Level& level) {
     InitialFields& fields = level.fields;
     if (Status status = draw_layers(layers, grid, files, fields, level.warnings); !status) return status;
     const auto draw_of = [&](bool sand, std::vector<float>& x, std::vector<float>& y) {
@@ -67,7 +63,34 @@ Status draw(const Layers& layers, const LevelGrid& grid, LevelFiles& files, Leve
     return draw_roughness(layers.roughness, grid, files, level.settings.roughness, level.warnings);
 }
 
-/// The names of files as the level's author may write them.
+std::int64_t cells_of(const Grid& grid) { return std::int64_t{grid.nx} * grid.ny; }
+
+/// What draw() will count.
+std::int64_t work_of(const LevelLayers& layers, const LevelGrid& grid, std::int64_t most) {
+    LayerLists roughness;
+    roughness.terrain = layers.roughness;
+    return layers_work(layers, grid, most).looks + layers_work(roughness, grid, most).looks +
+           static_cast<std::int64_t>(layers.velocities.size()) * grid.nx * grid.ny;
+}
+
+Result<Level> parse(const std::string& text, const FileReader& reader, const LevelOverrides& overrides) {
+    LevelFiles files{within(reader, overrides.files)};
+    auto read = read_level(text, files, overrides);
+    if (!read) return read.status();
+    Level& level = read->level;
+    std::optional<Progress> progress;
+    if (overrides.progress) {
+        files.progress = &progress.emplace(overrides.progress);
+        progress->expect(work_of(read->layers, read->grid, files.work_most));
+    }
+    if (Status status = draw(read->layers, read->grid, files, level); !status) return status;
+    if (Status status = validate(level.fields, level.settings); !status) return error(Code::bad_file, status.message);
+    for (std::string& warning : level_warnings(level.settings, level.fields)) level.warnings.push_back(std::move(warning));
+    return std::move(level);
+}
+
+} // namespace
+
 FileReader within(const FileReader& read, FilesFrom from) {
     if (from == FilesFrom::anywhere) return read;
     return [&read](const std::string& name, std::uint64_t limit) -> Result<std::vector<std::uint8_t>> {
@@ -76,18 +99,15 @@ FileReader within(const FileReader& read, FilesFrom from) {
     };
 }
 
-std::int64_t cells_of(const Grid& grid) { return std::int64_t{grid.nx} * grid.ny; }
-
-Result<Level> parse(const std::string& text, const FileReader& read, LevelOverrides overrides) {
-    LevelFiles files{within(read, overrides.files)};
+Result<ReadLevel> read_level(const std::string& text, LevelFiles& files, LevelOverrides overrides) {
     auto json = parse_json(text);
     if (!json) return json.status();
-    Level level;
-    Layers layers;
+    ReadLevel read;
+    Level& level = read.level;
     auto variants = take_variant(*json, overrides.variant);
     if (!variants) return variants.status();
     level.variants = std::move(*variants);
-    if (Status status = read_root(*json, files, level, layers, overrides); !status) return status;
+    if (Status status = read_root(*json, files, level, read.layers, overrides); !status) return status;
     if (overrides.variant) level.name += ", " + *overrides.variant;
     if (Status status = validate(level.settings); !status) return error(Code::bad_file, status.message);
     const std::int64_t own_cells = cells_of(level.settings.grid);
@@ -99,17 +119,15 @@ Result<Level> parse(const std::string& text, const FileReader& read, LevelOverri
     const std::int64_t cells = std::max(own_cells, cells_of(level.settings.grid));
     files.room.add(LEVEL_VALUES_PER_CELL * cells);
     files.work_most += LEVEL_WORK_PER_CELL * cells;
-    if (Status status = draw(layers, *grid, files, level); !status) return status;
-    if (Status status = validate(level.fields, level.settings); !status) return error(Code::bad_file, status.message);
-    for (std::string& warning : level_warnings(level.settings, level.fields)) level.warnings.push_back(std::move(warning));
-    return level;
+    read.grid = *grid;
+    return read;
 }
-
-} // namespace
 
 Result<Level> parse_level(const std::string& text, const FileReader& files, const LevelOverrides& overrides) {
     try {
         return parse(text, files, overrides);
+    } catch (const Cancelled&) {
+        return error(Code::cancelled, "the host's progress callback ended the load");
     } catch (const std::bad_alloc&) {
         return error(Code::out_of_memory, "the level does not fit into memory");
     }
@@ -124,8 +142,8 @@ Result<Level> load_level(const std::string& path, const LevelOverrides& override
     if (!bytes) return bytes.status();
     const std::string text(bytes->begin(), bytes->end());
     auto level = parse_level(text, std::filesystem::path(path).parent_path().string(), overrides);
-    if (!level && level.status().code != Code::bad_argument)
-        return error(level.status().code, path + ": " + level.status().message);
+    const bool of_file = !level && level.status().code != Code::bad_argument && level.status().code != Code::cancelled;
+    if (of_file) return error(level.status().code, path + ": " + level.status().message);
     return level;
 }
 

@@ -2,7 +2,9 @@
 #pragma once
 #include "engine/compute/status.hpp"
 #include "engine/image/map.hpp"
+#include "engine/level/progress.hpp"
 #include "engine/settings/data/settings.hpp"
+#include "engine/settings/rules/cost.hpp"
 #include <array>
 #include <optional>
 #include <string>
@@ -37,9 +39,17 @@ struct LevelOverrides {
     /// Where the maps and series of the level may lie. By default whoever wrote the level chooses among the files beside it
     /// alone.
     FilesFrom files = FilesFrom::below;
+    Progress::Tell progress; // hears how far drawing is; may be empty
 };
 
-/// Reads a level file. Errors: not_found, bad_file (position or field, nearest known key, allowed range).
+/// What a level will cost, all but `device_bytes`, which follow from the settings and from what the world may hold.
+struct LevelCost {
+    Cost cost;
+    Settings settings;                // of a map alone, whose heights are not known: without what follows from them
+    bool sand = false, water = false; // what its layers may bring
+};
+
+/// Reads a level file. Errors: not_found, bad_file (position or field, nearest known key, allowed range), cancelled.
 Result<Level> load_level(const std::string& path, const LevelOverrides& overrides);
 
 /// The same from text; the maps and series that it names come from `files`.
@@ -51,6 +61,12 @@ Result<Level> parse_level(const std::string& text, const std::string& folder, co
 /// duration in proportion. Integer maps are scaled so that their relief is 1/8 of the longer side, NPY and ASC heights are
 /// metres as stored. Rain falls for half of the duration, every side is an outflow, and so are holes that reach the rim.
 Result<Level> level_from_terrain(const std::string& map_path, const LevelOverrides& overrides);
+
+/// What these three would cost: the level's text is read, and of its maps the headers; nothing is decoded or drawn. Errors:
+/// theirs, as far as that shows them.
+Result<LevelCost> cost_of_level(const std::string& path, const LevelOverrides& overrides);
+Result<LevelCost> cost_of_level(const std::string& text, const FileReader& files, const LevelOverrides& overrides);
+Result<LevelCost> cost_of_terrain(const std::string& map_path, const LevelOverrides& overrides);
 
 /// Advice with numbers: waves slower than they should be for this dx and dt, cohesion too weak to hold a wall, columns near
 /// the declared largest height, and the like (NUMERICS.md section 4).

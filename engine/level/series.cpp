@@ -22,7 +22,7 @@ std::string_view trimmed(std::string_view text) {
 Result<TimeSeries> read_series_file(const std::string& path, LevelFiles& files) {
     auto bytes = files.read(path, SERIES_BYTES_MOST);
     if (!bytes) return bytes.status();
-    if (Status status = files.room.take(static_cast<std::int64_t>(bytes->size()), path); !status) return status;
+    if (Status status = files.room.take({static_cast<std::int64_t>(bytes->size())}, path); !status) return status;
     std::string_view rest(reinterpret_cast<const char*>(bytes->data()), bytes->size());
     TimeSeries series;
     bool heading_allowed = true;

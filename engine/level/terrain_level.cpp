@@ -3,6 +3,7 @@
 #include "engine/level/layers.hpp"
 #include "engine/level/level.hpp"
 #include "engine/level/overrides.hpp"
+#include "engine/level/read_level.hpp"
 #include "engine/settings/data/quanta.hpp"
 #include "engine/settings/data/setting_table.hpp"
 #include "engine/settings/rules/checks.hpp"
@@ -105,6 +106,28 @@ Result<Level> build(const std::string& map_path, const LevelOverrides& overrides
 }
 
 } // namespace
+
+Result<LevelCost> cost_of_terrain(const std::string& map_path, const LevelOverrides& overrides) {
+    const auto map = cost_of_map(map_path, {}, files_in("", FilesFrom::anywhere), std::int64_t{MAP_LIMIT} * MAP_LIMIT);
+    if (!map) return map.status();
+    const auto& asked = map->asked;
+    const int less = looks_like_corners(asked.nx, asked.ny) ? 1 : 0;
+    LevelCost result;
+    Settings& settings = result.settings;
+    settings.grid = {asked.nx - less, asked.ny - less, CELL};
+    settings.dt = DT * CELL;
+    settings.material.manning = MANNING;
+    settings.rain.samples = {{0.0, RAIN}};
+    for (Side& side : settings.sides) side.kind = SideKind::outflow;
+    if (auto grid = apply_overrides(overrides, settings); !grid) return grid.status();
+    Cost& cost = result.cost;
+    const auto cells = static_cast<std::uint64_t>(settings.grid.nx) * static_cast<std::uint64_t>(settings.grid.ny);
+    cost.cells = cells;
+    cost.file_bytes = map->file_bytes;
+    cost.map_values = static_cast<std::uint64_t>(asked.values);
+    cost.host_bytes = load_bytes(*map, cells);
+    return result;
+}
 
 Result<Level> level_from_terrain(const std::string& map_path, const LevelOverrides& overrides) {
     if (overrides.variant) return error(Code::bad_argument, "variant: a terrain map has none");

@@ -142,6 +142,26 @@ Status Snapshots::load(std::span<const std::byte> from) {
     return state_.lost();
 }
 
+Result<Cost> Snapshots::cost(std::span<const std::byte> from) const {
+    auto header = read_header(from);
+    if (!header) return header.status();
+    if (auto status = check(*header); !status) return status;
+    Settings settings = state_.settings();
+    settings.material = header->material;
+    auto effects = effects_required(settings, content_for(*header));
+    if (!effects) return effects.status();
+    constexpr std::uint64_t always = 1 << 20;
+    std::uint64_t largest = 0; // of zeros, where the snapshot lacks a field
+    for (const auto& field : header->fields) largest = std::max(largest, field.bytes);
+    Cost cost;
+    cost.cells = static_cast<std::uint64_t>(header->nx) * static_cast<std::uint64_t>(header->ny);
+    cost.file_bytes = from.size();
+    cost.host_bytes = from.size() + 4 * largest + always;
+    cost.device_bytes = most_device_bytes(settings, effects->mask);
+    cost.steps = header->totals.steps;
+    return cost;
+}
+
 // The snapshot is loaded by now, whatever this comes to.
 void Snapshots::keep_for_roll_back(const std::string& trouble) {
     try {

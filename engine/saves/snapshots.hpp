@@ -3,6 +3,7 @@
 #include "engine/saves/roll_back.hpp"
 #include "engine/saves/snapshot_format.hpp"
 #include "engine/saves/worker.hpp"
+#include "engine/settings/rules/cost.hpp"
 #include "engine/step/run/state_program.hpp"
 #include <optional>
 
@@ -26,6 +27,8 @@ class Snapshots {
     /// std::bad_alloc is thrown between two steps. Where only the first state for roll-back could not be kept, none is and the
     /// log says so.
     Status load(std::span<const std::byte> from);
+    /// What load() would cost; nothing is changed. Errors: those of load() that the header shows.
+    Result<Cost> cost(std::span<const std::byte> from) const;
 
     /// Has the device copy the state as it is after the steps asked for so far; never waits but allocates at its first call.
     /// In the middle of a step: as it will be after that step. An earlier save that nobody fetched is forgotten.

@@ -79,6 +79,8 @@ wadi_result report(const Status& status) {
         return WADI_NOT_READY;
     case Code::busy:
         return WADI_ERROR_BUSY;
+    case Code::cancelled:
+        return WADI_CANCELLED;
     }
     return WADI_ERROR_INTERNAL;
 }

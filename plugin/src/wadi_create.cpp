@@ -3,9 +3,11 @@
 #include "engine/level/level.hpp"
 #include "engine/settings/data/accuracy_presets.hpp"
 #include "plugin/src/abi.hpp"
+#include "plugin/src/cost.hpp"
 #include "plugin/src/vulkan_host.hpp"
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 #include <thread>
 
 using namespace wadi;
@@ -134,6 +136,7 @@ FileReader host_files(wadi_read_file_callback read_file, void* user) {
 struct Asked {
     wadi_device_options options = wadi_default_device_options();
     wadi_level_overrides overrides = wadi_default_level_overrides();
+    std::optional<Cost> most;
     Status status = ok_status();
 
     Asked(const char* function, const wadi_level_overrides* level, const wadi_device_options* device) {
@@ -143,11 +146,57 @@ struct Asked {
         if (status && (overrides.fused_stages < -1 ||
                        overrides.fused_stages > 1)) // no setting refuses it later: its kind has no such value
             status = error(Code::bad_argument, call + "overrides.fused_stages is neither 1, -1 nor 0 (as the level says)");
+        if (status && options.most != nullptr) {
+            auto limits = to_cost(call + "options.most", options.most);
+            status = limits.status();
+            if (limits) most = *limits;
+        }
     }
+
+    /// The host's progress callback hears of drawing as the first part of all.
+    LevelOverrides engine_overrides() const {
+        LevelOverrides engine = to_overrides(overrides);
+        if (options.progress != nullptr) engine.progress = [this](double share) { return goes_on(DRAWING * share); };
+        return engine;
+    }
+    static constexpr double DRAWING = 0.75; // of all that making a world takes
+    bool goes_on(double share) const {
+        if (options.progress == nullptr) return true;
+        const compute::DefaultFloats kept; // whatever the host's code sets
+        told = std::max(told, share);
+        return options.progress(options.progress_user, told) != 0;
+    }
+    mutable double told = 0; // a share never falls
 };
 
-wadi_result host(Result<Level> level, const wadi_device_options& options, wadi_world_id* id) {
+Status cancelled() { return error(Code::cancelled, "the host's progress callback ended the making of the world"); }
+
+/// With what the world would hold on its device.
+Result<Cost> with_device(Result<LevelCost> level) {
+    if (!level) return level.status();
+    auto effects = effects_required(level->settings, {level->sand, level->water});
+    if (!effects) return effects.status();
+    level->cost.device_bytes = most_device_bytes(level->settings, effects->mask);
+    return level->cost;
+}
+
+/// ok where the host sets no limits, or none is passed; `cost` is asked only where there are some.
+template <class Account> Status within_limits(const Asked& asked, const Account& account) {
+    if (!asked.most) return ok_status();
+    const Result<Cost> cost = with_device(account());
+    return cost ? check_cost("level", *cost, *asked.most) : cost.status();
+}
+
+bool is_level_file(const std::string& path) { return path.ends_with(".json"); }
+
+Result<LevelCost> cost_of_file(const std::string& path, const LevelOverrides& overrides) {
+    return is_level_file(path) ? cost_of_level(path, overrides) : cost_of_terrain(path, overrides);
+}
+
+wadi_result host(Result<Level> level, const Asked& asked, wadi_world_id* id) {
     if (!level) return report(level.status());
+    const wadi_device_options& options = asked.options;
+    if (!asked.goes_on(Asked::DRAWING)) return report(cancelled());
     for (auto& warning : level->warnings) make_printable(warning);
     const auto log = to_log(options);
     auto device = open(options, log);
@@ -161,8 +210,9 @@ wadi_result host(Result<Level> level, const wadi_device_options& options, wadi_w
         log(2, level->name + ": " + std::to_string(grid.nx) + " x " + std::to_string(grid.ny) + " cells on " +
                    (*world)->device().capabilities().name + ", effects " + effect_names((*world)->state().effects().mask));
     }
+    if (!asked.goes_on(1)) return report(cancelled());
     *id = plugin::worlds().add(
-        {std::move(*world), level->name, level->duration, level->warnings, level->origin, options.threads, {}});
+        {std::move(*world), level->name, level->duration, level->warnings, level->origin, options.threads, asked.most, {}});
     return report(ok_status());
 }
 
@@ -227,10 +277,9 @@ wadi_result wadi_create_world_from_level(const char* path, const wadi_level_over
         const Asked asked("wadi_create_world_from_level", overrides, options);
         if (!asked.status) return report(asked.status);
         const ThreadLimit limit(asked.options.threads);
-        const bool json = std::string(path).ends_with(".json");
-        return host(json ? load_level(path, to_overrides(asked.overrides))
-                         : level_from_terrain(path, to_overrides(asked.overrides)),
-                    asked.options, world);
+        const LevelOverrides engine = asked.engine_overrides();
+        if (auto status = within_limits(asked, [&] { return cost_of_file(path, engine); }); !status) return report(status);
+        return host(is_level_file(path) ? load_level(path, engine) : level_from_terrain(path, engine), asked, world);
     });
 }
 
@@ -242,7 +291,31 @@ wadi_result wadi_create_world_from_level_text(const char* json, wadi_read_file_c
         const Asked asked("wadi_create_world_from_level_text", overrides, options);
         if (!asked.status) return report(asked.status);
         const ThreadLimit limit(asked.options.threads);
-        return host(parse_level(json, host_files(read_file, user), to_overrides(asked.overrides)), asked.options, world);
+        const LevelOverrides engine = asked.engine_overrides();
+        const FileReader files = host_files(read_file, user);
+        if (auto status = within_limits(asked, [&] { return cost_of_level(json, files, engine); }); !status)
+            return report(status);
+        return host(parse_level(json, files, engine), asked, world);
+    });
+}
+
+wadi_result wadi_get_level_cost(const char* path, const wadi_level_overrides* overrides, wadi_cost* cost) {
+    return guarded(__func__, [&] {
+        if (path == nullptr || cost == nullptr) return bad_argument("wadi_get_level_cost: path or cost is NULL");
+        const Asked asked("wadi_get_level_cost", overrides, nullptr);
+        if (!asked.status) return report(asked.status);
+        return give_cost("wadi_get_level_cost", with_device(cost_of_file(path, to_overrides(asked.overrides))), cost);
+    });
+}
+
+wadi_result wadi_get_level_text_cost(const char* json, wadi_read_file_callback read_file, void* user,
+                                     const wadi_level_overrides* overrides, wadi_cost* cost) {
+    return guarded(__func__, [&] {
+        if (json == nullptr || cost == nullptr) return bad_argument("wadi_get_level_text_cost: json or cost is NULL");
+        const Asked asked("wadi_get_level_text_cost", overrides, nullptr);
+        if (!asked.status) return report(asked.status);
+        return give_cost("wadi_get_level_text_cost",
+                         with_device(cost_of_level(json, host_files(read_file, user), to_overrides(asked.overrides))), cost);
     });
 }
 
@@ -259,7 +332,14 @@ wadi_result wadi_create_world_from_arrays(const wadi_world_arrays* arrays, const
         const FileReader no_files = [](const std::string& name, std::uint64_t) -> Result<std::vector<std::uint8_t>> {
             return error(Code::bad_argument, name + ": settings_json may name no files");
         };
-        auto level = parse_level(own.settings_json, no_files, {});
+        const LevelOverrides engine = asked.engine_overrides();
+        const auto account = [&] {
+            auto of_settings = cost_of_level(own.settings_json, no_files, engine);
+            if (of_settings) of_settings->sand = own.sand != nullptr, of_settings->water = own.water != nullptr;
+            return of_settings;
+        };
+        if (auto status = within_limits(asked, account); !status) return report(status);
+        auto level = parse_level(own.settings_json, no_files, engine);
         if (!level) return report(level.status());
         const auto& grid = level->settings.grid;
         if (own.nx != grid.nx || own.ny != grid.ny) {
@@ -278,7 +358,7 @@ wadi_result wadi_create_world_from_arrays(const wadi_world_arrays* arrays, const
         copy(level->fields.velocity_y, own.velocity_y);
         copy(level->settings.roughness, own.roughness);
         level->warnings = level_warnings(level->settings, level->fields);
-        return host(std::move(level), asked.options, world);
+        return host(std::move(level), asked, world);
     });
 }
 

@@ -1,4 +1,5 @@
 // Brushes, stamps, pushes, written regions and changes of the material; effects that follow them.
+#include "engine/settings/rules/cost.hpp"
 #include "engine/settings/rules/material_keys.hpp"
 #include "engine/settings/rules/messages.hpp"
 #include "plugin/src/abi.hpp"
@@ -199,7 +200,13 @@ wadi_result wadi_world_get_commands(wadi_world_id id, void* data, size_t* size) 
 wadi_result wadi_world_play_commands(wadi_world_id id, const void* data, size_t size) {
     return with_world(__func__, id, [&](HostedWorld& hosted) {
         if (data == nullptr) return bad_argument("wadi_world_play_commands: data is NULL");
-        return report(hosted.world->commands().play({static_cast<const std::byte*>(data), size}));
+        const std::span bytes(static_cast<const std::byte*>(data), size);
+        if (hosted.most) {
+            const auto cost = hosted.world->commands().cost(bytes);
+            if (!cost) return report(cost.status());
+            if (auto status = check_cost("command log", *cost, *hosted.most); !status) return report(status);
+        }
+        return report(hosted.world->commands().play(bytes));
     });
 }
 

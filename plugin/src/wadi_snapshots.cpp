@@ -11,6 +11,16 @@ namespace {
 std::span<std::byte> bytes_at(void* data, size_t size) { return {static_cast<std::byte*>(data), size}; }
 
 /// A step that was begun in parts is finished first: that may end in the middle, a load may not.
+/// What passes the host's own limits is refused with its header read and no more.
+Status load(HostedWorld& hosted, std::span<const std::byte> from) {
+    if (hosted.most) {
+        const auto cost = hosted.world->snapshots().cost(from);
+        if (!cost) return cost.status();
+        if (auto status = check_cost("snapshot", *cost, *hosted.most); !status) return status;
+    }
+    return hosted.world->snapshots().load(from);
+}
+
 template <class Call> wadi_result load_at_boundary(HostedWorld& hosted, Call call) {
     if (auto status = hosted.world->step(0); !status) return report(status);
     return or_unchanged("wadi_world_load", [&] { return report(call()); });
@@ -32,9 +42,7 @@ wadi_result wadi_world_save(wadi_world_id id, void* data, size_t* size) {
 wadi_result wadi_world_load(wadi_world_id id, const void* data, size_t size) {
     return with_world(__func__, id, [&](HostedWorld& hosted) {
         if (data == nullptr) return bad_argument("wadi_world_load: data is NULL");
-        return load_at_boundary(hosted, [&] {
-            return hosted.world->snapshots().load({static_cast<const std::byte*>(data), size});
-        });
+        return load_at_boundary(hosted, [&] { return load(hosted, {static_cast<const std::byte*>(data), size}); });
     });
 }
 
@@ -52,7 +60,7 @@ wadi_result wadi_world_load_file(wadi_world_id id, const char* path) {
         if (path == nullptr) return bad_argument("wadi_world_load_file: path is NULL");
         return load_at_boundary(hosted, [&] {
             auto bytes = read_snapshot_file(path, hosted.world->snapshots().most_bytes());
-            return bytes ? hosted.world->snapshots().load(*bytes) : bytes.status();
+            return bytes ? load(hosted, *bytes) : bytes.status();
         });
     });
 }

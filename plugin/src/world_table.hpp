@@ -5,6 +5,7 @@
 #include "plugin/include/wadi/wadi.h"
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,6 +20,7 @@ struct HostedWorld {
     std::vector<std::string> warnings;
     std::array<double, 2> origin{}; // Level::origin
     int threads = 0;                // of the host's work in its calls, ThreadLimit
+    std::optional<Cost> most;       // wadi_device_options.most
     std::vector<Edit> edits;        // of the last wadi_world_edit: its room is used again
     bool spoiled = false;           // the host's memory ran out in the middle of a call: what that left undone is not known
 };

@@ -20,6 +20,8 @@ attack=$bin/wadi-test-attack
 run "$attack" environment
 run "$attack" memory
 run "$attack" files
+run "$attack" cost
+run "$attack" numbers
 run "$attack" hosts "$seconds"
 run "$attack" soak cpu "$steps"
 run "$attack" cycles cpu "$count"

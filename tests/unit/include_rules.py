@@ -53,7 +53,7 @@ USES = {
     "tests/faults": ("tests/unit",),
     "tests/fuzz": ("tests/conformance",),
     "tests/latency": ("samples/vulkan_host_minimal",),
-    "tests/plugin": ("samples/vulkan_host_minimal",),
+    "tests/plugin": ("samples/vulkan_host_minimal", "tests/unit"),
     "tests/recorder": ("samples/common",),
     "tests/stability": ("tests/fuzz", "tests/unit"),
     "tests/tune": ("samples/tune",),

@@ -72,6 +72,15 @@ Fullest fullest_step(const Settings& settings) {
     return fullest;
 }
 
+/// Exactly where that is above `enough` and not too long to count.
+Fullest fullest_known(const Settings& settings, std::uint64_t enough) {
+    constexpr double countable = 1e6; // turns, one by one
+    const Fullest fullest = fullest_at_most(settings);
+    double turns = 0;
+    for (const ScriptedEdit& script : settings.edits) turns += static_cast<double>(last_turn(script)) + 1;
+    return fullest.edits > enough && turns <= countable ? fullest_step(settings) : fullest;
+}
+
 Edit moved(const ScriptedEdit& script, std::uint64_t turn) {
     const double since = static_cast<double>(turn) * script.every;
     Edit edit = script.edit;
@@ -114,12 +123,10 @@ Status check_scripted_edit(const Settings& settings, std::size_t index) {
     return check_edit("", index, edit, settings, {}, 0);
 }
 
+std::uint64_t most_edits_per_step(const Settings& settings) { return fullest_known(settings, 0).edits; }
+
 Status check_edits_per_step(const Settings& settings) {
-    constexpr double countable = 1e6; // turns, one by one
-    Fullest fullest = fullest_at_most(settings);
-    double turns = 0;
-    for (const ScriptedEdit& script : settings.edits) turns += static_cast<double>(last_turn(script)) + 1;
-    if (fullest.edits > STEP_EDITS_MOST && turns <= countable) fullest = fullest_step(settings);
+    const Fullest fullest = fullest_known(settings, STEP_EDITS_MOST);
     if (fullest.edits <= STEP_EDITS_MOST) return ok_status();
     return error(Code::bad_argument, "edits: they bring up to " + std::to_string(fullest.edits) + " into one step, at " +
                                          number_text(static_cast<double>(fullest.step) * settings.dt) + " s; allowed are " +

@@ -11,6 +11,9 @@ void append_scripted_edits(const Settings& settings, std::uint64_t step, std::ve
 /// ok, or bad_argument that names edits[index], its field and the range.
 Status check_scripted_edit(const Settings& settings, std::size_t index);
 
+/// The most edits that fall into one step; where turns are too many to count one by one, as many as may.
+std::uint64_t most_edits_per_step(const Settings& settings);
+
 /// ok, or bad_argument where the checked edits bring more than STEP_EDITS_MOST into a step, with how many and when.
 Status check_edits_per_step(const Settings& settings);
 

@@ -8,7 +8,62 @@ namespace {
 
 std::string scratch_label(int block) { return "scratch " + std::to_string(block); }
 
+FieldLayout layout_of(const Settings& settings) { return {settings.grid.nx, settings.grid.ny}; }
+
+std::vector<compute::BufferDesc> wanted_by(const StepPlan& plan, const Settings& settings) {
+    std::vector<compute::BufferDesc> wanted;
+    for (const auto& field : plan.fields) {
+        if (field.role == FieldRole::scratch && field.memory >= 0) continue;
+        wanted.push_back({bytes_of(field, settings), field.name});
+        if (field.ping_pong) wanted.push_back({bytes_of(field, settings), next_name(field.name)});
+    }
+    for (int block = 0; block < plan.scratch_blocks; ++block)
+        wanted.push_back({layout_of(settings).size() * 4, scratch_label(block)});
+    return wanted;
+}
+
 } // namespace
+
+std::uint64_t bytes_of(const PlanField& field, const Settings& settings) {
+    const FieldLayout layout = layout_of(settings);
+    if (field.role == FieldRole::shapes) return SOURCE_VECTORS * sizeof(vec4);
+    if (field.role == FieldRole::tiles) {
+        const int side = settings.tile_side();
+        const auto tiles = [&](int cells) {
+            return side > 0 ? static_cast<std::uint64_t>(FieldLayout::active_tiles(cells, side)) : 0;
+        };
+        const auto columns = tiles(layout.nx), rows = tiles(layout.ny);
+        return 4 * (field.name.starts_with("active_dispatch") ? 8
+                    : field.name.starts_with("active_counts") ? rows
+                                                              : columns * rows);
+    }
+    if (field.role == FieldRole::rim) return static_cast<std::uint64_t>(layout.rim()) * 4 * 4;
+    if (field.role != FieldRole::ledger) return layout.size() * PlanField::element_bytes;
+    if (field.name != "source_ledger") return static_cast<std::uint64_t>(layout.rim()) * 4 * 4;
+    return std::uint64_t{2 * LEDGER_ENTRIES} * static_cast<std::uint64_t>(layout.strips()) *
+           static_cast<std::uint64_t>(layout.pitch()) * 4;
+}
+
+std::uint64_t most_device_bytes(const Settings& settings, std::uint32_t effects) {
+    constexpr std::uint64_t small = 64 << 10; // counts of limits
+    std::uint64_t most = 0;
+    for (const bool tiles : {false, true}) {
+        if (tiles && settings.active_tiles == 0) continue;
+        for (const bool fused : {false, true}) {
+            StepPlan plan = make_step_plan(effects, settings.method.substeps, {tiles, fused, true});
+            if (tiles) { // a world that may leave tiles out has the fields of both
+                StepPlan whole = make_step_plan(effects, settings.method.substeps, {false, fused, true});
+                const int without = whole.field_buffers();
+                share_fields(plan, whole);
+                if (settings.active_tiles == tiles_where_cheap && !tiles_are_cheap(plan, without)) continue;
+            }
+            std::uint64_t bytes = 0;
+            for (const auto& buffer : wanted_by(plan, settings)) bytes += buffer.bytes;
+            most = std::max(most, bytes);
+        }
+    }
+    return most + layout_of(settings).size() * 4 + small;
+}
 
 void fill_row(const FieldLayout& layout, const std::vector<float>& cells, bool repeat_edges, int j, std::span<float> row) {
     const int y = std::clamp(j, 0, layout.ny - 1);
@@ -28,47 +83,18 @@ std::vector<float> with_ghosts(const FieldLayout& layout, const std::vector<floa
     return field;
 }
 
-FieldStore::FieldStore(WorldDevice& device, const Settings& settings)
-    : device_(device), layout_{settings.grid.nx, settings.grid.ny},
-      tile_columns_(settings.tile_side() > 0 ? FieldLayout::active_tiles(layout_.nx, settings.tile_side()) : 0),
-      tile_rows_(settings.tile_side() > 0 ? FieldLayout::active_tiles(layout_.ny, settings.tile_side()) : 0), buffers_(device) {}
-
-std::uint64_t FieldStore::bytes_of(const PlanField& field) const {
-    if (field.role == FieldRole::shapes) return SOURCE_VECTORS * sizeof(vec4);
-    if (field.role == FieldRole::tiles) {
-        const auto columns = static_cast<std::uint64_t>(tile_columns_), rows = static_cast<std::uint64_t>(tile_rows_);
-        return 4 * (field.name.starts_with("active_dispatch") ? 8
-                    : field.name.starts_with("active_counts") ? rows
-                                                              : columns * rows);
-    }
-    if (field.role == FieldRole::rim) return static_cast<std::uint64_t>(layout_.rim()) * 4 * 4;
-    if (field.role != FieldRole::ledger) return layout_.size() * PlanField::element_bytes;
-    if (field.name != "source_ledger") return static_cast<std::uint64_t>(layout_.rim()) * 4 * 4;
-    return std::uint64_t{2 * LEDGER_ENTRIES} * static_cast<std::uint64_t>(layout_.strips()) *
-           static_cast<std::uint64_t>(layout_.pitch()) * 4;
-}
+FieldStore::FieldStore(WorldDevice& device, const Settings& settings) : device_(device), settings_(settings), buffers_(device) {}
 
 std::vector<KeptField> FieldStore::kept(const std::vector<PlanField>& fields) const {
     std::vector<KeptField> kept;
     for (const auto& field : fields)
         if (field.role == FieldRole::state || field.role == FieldRole::rim || field.role == FieldRole::ledger)
-            kept.push_back({field.name, bytes_of(field)});
+            kept.push_back({field.name, bytes_of(field, settings_)});
     return kept;
 }
 
-std::vector<compute::BufferDesc> FieldStore::wanted_by(const StepPlan& plan) const {
-    std::vector<compute::BufferDesc> wanted;
-    for (const auto& field : plan.fields) {
-        if (field.role == FieldRole::scratch && field.memory >= 0) continue;
-        wanted.push_back({bytes_of(field), field.name});
-        if (field.ping_pong) wanted.push_back({bytes_of(field), next_name(field.name)});
-    }
-    for (int block = 0; block < plan.scratch_blocks; ++block) wanted.push_back({layout_.size() * 4, scratch_label(block)});
-    return wanted;
-}
-
 Status FieldStore::set_plan(const StepPlan& plan) {
-    auto wanted = wanted_by(plan);
+    auto wanted = wanted_by(plan, settings_);
     auto fields = plan.fields;
     if (auto status = buffers_.keep_also(wanted); !status) return status;
     // Before turn 0 the first buffer of each pair is the current one.
@@ -121,8 +147,9 @@ Status FieldStore::write(const std::string& name, std::size_t first, std::span<c
 
 Status FieldStore::write_rows(const std::string& name, const std::function<void(int j, std::span<float> row)>& fill) {
     if (find(name) == nullptr) return ok_status();
-    const auto pitch = static_cast<std::size_t>(layout_.pitch()), rows = static_cast<std::size_t>(layout_.rows());
-    const std::size_t most = rows_at_once(layout_);
+    const FieldLayout layout = layout_of(settings_);
+    const auto pitch = static_cast<std::size_t>(layout.pitch()), rows = static_cast<std::size_t>(layout.rows());
+    const std::size_t most = rows_at_once(layout);
     std::vector<float> part(std::min(rows, most) * pitch);
     for (std::size_t first = 0; first < rows; first += most) {
         const std::size_t count = std::min(most, rows - first);
@@ -133,8 +160,7 @@ Status FieldStore::write_rows(const std::string& name, const std::function<void(
                 fill(static_cast<int>(first + n) - GHOST, row);
             }
         });
-        if (auto status = write(name, layout_.row(static_cast<int>(first) - GHOST), std::span(part).first(count * pitch));
-            !status)
+        if (auto status = write(name, layout.row(static_cast<int>(first) - GHOST), std::span(part).first(count * pitch)); !status)
             return status;
     }
     return ok_status();

@@ -33,6 +33,16 @@ inline std::size_t rows_at_once(const FieldLayout& layout) {
     return std::max<std::size_t>((std::size_t{4} << 20) / static_cast<std::size_t>(layout.pitch()), 1);
 }
 
+/// Whether fields of `tiled`, a plan with active tiles, are few more than so many without: what tiles_where_cheap asks.
+inline bool tiles_are_cheap(const StepPlan& tiled, int without) { return 8 * tiled.field_buffers() <= 9 * without; }
+
+/// Bytes of a field of a world with these settings.
+std::uint64_t bytes_of(const PlanField& field, const Settings& settings);
+
+/// Bytes of all buffers that a world with this mask of effects has on its device before it is given anything to do, whichever way
+/// of running its device gains from; at most, and with those that look for limits.
+std::uint64_t most_device_bytes(const Settings& settings, std::uint32_t effects);
+
 class FieldStore {
   public:
     FieldStore(WorldDevice& device, const Settings& settings);
@@ -88,12 +98,9 @@ class FieldStore {
 
   private:
     const PlanField* find(const std::string& name) const;
-    std::uint64_t bytes_of(const PlanField& field) const;
-    std::vector<compute::BufferDesc> wanted_by(const StepPlan& plan) const;
 
     WorldDevice& device_;
-    const FieldLayout layout_;
-    const int tile_columns_, tile_rows_; // of active tiles
+    const Settings& settings_;
     std::vector<PlanField> fields_;
     std::vector<compute::BufferDesc> wanted_;
     NamedBuffers buffers_;

@@ -70,7 +70,7 @@ Status WorldState::set_effects(const EffectChoice& effects) {
         const int without = plan.field_buffers();
         StepPlan tiled = plan_for(effects.mask, true);
         share_fields(tiled, plan);
-        if (settings_.active_tiles == tiles_where_they_gain || 8 * tiled.field_buffers() <= 9 * without) {
+        if (settings_.active_tiles == tiles_where_they_gain || tiles_are_cheap(tiled, without)) {
             other = std::exchange(plan, std::move(tiled));
         } else {
             plan = plan_for(effects.mask, false);

@@ -32,6 +32,8 @@ namespace Wadi
         NotReady = 8,
         /// <summary>another thread is inside a call on this world; nothing was done</summary>
         ErrorBusy = 9,
+        /// <summary>not an error: the host's progress callback ended the call; nothing was made</summary>
+        Cancelled = 10,
     }
 
     public enum LogLevel

@@ -40,6 +40,15 @@ namespace Wadi
     public unsafe delegate void FreeCallback(void* user, void* memory, UIntPtr bytes);
 
     /// <summary>
+    /// Hears how far the call that makes a world is, as a share from 0 to 1 that never falls, and says whether to go on: 1, or 0 to
+    /// end it with WADI_CANCELLED. Called on that call's thread alone, at least once for each layer of a level, before the device is
+    /// opened and before the world is handed out; not while a file is decoded or a driver compiles. It must not call the library.
+    /// Should not throw: whatever it throws ends the call.
+    /// </summary>
+    [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
+    public unsafe delegate int ProgressCallback(void* user, double share);
+
+    /// <summary>
     /// Reads a file that a level names, for the host's own file system. Called with data NULL first: sets *size to the file's bytes;
     /// then with room for *size bytes: fills it and sets *size to what it wrote. Returns 1, or 0 where there is no such file. `name`
     /// is as the level writes it, '/' between folders, and never leads out of the level's folder but with overrides.any_files. Called
@@ -100,6 +109,18 @@ namespace Wadi
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         public static extern Result wadi_create_world_from_level_text(byte* json, ReadFileCallback readFile, void* user,
             RawLevelOverrides* overrides, RawDeviceOptions* options, WorldId* world);
+
+        /// <summary>
+        /// What wadi_create_world_from_level, or ..._text, would cost. The level's text and series are read, and the headers of its
+        /// maps; nothing is decoded or drawn and no device is opened. overrides: NULL = the defaults. Errors: those of the call that
+        /// it is of, as far as that much shows them.
+        /// </summary>
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        public static extern Result wadi_get_level_cost(byte* path, RawLevelOverrides* overrides, Cost* cost);
+
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        public static extern Result wadi_get_level_text_cost(byte* json, ReadFileCallback readFile, void* user, RawLevelOverrides*
+            overrides, Cost* cost);
 
         /// <summary>Creates a world from arrays. Waits and errors: those of wadi_create_world_from_level.</summary>
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
@@ -367,6 +388,13 @@ namespace Wadi
         public static extern Result wadi_world_load(WorldId world, void* data, UIntPtr size);
 
         /// <summary>
+        /// What wadi_world_load of these bytes would cost; the world stays as it is. Errors: those of wadi_world_load that the
+        /// snapshot's header shows.
+        /// </summary>
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        public static extern Result wadi_world_get_snapshot_cost(WorldId world, void* data, UIntPtr size, Cost* cost);
+
+        /// <summary>
         /// wadi_world_save to a file. Written beside it under a name that ends in ".part" and that no other call has, brought to the
         /// disk and renamed when it is whole: also of several savers to one path each leaves a whole file. A process that is killed
         /// meanwhile leaves its part. Waits: the steps, the disk. Errors, an earlier file unchanged: NOT_FOUND (the folder cannot be
@@ -447,6 +475,12 @@ namespace Wadi
         /// </summary>
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         public static extern Result wadi_world_play_commands(WorldId world, void* data, UIntPtr size);
+
+        /// <summary>
+        /// What wadi_world_play_commands of these bytes would cost; nothing is queued. Errors: those of wadi_world_play_commands.
+        /// </summary>
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        public static extern Result wadi_world_get_commands_cost(WorldId world, void* data, UIntPtr size, Cost* cost);
 
         /// <summary>
         /// The plan as text: effects on and why, passes, buffers, bytes per cell. Returns the length without the final zero; writes

@@ -22,6 +22,11 @@ namespace Wadi
         /// <summary>Addresses of callbacks (RunJobsCallback, AllocateCallback, FreeCallback) and what they get as `user`, or zero: see
         /// RawDeviceOptions. Their delegates must be kept until the world is gone; Marshal.GetFunctionPointerForDelegate keeps none.</summary>
         public IntPtr RunJobs, JobsUser, AllocateMemory, FreeMemory, MemoryUser;
+        /// <summary>Limits of what a level, and later a snapshot or log of the world, may ask for, each 0 = none; null = no limits.</summary>
+        public Cost? Most;
+        /// <summary>Address of a ProgressCallback, which hears how far the making of the world is and may end it, or zero; and its `user`.
+        /// Its delegate must be kept until that call returns.</summary>
+        public IntPtr Progress, ProgressUser;
 
         internal RawDeviceOptions Raw(CallMemory memory, LogHandle log)
         {
@@ -38,6 +43,9 @@ namespace Wadi
             raw.AllocateMemory = AllocateMemory;
             raw.FreeMemory = FreeMemory;
             raw.MemoryUser = MemoryUser;
+            if (Most != null) raw.Most = memory.Pin(new[] { Most.Value });
+            raw.Progress = Progress;
+            raw.ProgressUser = ProgressUser;
             return raw;
         }
     }

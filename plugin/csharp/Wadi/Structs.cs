@@ -32,6 +32,47 @@ namespace Wadi
         }
     }
 
+    /// <summary>
+    /// What a level, a snapshot or a command log asks for: sums that are known before the work begins; 0 where one has no such. As a
+    /// host's limits: the most of each, 0 = no limit but the library's own.
+    /// </summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct Cost
+    {
+        uint structSize;
+        /// <summary>of the grid</summary>
+        public ulong Cells;
+        /// <summary>that are read: a level's text, its maps and series; a snapshot; a log</summary>
+        public ulong FileBytes;
+        /// <summary>that maps and series hold once they are decoded</summary>
+        public ulong MapValues;
+        /// <summary>of drawing a level: looks at shapes, some nanoseconds of one thread each</summary>
+        public ulong Work;
+        /// <summary>of the host's memory while it loads, at most, beside those of the device</summary>
+        public ulong HostBytes;
+        /// <summary>
+        /// that the world holds on its device once it is loaded, at most; with the backend "cpu" they are the host's. A log: those of
+        /// its stamps
+        /// </summary>
+        public ulong DeviceBytes;
+        /// <summary>a level: those of its duration (0 of a map alone); a snapshot: that it is of; a log: its last</summary>
+        public ulong Steps;
+        /// <summary>that a level or a log brings into one step</summary>
+        public ulong EditsPerStep;
+        /// <summary>of a log, beside edits</summary>
+        public ulong CommandsPerStep;
+        /// <summary>A struct with the size that the library asks for and the header's defaults.</summary>
+        public static unsafe Cost Default
+        {
+            get
+            {
+                var value = new Cost();
+                value.structSize = (uint)sizeof(Cost);
+                return value;
+            }
+        }
+    }
+
     /// <summary>Where and how a world runs.</summary>
     [StructLayout(LayoutKind.Sequential)]
     public struct RawDeviceOptions
@@ -72,6 +113,14 @@ namespace Wadi
         public IntPtr AllocateMemory;
         public IntPtr FreeMemory;
         public IntPtr MemoryUser;
+        /// <summary>
+        /// NULL, or limits of the host's own: asked before a level, and later a snapshot or log of this world, is read further than
+        /// its header; what passes one is BAD_FILE, with the sum and the limit
+        /// </summary>
+        public IntPtr Most;
+        /// <summary>NULL, or hears how far the making of the world is, and may end it</summary>
+        public IntPtr Progress;
+        public IntPtr ProgressUser;
         /// <summary>A struct with the size that the library asks for and the header's defaults; texts stay null.</summary>
         public static unsafe RawDeviceOptions Default
         {

@@ -59,6 +59,43 @@ namespace Wadi
             }
         }
 
+        /// <summary>What FromLevel would cost: nothing is decoded or drawn.</summary>
+        public static Cost CostOfLevel(string path, LevelOverrides overrides = null)
+        {
+            if (path == null) throw new ArgumentNullException("path");
+            using (var memory = new CallMemory())
+            {
+                var text = memory.Pin(path, "path");
+                var cost = Cost.Default;
+                var raw = (overrides ?? new LevelOverrides()).Raw(memory);
+                Library.Check(Native.wadi_get_level_cost((byte*)text, &raw, &cost));
+                return cost;
+            }
+        }
+
+        /// <summary>What FromText would cost.</summary>
+        public static Cost CostOfText(string json, Func<string, byte[]> readFile = null, LevelOverrides overrides = null)
+        {
+            if (json == null) throw new ArgumentNullException("json");
+            var user = GCHandle.Alloc(new FileReader(readFile));
+            try
+            {
+                using (var memory = new CallMemory())
+                {
+                    var text = memory.Pin(json, "json");
+                    var cost = Cost.Default;
+                    var raw = (overrides ?? new LevelOverrides()).Raw(memory);
+                    Library.Check(Native.wadi_get_level_text_cost((byte*)text, readFile == null ? null : FileReader.Callback,
+                        (void*)GCHandle.ToIntPtr(user), &raw, &cost));
+                    return cost;
+                }
+            }
+            finally
+            {
+                user.Free();
+            }
+        }
+
         /// <summary>A world from the text of a level. Files that it names come from readFile, by the name in the level; null from there means
         /// that there is none. Without readFile it may name none.</summary>
         public static World FromText(string json, Func<string, byte[]> readFile = null, LevelOverrides overrides = null,

@@ -33,6 +33,24 @@ namespace Wadi
             fixed (byte* from = snapshot) Check(Native.wadi_world_load(Id, from, (UIntPtr)(ulong)snapshot.LongLength));
         }
 
+        /// <summary>What Load of these bytes would cost; the world stays as it is.</summary>
+        public Cost CostOfSnapshot(byte[] snapshot)
+        {
+            if (snapshot == null) throw new ArgumentNullException("snapshot");
+            var cost = Cost.Default;
+            fixed (byte* from = snapshot) Check(Native.wadi_world_get_snapshot_cost(Id, from, (UIntPtr)(ulong)snapshot.LongLength, &cost));
+            return cost;
+        }
+
+        /// <summary>What PlayCommands of these bytes would cost; nothing is queued.</summary>
+        public Cost CostOfCommands(byte[] commands)
+        {
+            if (commands == null) throw new ArgumentNullException("commands");
+            var cost = Cost.Default;
+            fixed (byte* from = commands) Check(Native.wadi_world_get_commands_cost(Id, from, (UIntPtr)(ulong)commands.LongLength, &cost));
+            return cost;
+        }
+
         /// <summary>Save to a file, which is replaced whole or not at all.</summary>
         public void SaveFile(string path)
         {

@@ -89,7 +89,8 @@ typedef enum wadi_result WADI_ENUM {
     WADI_ERROR_DEVICE_LOST = 6,   /* sticky for the world; destroy it and create another */
     WADI_ERROR_INTERNAL = 7,      /* our bug: please report the message */
     WADI_NOT_READY = 8,           /* not an error: ask again later */
-    WADI_ERROR_BUSY = 9           /* another thread is inside a call on this world; nothing was done */
+    WADI_ERROR_BUSY = 9,          /* another thread is inside a call on this world; nothing was done */
+    WADI_CANCELLED = 10           /* not an error: the host's progress callback ended the call; nothing was made */
 } wadi_result;
 typedef char wadi_enum_has_32_bits[sizeof(wadi_result) == 4 ? 1 : -1];
 
@@ -139,6 +140,31 @@ typedef void* (*wadi_allocate_callback)(void* user, size_t bytes, size_t alignme
  *  once; they must not call the library; what they throw counts as a refusal. */
 typedef void (*wadi_free_callback)(void* user, void* memory, size_t bytes);
 
+/** What a level, a snapshot or a command log asks for: sums that are known before the work begins; 0 where one has no such.
+ *  As a host's limits: the most of each, 0 = no limit but the library's own. */
+typedef struct wadi_cost {
+    uint32_t struct_size;
+    uint64_t cells;               /* of the grid */
+    uint64_t file_bytes;          /* that are read: a level's text, its maps and series; a snapshot; a log */
+    uint64_t map_values;          /* that maps and series hold once they are decoded */
+    uint64_t work;                /* of drawing a level: looks at shapes, some nanoseconds of one thread each */
+    uint64_t host_bytes;          /* of the host's memory while it loads, at most, beside those of the device */
+    uint64_t device_bytes;        /* that the world holds on its device once it is loaded, at most; with the backend "cpu" they are the
+                                     host's. A log: those of its stamps */
+    uint64_t steps;               /* a level: those of its duration (0 of a map alone); a snapshot: that it is of; a log: its last */
+    uint64_t edits_per_step;      /* that a level or a log brings into one step */
+    uint64_t commands_per_step;   /* of a log, beside edits */
+} wadi_cost;
+static inline wadi_cost wadi_default_cost(void) {
+    WADI_ZERO_STRUCT(wadi_cost);
+    return value;
+}
+/** Hears how far the call that makes a world is, as a share from 0 to 1 that never falls, and says whether to go on: 1, or 0 to end it
+ *  with WADI_CANCELLED. Called on that call's thread alone, at least once for each layer of a level, before the device is opened and
+ *  before the world is handed out; not while a file is decoded or a driver compiles. It must not call the library. Should not throw:
+ *  whatever it throws ends the call. */
+typedef wadi_bool (*wadi_progress_callback)(void* user, double share);
+
 /** Where and how a world runs. */
 typedef struct wadi_device_options {
     uint32_t struct_size;
@@ -162,6 +188,10 @@ typedef struct wadi_device_options {
                                                command log, programs, threads; and GPU backends, whose memory is the driver's */
     wadi_free_callback free_memory;
     void* memory_user;
+    const wadi_cost* most;     /* NULL, or limits of the host's own: asked before a level, and later a snapshot or log of this world, is
+                                  read further than its header; what passes one is BAD_FILE, with the sum and the limit */
+    wadi_progress_callback progress; /* NULL, or hears how far the making of the world is, and may end it */
+    void* progress_user;
 } wadi_device_options;
 static inline wadi_device_options wadi_default_device_options(void) {
     WADI_ZERO_STRUCT(wadi_device_options);
@@ -242,6 +272,13 @@ typedef wadi_bool (*wadi_read_file_callback)(void* user, const char* name, void*
 WADI_API wadi_result wadi_create_world_from_level_text(const char* json, wadi_read_file_callback read_file, void* user,
                                                        const wadi_level_overrides* overrides, const wadi_device_options* options,
                                                        wadi_world_id* world);
+
+/** What wadi_create_world_from_level, or ..._text, would cost. The level's text and series are read, and the headers of its maps;
+ *  nothing is decoded or drawn and no device is opened. overrides: NULL = the defaults.
+ *  Errors: those of the call that it is of, as far as that much shows them. */
+WADI_API wadi_result wadi_get_level_cost(const char* path, const wadi_level_overrides* overrides, wadi_cost* cost);
+WADI_API wadi_result wadi_get_level_text_cost(const char* json, wadi_read_file_callback read_file, void* user,
+                                              const wadi_level_overrides* overrides, wadi_cost* cost);
 
 /** A world from arrays: settings as the text of a level file without its "terrain", "sand", "water", "velocities"
  *  and "roughness" entries, which may name no files, and fields of nx * ny floats. NULL = zero everywhere. */
@@ -775,6 +812,9 @@ WADI_API wadi_result wadi_world_save(wadi_world_id world, void* data, size_t* si
  *  Errors, the world as it was, also where the host's own memory ends: BAD_FILE (no snapshot, a newer version, truncated, changed),
  *  BAD_ARGUMENT (of another level, or with effects that this world's level forces off), OUT_OF_MEMORY. */
 WADI_API wadi_result wadi_world_load(wadi_world_id world, const void* data, size_t size);
+/** What wadi_world_load of these bytes would cost; the world stays as it is.
+ *  Errors: those of wadi_world_load that the snapshot's header shows. */
+WADI_API wadi_result wadi_world_get_snapshot_cost(wadi_world_id world, const void* data, size_t size, wadi_cost* cost);
 /** wadi_world_save to a file.
  *  Written beside it under a name that ends in ".part" and that no other call has, brought to the disk and renamed when it is whole: also
  *  of several savers to one path each leaves a whole file. A process that is killed meanwhile leaves its part.
@@ -830,6 +870,9 @@ WADI_API wadi_result wadi_world_get_commands(wadi_world_id world, void* data, si
  *  Errors, nothing queued: BAD_FILE (no log, a newer version, truncated, changed), BAD_ARGUMENT (of another level, or with commands for
  *  steps already done). */
 WADI_API wadi_result wadi_world_play_commands(wadi_world_id world, const void* data, size_t size);
+/** What wadi_world_play_commands of these bytes would cost; nothing is queued.
+ *  Errors: those of wadi_world_play_commands. */
+WADI_API wadi_result wadi_world_get_commands_cost(wadi_world_id world, const void* data, size_t size, wadi_cost* cost);
 
 /* ---- Looking inside ---- */
 

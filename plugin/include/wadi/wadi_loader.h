@@ -18,6 +18,8 @@
     X(wadi_result, list_accuracy_presets, (wadi_accuracy_preset* presets, uint32_t* count)) \
     X(wadi_result, create_world_from_level, (const char* path, const wadi_level_overrides* overrides, const wadi_device_options* options, wadi_world_id* world)) \
     X(wadi_result, create_world_from_level_text, (const char* json, wadi_read_file_callback read_file, void* user, const wadi_level_overrides* overrides, const wadi_device_options* options, wadi_world_id* world)) \
+    X(wadi_result, get_level_cost, (const char* path, const wadi_level_overrides* overrides, wadi_cost* cost)) \
+    X(wadi_result, get_level_text_cost, (const char* json, wadi_read_file_callback read_file, void* user, const wadi_level_overrides* overrides, wadi_cost* cost)) \
     X(wadi_result, create_world_from_arrays, (const wadi_world_arrays* arrays, const wadi_device_options* options, wadi_world_id* world)) \
     X(wadi_result, destroy_world, (wadi_world_id world)) \
     X(wadi_result, world_get_info, (wadi_world_id world, wadi_world_info* info)) \
@@ -51,6 +53,7 @@
     X(wadi_result, world_set_material, (wadi_world_id world, const char* name, double value)) \
     X(wadi_result, world_save, (wadi_world_id world, void* data, size_t* size)) \
     X(wadi_result, world_load, (wadi_world_id world, const void* data, size_t size)) \
+    X(wadi_result, world_get_snapshot_cost, (wadi_world_id world, const void* data, size_t size, wadi_cost* cost)) \
     X(wadi_result, world_save_file, (wadi_world_id world, const char* path)) \
     X(wadi_result, world_load_file, (wadi_world_id world, const char* path)) \
     X(wadi_result, world_begin_save, (wadi_world_id world, uint64_t* ticket)) \
@@ -61,6 +64,7 @@
     X(wadi_result, world_set_command_log, (wadi_world_id world, wadi_bool on)) \
     X(wadi_result, world_get_commands, (wadi_world_id world, void* data, size_t* size)) \
     X(wadi_result, world_play_commands, (wadi_world_id world, const void* data, size_t size)) \
+    X(wadi_result, world_get_commands_cost, (wadi_world_id world, const void* data, size_t size, wadi_cost* cost)) \
     X(size_t, world_describe_plan, (wadi_world_id world, char* text, size_t size)) \
     X(size_t, describe_table, (const char* table, char* text, size_t size)) \
     X(wadi_result, world_get_effects, (wadi_world_id world, wadi_effect_info* effects, uint32_t* count)) \

@@ -37,6 +37,8 @@ int environment();
 int memory();
 int hosts(double seconds);
 int files();
+int cost();
+int numbers();
 int soak(long steps);
 int cycles(long count);
 

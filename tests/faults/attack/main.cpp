@@ -1,5 +1,5 @@
-// Usage: wadi-test-attack has BACKEND | environment [BACKEND] | memory | hosts SECONDS | files | soak BACKEND STEPS | cycles
-// BACKEND COUNT.
+// Usage: wadi-test-attack has BACKEND | environment [BACKEND] | memory | hosts SECONDS | files | cost | numbers | soak BACKEND
+// STEPS | cycles BACKEND COUNT.
 #include "tests/faults/attack/attack.hpp"
 #include <cstdio>
 #include <cstdlib>
@@ -13,6 +13,8 @@ int main(int argc, char** argv) {
     };
     if (what == "hosts" && argc > 2) return ends(hosts(std::atof(argv[2])));
     if (what == "files") return ends(files());
+    if (what == "numbers") return ends(numbers());
+    if (what == "cost") return ends(cost());
     if (what == "memory") return ends(memory());
     if (!given.empty()) backend = given;
     if (what == "has") {
@@ -22,8 +24,8 @@ int main(int argc, char** argv) {
     if (what == "environment") return ends(environment());
     if (what == "soak" && argc > 3) return ends(soak(std::atol(argv[3])));
     if (what == "cycles" && argc > 3) return ends(cycles(std::atol(argv[3])));
-    std::fprintf(stderr,
-                 "wadi-test-attack has BACKEND | environment [BACKEND] | memory | hosts SECONDS | files | soak BACKEND STEPS | "
-                 "cycles BACKEND COUNT\n");
+    std::fprintf(stderr, "wadi-test-attack has BACKEND | environment [BACKEND] | memory | hosts SECONDS | files | cost | numbers "
+                         "| soak BACKEND STEPS | "
+                         "cycles BACKEND COUNT\n");
     return 2;
 }

@@ -20,6 +20,7 @@ int64_t error_of(wadi_result result) {
         return ERROR_BUG;
     case WADI_NOT_READY:
         return ERROR_BUSY;
+    case WADI_CANCELLED: /* the extension gives no progress callback */
     case WADI_ERROR_BUSY:
         return ERROR_BUSY;
     }
