@@ -255,6 +255,16 @@ Case make_case(std::uint64_t seed) {
         if (random.chance(0.4)) side.absorb = random.log(0.1, 1e4) * s.dt;
     }
     if (random.chance(0.5)) s.material.bed_adhesion = random.pick({0.0, random.log(1e-12, 1e-3), random.real(0, 1)});
+    for (Source& source : s.sources) {
+        if (source.material != SourceMaterial::water || !random.chance(0.3)) continue;
+        source.level = {{{0, std::min(random.real(-0.2, 2) * size, s.method.largest_height)}}};
+        source.drain = random.chance(0.4);
+        source.set_velocity = false;
+        for (TimeSeries* most : {&source.rate, &source.discharge}) {
+            if (random.chance(0.5)) *most = {};
+            for (auto& [time, value] : most->samples) value = std::fabs(value);
+        }
+    }
     return c;
 }
 
