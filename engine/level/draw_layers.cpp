@@ -270,7 +270,9 @@ class Drawing {
             auto values = values_of(*map, *layer.map, layer.path, grid_.nx, grid_.ny);
             if (!values) return values.status();
             heights = std::move(*values);
-            if (ground && layer.combine != Combine::subtract) keep_crests_of(layer, *map, heights);
+            const bool raises = layer.combine != Combine::subtract && layer.combine != Combine::min;
+            const bool sand = target == LayerTarget::sand && layer.amount == Amount::height;
+            if ((ground || sand) && raises) keep_crests_of(layer, sand, *map, heights);
             const bool other_size = map->nx != grid_.nx || map->ny != grid_.ny;
             if (other_size && target == LayerTarget::water && layer.amount == Amount::height)
                 if (Status status = level_lakes_of(layer, *map, heights); !status) return status;
@@ -326,16 +328,21 @@ class Drawing {
         return changed;
     }
 
-    void keep_crests_of(const Layer& layer, const Map& map, std::vector<float>& heights) {
+    /// Sand keeps its volume and is named alone.
+    void keep_crests_of(const Layer& layer, bool sand, const Map& map, std::vector<float>& heights) {
         const auto [scale, offset] = scale_and_offset(*layer.map);
-        const KeptCrests kept = keep_crests(map, scale, offset, grid_, heights);
+        std::vector<float> raised;
+        if (sand) raised = heights;
+        const KeptCrests kept = keep_crests(map, scale, offset, grid_, sand ? raised : heights);
         if (kept.cells == 0) return;
         const auto width = static_cast<std::size_t>(grid_.nx);
+        const std::string lower = number_text(std::round(1000 * kept.most) / 1000);
         warnings_.push_back(
             layer.path + ".file: " + layer.map->file + ": " + std::to_string(kept.cells) + " cells of " + number_text(grid_.dx) +
-            " m hold crests that are narrower, such as walls and dikes; they are kept closed, " +
-            "as high as the crest where their mean is up to " + number_text(std::round(1000 * kept.most) / 1000) +
-            " m lower, most in cell (" + std::to_string(kept.where % width) + ", " + std::to_string(kept.where / width) + ")");
+            " m hold crests that are narrower, such as walls and dikes; " +
+            (sand ? "its sand stands as wide as its cells there, up to " + lower + " m lower, and holds back less"
+                  : "they are kept closed, as high as the crest where their mean is up to " + lower + " m lower") +
+            ", most in cell (" + std::to_string(kept.where % width) + ", " + std::to_string(kept.where / width) + ")");
     }
 
     /// Levels the lakes of a map of depths on this grid, by the ground that the level has on the map's own.
