@@ -99,8 +99,8 @@ TEST_CASE("maps on coarser grids: what walls and dikes hold back on the map they
                 CAPTURE(wall.name);
                 CAPTURE(degrees);
                 CAPTURE(cells);
-                MESSAGE(wall.name << ", " << degrees << " degrees, " << cells << " cells: " << on_map << " m, here " << kept
-                                  << ", means " << drawn.plain);
+                INFO(wall.name << ", " << degrees << " degrees, " << cells << " cells: " << on_map << " m, here " << kept
+                               << ", means " << drawn.plain);
                 CHECK(on_map > 4.9);
                 const bool upright = wall.height(3) == 0;
                 // A wall as wide as cells is as high in most of them; a dike that cells resolve has means as any ridge.
