@@ -194,7 +194,7 @@ struct StepInput {
     float rain;                 // depth of rain in this step [m], a whole number of quanta
     float evaporation;          // largest depth that evaporates in this step [m]
     float interpolation;        // of published outputs: 0 = previous, 1 = current
-    vec4 source[MAX_SOURCES];   // depth added (negative: removed) [m], face velocity x, y [m/s], 1 if velocity is set
+    vec4 source[MAX_SOURCES];   // depth added or taken [m], face velocity x, y [m/s], 1 if set; with a level: most, level [m], 1 if it drains
     vec4 side[4];               // west, east, south, north: discharge per width [m2/s], level [m] or an outflow's slope,
                                 // least ghost depth (negative: the ghost depth) or the wave's elevation [m],
                                 // first and last index of the open span

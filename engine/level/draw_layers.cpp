@@ -1,6 +1,7 @@
 #include "engine/image/map.hpp"
 #include "engine/image/plausible.hpp"
 #include "engine/level/coverage.hpp"
+#include "engine/level/crests.hpp"
 #include "engine/level/draw_work.hpp"
 #include "engine/level/lakes.hpp"
 #include "engine/level/layers.hpp"
@@ -69,13 +70,18 @@ Result<Map> open_map(const MapSource& source, const std::string& path, LevelFile
     return map;
 }
 
+std::pair<double, double> scale_and_offset(const MapSource& source) {
+    return source.grey_range ? std::pair(source.max - source.min, source.min) : std::pair(source.scale, source.offset);
+}
+
 /// What a map says at the middles of nx * ny cells; `path` names its layer in messages.
 Result<std::vector<float>> values_of(const Map& map, const MapSource& source, const std::string& path, int nx, int ny) {
     std::vector<float> values = resample(map, nx, ny);
-    const double scale = source.grey_range ? source.max - source.min : source.scale;
-    const double offset = source.grey_range ? source.min : source.offset;
+    const auto [scale, offset] = scale_and_offset(source);
     const MapMeaning& meaning = source.meaning;
-    const auto value_of = [&](std::size_t cell) { return static_cast<double>(values[cell]) * scale + offset; };
+    const auto value_of = [&, scale = scale, offset = offset](std::size_t cell) {
+        return static_cast<double>(values[cell]) * scale + offset;
+    };
     const std::size_t wrong = first_cell(values.size(), [&](std::size_t cell) {
         const double value = value_of(cell);
         return !(value >= meaning.least && value <= meaning.most);
@@ -171,6 +177,8 @@ class Drawing {
             store(fields_.sand, at.cell, mean_of(at.values, at.samples, at.terms));
         });
         warn_unchanged(lists_.sand, changed);
+        for (std::size_t n = 0; n < changed.size(); ++n)
+            if (changed[n] != 0) warn_low(lists_.sand[n]);
         return ok_status();
     }
 
@@ -251,12 +259,15 @@ class Drawing {
         std::vector<float> heights;
         files_.did(0); // ahead of a file that takes long
         if (layer.map) {
-            const auto map =
-                open_map(*layer.map, layer.path, files_, grid_.nx * grid_.dx, warnings_, target == LayerTarget::terrain);
+            const bool ground = target == LayerTarget::terrain && lists_.of_heights;
+            const auto map = open_map(*layer.map, layer.path, files_, grid_.nx * grid_.dx, warnings_, ground);
             if (!map) return map.status();
             auto values = values_of(*map, *layer.map, layer.path, grid_.nx, grid_.ny);
             if (!values) return values.status();
             heights = std::move(*values);
+            const bool raises = layer.combine != Combine::subtract && layer.combine != Combine::min;
+            const bool sand = target == LayerTarget::sand && layer.amount == Amount::height;
+            if ((ground || sand) && raises) keep_crests_of(layer, sand, *map, heights);
             const bool other_size = map->nx != grid_.nx || map->ny != grid_.ny;
             if (other_size && target == LayerTarget::water && layer.amount == Amount::height)
                 if (Status status = level_lakes_of(layer, *map, heights); !status) return status;
@@ -316,6 +327,23 @@ class Drawing {
         return changed;
     }
 
+    /// Sand keeps its volume and is named alone.
+    void keep_crests_of(const Layer& layer, bool sand, const Map& map, std::vector<float>& heights) {
+        const auto [scale, offset] = scale_and_offset(*layer.map);
+        std::vector<float> raised;
+        if (sand) raised = heights;
+        const KeptCrests kept = keep_crests(map, scale, offset, grid_, sand ? raised : heights);
+        if (kept.cells == 0) return;
+        const auto width = static_cast<std::size_t>(grid_.nx);
+        const std::string lower = number_text(std::round(1000 * kept.most) / 1000);
+        warnings_.push_back(
+            layer.path + ".file: " + layer.map->file + ": " + std::to_string(kept.cells) + " cells of " + number_text(grid_.dx) +
+            " m hold crests that are narrower, such as walls and dikes; " +
+            (sand ? "its sand stands as wide as its cells there, up to " + lower + " m lower, and holds back less"
+                  : "they are kept closed, as high as the crest where their mean is up to " + lower + " m lower") +
+            ", most in cell (" + std::to_string(kept.where % width) + ", " + std::to_string(kept.where / width) + ")");
+    }
+
     /// Levels the lakes of a map of depths on this grid, by the ground that the level has on the map's own.
     Status level_lakes_of(const Layer& layer, const Map& map, std::vector<float>& depths) {
         const LevelGrid own = map_grid(grid_, map.nx, map.ny);
@@ -366,6 +394,14 @@ class Drawing {
         warnings_.push_back(layer.path + ": a width of " + number_text(width_of(layer.shape, grid_)) +
                             " m is thin for cells of " + number_text(grid_.dx) +
                             " m; it is drawn as wide as the cells that its middle runs through, without gaps");
+    }
+
+    void warn_low(const Layer& layer) {
+        const bool raises = layer.combine != Combine::subtract && layer.combine != Combine::min && layer.amount != Amount::wet;
+        if (!raises || layer.top == 0 || !thinner_than_a_cell(layer, grid_)) return;
+        warnings_.push_back(layer.path + ": a width of " + number_text(width_of(layer.shape, grid_)) +
+                            " m is thin for cells of " + number_text(grid_.dx) +
+                            " m; its sand stands as wide as its cells and lower, and holds back less");
     }
 
     void warn_unchanged(const std::vector<Layer>& layers, const std::vector<char>& changed) {
@@ -436,6 +472,7 @@ Status draw_roughness(std::vector<Layer> layers, const LevelGrid& grid, LevelFil
     unrounded.quantum = 0;
     LayerLists lists;
     lists.terrain = std::move(layers); // drawn alike
+    lists.of_heights = false;
     InitialFields drawn;
     Status status = draw_layers(lists, unrounded, files, drawn, warnings);
     roughness = std::move(drawn.terrain);

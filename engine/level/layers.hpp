@@ -93,6 +93,7 @@ struct LayerLists {
     std::vector<Layer> terrain;
     std::vector<Layer> sand;
     std::vector<Layer> water;
+    bool of_heights = true; // terrain's are; else what is drawn as they are
 };
 
 /// Draws terrain, sand and water into `fields`; a field without layers is empty. Maps come from `files`. Terrain is what its

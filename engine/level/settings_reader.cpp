@@ -118,6 +118,8 @@ Source read_source(const Json& value, const std::string& path, LevelFiles& files
     if (const Json* rate = reader.find("rate")) source.rate = read_series(*rate, path + ".rate", files, status);
     if (const Json* discharge = reader.find("discharge"))
         source.discharge = read_series(*discharge, path + ".discharge", files, status);
+    if (const Json* level = reader.find("level")) source.level = read_series(*level, path + ".level", files, status);
+    reader.boolean("drain", source.drain);
     source.set_velocity = reader.find("velocity") != nullptr;
     reader.pair("velocity", source.velocity, -SPEED_MOST, SPEED_MOST);
     reader.finish();

@@ -72,10 +72,14 @@ void add_segment(Point a, Point b, const LevelGrid& grid, std::vector<std::size_
     }
 }
 
+bool is_upright_line(const Layer& layer) {
+    const bool line = layer.shape.kind == ShapeKind::ridge || layer.shape.kind == ShapeKind::box;
+    return !layer.map && line && !has_sloping_sides(layer.shape);
+}
+
 bool is_thin(const Layer& layer, const LevelGrid& grid) {
     const Shape& shape = layer.shape;
-    const bool line = shape.kind == ShapeKind::ridge || shape.kind == ShapeKind::box;
-    if (layer.map || !line || has_sloping_sides(shape)) return false;
+    if (!is_upright_line(layer)) return false;
     double least = grid.dx;
     for (std::size_t n = 1; n < shape.points.size(); ++n)
         if (!along_axis(shape.points[n - 1], shape.points[n])) least = std::sqrt(2.0) * grid.dx; // its cells may touch by corners
@@ -87,6 +91,10 @@ bool is_thin(const Layer& layer, const LevelGrid& grid) {
 double width_of(const Shape& shape, const LevelGrid& grid) {
     if (shape.kind == ShapeKind::ridge) return shape.width;
     return std::min(shape.to[0] - shape.from[0], (shape.to[1] - shape.from[1]) * grid.stretch_y);
+}
+
+bool thinner_than_a_cell(const Layer& layer, const LevelGrid& grid) {
+    return is_upright_line(layer) && width_of(layer.shape, grid) < grid.dx * (1 - 1e-9);
 }
 
 std::vector<std::size_t> thin_line(const Layer& layer, const LevelGrid& grid) {

@@ -15,6 +15,9 @@ double width_of(const Shape& shape, const LevelGrid& grid);
 /// side. Empty for other layers, and for those wide enough to have no gaps.
 std::vector<std::size_t> thin_line(const Layer& layer, const LevelGrid& grid);
 
+/// Whether an upright box or ridge is narrower than a cell.
+bool thinner_than_a_cell(const Layer& layer, const LevelGrid& grid);
+
 /// What that takes, as drawing_work() counts.
 std::int64_t thin_line_work(const Layer& layer, const LevelGrid& grid);
 

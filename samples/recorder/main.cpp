@@ -11,6 +11,7 @@ namespace recorder {
 namespace {
 
 constexpr int MOST_CELLS = 16384; // along one axis
+constexpr double MOST_SPEED = 1e4, LEAST_CALM = 1e-7, MOST_SECONDS = 1e9;
 
 Failure parse_size(const std::string& text, Options& options) {
     const char* const end = text.data() + text.size();
@@ -88,6 +89,22 @@ Failure parse_points(const std::string& option, const std::string& text, std::si
     return {};
 }
 
+/// "0.01,5": a speed and for how long nothing may be faster.
+Failure parse_calm(const std::string& text, Options& options) {
+    const std::vector<std::string> parts = split(text);
+    const auto number = [](const std::string& part, double& value) {
+        const char* const end = part.data() + part.size();
+        const auto parsed = std::from_chars(part.data(), end, value);
+        return parsed.ec == std::errc{} && parsed.ptr == end;
+    };
+    if (parts.size() == 2 && number(parts[0], options.calm_speed) && number(parts[1], options.calm_seconds) &&
+        options.calm_speed > 0 && options.calm_speed <= MOST_SPEED && options.calm_seconds >= LEAST_CALM &&
+        options.calm_seconds <= MOST_SECONDS)
+        return {};
+    return {EXIT_BAD_INPUT,
+            "--until-calm " + text + ": want SPEED,SECONDS, a speed above 0, at most 10000 m/s, and 1e-7 ... 1e9 s, e.g. 0.01,5"};
+}
+
 int print_backends() {
     char notes[2048] = "";
     std::uint32_t count = 0;
@@ -136,7 +153,7 @@ int fail(const std::string& message) {
 
 int main_checked(int argc, char** argv) {
     Options options;
-    std::string level, terrain, size, table;
+    std::string level, terrain, size, table, calm;
     std::vector<std::string> dumps, gauges, sections;
     bool list_backends = false, only_list_levels = false, no_frames = false;
 
@@ -167,7 +184,10 @@ int main_checked(int argc, char** argv) {
                    "1: several stages in one pass wherever the effects allow; -1: one by one")
         ->check(CLI::IsMember({-1, 1}));
     app.add_option("--seconds", options.seconds, "simulated time [s]; default: the level's duration")
-        ->check(CLI::Range(0.0, 1e9));
+        ->check(CLI::Range(0.0, MOST_SECONDS));
+    app.add_option(
+        "--until-calm", calm,
+        "SPEED,SECONDS, e.g. 0.01,5: ends earlier, once neither water nor sand was faster than SPEED [m/s] for SECONDS");
     app.add_option("--every", options.every, "time between frames [s]; default: a tenth of the recording")
         ->check(CLI::Range(1e-7, 1e9));
     app.add_option("--water-scale", options.water_scale, "depth drawn in deep blue [m]; default: from the first state")
@@ -211,6 +231,9 @@ int main_checked(int argc, char** argv) {
     options.frames = !no_frames;
     if (!size.empty()) {
         if (Failure failure = parse_size(size, options)) return fail(failure.message);
+    }
+    if (!calm.empty()) {
+        if (Failure failure = parse_calm(calm, options)) return fail(failure.message);
     }
     for (const std::string& dump : dumps) {
         if (Failure failure = parse_dump(dump, options.dumps)) return fail(failure.message);

@@ -51,9 +51,11 @@ struct Options {
 
     bool any_files = false; // the level's maps may lie anywhere
 
-    double seconds = -1;    // simulated time, -1 = the level's duration
-    double every = 0;       // between frames [s], 0 = a tenth of the recording
-    double water_scale = 0; // depth drawn in deep blue [m], 0 = derived
+    double seconds = -1;     // simulated time, -1 = the level's duration
+    double every = 0;        // between frames [s], 0 = a tenth of the recording
+    double calm_speed = 0;   // the recording ends once nothing is faster [m/s], 0 = it runs its seconds
+    double calm_seconds = 0; // for so long [s]
+    double water_scale = 0;  // depth drawn in deep blue [m], 0 = derived
     bool frames = true;
     bool jpeg = false; // of the contact sheet
     bool mp4 = false;

@@ -97,6 +97,11 @@ std::string format_table(const Report& report) {
            stats.time, report.ms_per_step(), report.passes_per_step());
     append(text, "time      %.2f s stepping (%.3g times real time), %.2f s in all, %d frames\n", report.stepping_seconds,
            report.stepping_seconds > 0 ? stats.time / report.stepping_seconds : 0.0, report.wall_seconds, report.frames);
+    if (report.calm_since)
+        append(text, "calm      since %.6g s: nothing faster than %g m/s\n", *report.calm_since, report.calm_speed);
+    else if (report.calm_speed > 0)
+        append(text, "calm      not yet: at the end water runs at %.3g m/s and sand at %.3g m/s; asked for is %g m/s\n",
+               stats.largest_water_speed, stats.largest_sand_speed, report.calm_speed);
     append(text, "beside it %.2f s loading before, %.2f s figures, %.2f s pictures\n", report.loading_seconds,
            report.figures_seconds, report.picture_seconds);
 
@@ -151,6 +156,7 @@ std::string format_summary(const Report& report) {
     json["completed"] = !report.interrupted && report.fault.empty();
     json["interrupted"] = report.interrupted;
     json["fault"] = report.fault;
+    if (report.calm_speed > 0) json["calm_since"] = report.calm_since ? nlohmann::ordered_json(*report.calm_since) : nullptr;
     json["grid"] = {{"nx", info.nx}, {"ny", info.ny}, {"dx", info.dx}, {"dt", info.dt}, {"substeps", info.substeps}};
     json["steps"] = stats.steps;
     json["simulated_seconds"] = stats.time;

@@ -1,6 +1,7 @@
 // What a run did: as a table for people and as JSON for programs.
 #pragma once
 #include "world.hpp"
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,14 +30,16 @@ struct Report {
     wadi_world_info info = {};
     std::vector<std::string> warnings;
     bool interrupted = false;
-    std::string fault;             // not empty: the device failed in mid-run
-    double wall_seconds = 0;       // everything after creation: steps, pictures, files
-    double loading_seconds = 0;    // the level and its world
-    double stepping_seconds = 0;   // steps alone
-    double processor_seconds = 0;  // processor time of all threads in them
-    double figures_seconds = 0;    // ledger, extremes and hash at the frames' times
-    double picture_seconds = 0;    // frames: read, drawn and written
-    std::uint64_t timed_steps = 0; // steps that stepping_seconds covers
+    double calm_speed = 0;            // asked for: the run ends once nothing is faster [m/s]; 0 = nobody did
+    std::optional<double> calm_since; // [s]
+    std::string fault;                // not empty: the device failed in mid-run
+    double wall_seconds = 0;          // everything after creation: steps, pictures, files
+    double loading_seconds = 0;       // the level and its world
+    double stepping_seconds = 0;      // steps alone
+    double processor_seconds = 0;     // processor time of all threads in them
+    double figures_seconds = 0;       // ledger, extremes and hash at the frames' times
+    double picture_seconds = 0;       // frames: read, drawn and written
+    std::uint64_t timed_steps = 0;    // steps that stepping_seconds covers
     int frames = 0;
     unsigned clock_readings = 0, clock_last = 0, clock_least = 0; // of the GPU while it stepped [MHz]
 

@@ -27,6 +27,7 @@ constexpr double MOST_FRAMES = 100000;
 constexpr const char* VIDEO = "recording.mp4";
 constexpr double CHUNK_SECONDS = 0.5;     // wall time between two looks at the time and the interrupt flag
 constexpr double GPU_CLOCK_SECONDS = 0.1; // between two readings of the GPU's clock
+constexpr double CALM_LOOKS = 8;          // at the speeds while they must stay below the bound of --until-calm
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -49,8 +50,11 @@ class Recording {
     Failure prepare_folder();
     Failure record();
     Failure advance(std::uint64_t target);
+    Failure step_to(std::uint64_t target);
+    Failure look_for_calm();
     Failure sample_frame(bool last);
     Failure write_dumps();
+    Failure write_dump(const DumpRequest& dump);
     Failure finish();
     const char* sheet_name() const { return options_.jpeg ? "contact_sheet.jpg" : "contact_sheet.png"; }
 
@@ -60,6 +64,10 @@ class Recording {
     double time_ = 0; // simulated so far [s]
     double seconds_ = 0;
     std::uint64_t steps_ = 0, done_ = 0;
+    std::uint64_t look_every_ = 0, next_look_ = 0; // steps; 0: nobody asked for calm
+    bool moved_ = false;                           // something was faster than the bound of calm
+    std::optional<double> slow_since_;             // [s]
+    bool calm_ = false;
     std::vector<std::uint64_t> frame_steps_; // increasing, first 0, last steps_
     std::size_t next_frame_ = 0;
     std::uint32_t chunk_ = 1;
@@ -93,6 +101,7 @@ Failure Recording::plan() {
         if (frame_steps_.empty() || step > frame_steps_.back()) frame_steps_.push_back(step);
     }
     frame_steps_.push_back(steps_);
+    if (options_.calm_speed > 0) look_every_ = std::max<std::uint64_t>(1, step_at(options_.calm_seconds / CALM_LOOKS, dt));
     for (const DumpRequest& dump : options_.dumps) {
         if (step_at(dump.time, dt) > steps_) {
             return {EXIT_BAD_INPUT, "--dump " + dump.field_name + "@" + dump.time_text + ": the recording ends at " +
@@ -136,7 +145,39 @@ Failure Recording::prepare_folder() {
     return {};
 }
 
+/// To the target, or to where the run is interrupted or calm.
 Failure Recording::advance(std::uint64_t target) {
+    if (look_every_ == 0) return step_to(target);
+    while (done_ < target && !calm_ && !common::interrupted()) {
+        if (Failure failure = step_to(std::min(target, next_look_))) return failure;
+        if (done_ != next_look_) continue;
+        if (Failure failure = look_for_calm()) return failure;
+        next_look_ += look_every_;
+    }
+    return {};
+}
+
+/// Calm follows motion: a level that begins at rest, or waits for its sources, runs until something has moved.
+Failure Recording::look_for_calm() {
+    wadi_world_stats stats;
+    const Clock::time_point start = Clock::now();
+    if (Failure failure = world_.read_stats(stats)) return failure;
+    report_.figures_seconds += seconds_since(start);
+    const double speed = std::max(stats.largest_water_speed, stats.largest_sand_speed);
+    if (!(speed <= options_.calm_speed)) {
+        moved_ = true;
+        slow_since_.reset();
+        return {};
+    }
+    if (!slow_since_) slow_since_ = time_;
+    const double least = options_.calm_seconds - 0.5 * world_.info().dt; // times are sums of steps
+    if (!moved_ || time_ - *slow_since_ < least) return {};
+    calm_ = true;
+    report_.calm_since = slow_since_;
+    return {};
+}
+
+Failure Recording::step_to(std::uint64_t target) {
     while (done_ < target && !common::interrupted()) {
         const std::uint32_t count = static_cast<std::uint32_t>(std::min<std::uint64_t>(chunk_, target - done_));
         const Clock::time_point start = Clock::now();
@@ -187,24 +228,31 @@ Failure Recording::sample_frame(bool last) {
     return {};
 }
 
+/// The fields asked for at this step; at the end of a run that got calm, those of later times as well.
 Failure Recording::write_dumps() {
-    std::vector<float> values;
     for (const DumpRequest& dump : options_.dumps) {
-        if (step_at(dump.time, world_.info().dt) != done_) continue;
-        if (Failure failure = world_.read_field(static_cast<wadi_field>(dump.field), values)) return failure;
-        const fs::path path = out_ / (dump.field_name + "_" + dump.time_text + "." + options_.dump_as);
-        const wadi_world_info& info = world_.info();
-        const common::GridPlace place = {info.nx, info.ny, info.dx, info.origin_x, info.origin_y};
-        const std::string error =
-            common::write_file(path, options_.dump_as == "asc"   ? common::encode_asc(values, place)
-                                     : options_.dump_as == "tif" ? common::encode_geotiff(values, place)
-                                                                 : common::encode_npy(values, info.nx, info.ny));
-        if (!error.empty()) return {EXIT_BAD_INPUT, error};
-        char text[128];
-        std::snprintf(text, sizeof text, "dump %s at t = %.9g s (step %llu, asked for %s s): ", dump.field_name.c_str(), time_,
-                      static_cast<unsigned long long>(done_), dump.time_text.c_str());
-        progress_->note(text + path.string());
+        const std::uint64_t step = step_at(dump.time, world_.info().dt);
+        if (step != done_ && !(calm_ && step > done_)) continue;
+        if (Failure failure = write_dump(dump)) return failure;
     }
+    return {};
+}
+
+Failure Recording::write_dump(const DumpRequest& dump) {
+    std::vector<float> values;
+    if (Failure failure = world_.read_field(static_cast<wadi_field>(dump.field), values)) return failure;
+    const fs::path path = out_ / (dump.field_name + "_" + dump.time_text + "." + options_.dump_as);
+    const wadi_world_info& info = world_.info();
+    const common::GridPlace place = {info.nx, info.ny, info.dx, info.origin_x, info.origin_y};
+    const std::string error =
+        common::write_file(path, options_.dump_as == "asc"   ? common::encode_asc(values, place)
+                                 : options_.dump_as == "tif" ? common::encode_geotiff(values, place)
+                                                             : common::encode_npy(values, info.nx, info.ny));
+    if (!error.empty()) return {EXIT_BAD_INPUT, error};
+    char text[128];
+    std::snprintf(text, sizeof text, "dump %s at t = %.9g s (step %llu, asked for %s s): ", dump.field_name.c_str(), time_,
+                  static_cast<unsigned long long>(done_), dump.time_text.c_str());
+    progress_->note(text + path.string());
     return {};
 }
 
@@ -215,16 +263,15 @@ Failure Recording::record() {
     stops.erase(std::unique(stops.begin(), stops.end()), stops.end());
     for (const std::uint64_t stop : stops) {
         if (Failure failure = advance(stop)) return failure;
-        const bool ended_early = done_ < stop;
-        if (ended_early || stop == frame_steps_[next_frame_]) {
-            if (Failure failure = sample_frame(ended_early || stop == steps_)) return failure;
+        const bool interrupted = done_ < stop && !calm_, last = interrupted || calm_ || stop == steps_;
+        if (last || stop == frame_steps_[next_frame_]) {
+            if (Failure failure = sample_frame(last)) return failure;
             ++next_frame_;
         }
-        if (ended_early) {
-            report_.interrupted = true;
-            return {};
-        }
+        report_.interrupted = interrupted;
+        if (interrupted) return {};
         if (Failure failure = write_dumps()) return failure;
+        if (calm_) return {};
     }
     return {};
 }
@@ -279,6 +326,7 @@ int Recording::run() {
     report_.level = options_.level_name;
     report_.info = info;
     report_.warnings = world_.warnings();
+    report_.calm_speed = options_.calm_speed;
     std::printf("%s: %d x %d cells of %g m, %.6g s in %llu steps, on %s: %s\n", options_.level_name.c_str(), info.nx, info.ny,
                 info.dx, seconds_, static_cast<unsigned long long>(steps_), info.backend, info.device_name);
     std::fflush(stdout);

@@ -181,8 +181,8 @@ bool set_method(Method& method, const std::string& name) {
 
 TimeSeries constant(double value) { return {{{0, value}}}; }
 
-// A water disc that pushes, a sand box, a sink, a point, and one source that would pass the declared largest height.
-// Shapes keep off cell and face centres, so that no rounding decides what is inside.
+// A water disc that pushes, a sand box, a sink, a point, one source that would pass the declared largest height, and two that
+// hold levels. Shapes keep off cell and face centres, so that no rounding decides what is inside.
 void add_sources(Scene& scene) {
     auto& s = scene.settings;
     const double lx = s.grid.nx * s.grid.dx, ly = s.grid.ny * s.grid.dx, dx = s.grid.dx;
@@ -210,7 +210,16 @@ void add_sources(Scene& scene) {
     flood.radius = 0.61 * dx;
     flood.set_velocity = false;
     flood.rate = constant(2 * s.method.largest_height / s.dt);
-    s.sources = {disc, box, sink, point, flood};
+    Source lake = sink; // over half the grid, where it lacks water and where it has too much
+    lake.box = {0.47 * lx, -0.3 * dx, 0.97 * lx + 0.17 * dx, 0.61 * ly + 0.17 * dx};
+    lake.rate = {};
+    lake.level = constant(1.27);
+    Source weir = lake;
+    weir.box = {-0.3 * dx, 0.53 * ly, 0.61 * lx + 0.17 * dx, 0.97 * ly + 0.17 * dx};
+    weir.rate = constant(3.3);
+    weir.level = constant(0.61);
+    weir.drain = true;
+    s.sources = {disc, box, sink, point, flood, lake, weir};
     if (scene.name != "point_jet") return;
     point.center = {0.5 * lx + 0.2 * dx, 0.5 * ly + 0.2 * dx};
     point.set_velocity = true;

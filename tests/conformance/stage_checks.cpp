@@ -80,7 +80,11 @@ void count_sources(const StageRun& run, int i, int j, Counts& counts) {
                               : x >= source.box[0] && y >= source.box[1] && x < source.box[2] && y < source.box[3];
         if (!here) continue;
         const bool is_water = source.material == SourceMaterial::water;
-        const double depth = wide(run.pilot.input.source[n].x);
+        const vec4& now = run.pilot.input.source[n];
+        double depth = wide(now.x);
+        if (!source.level.samples.empty())
+            depth = std::clamp(std::max(wide(now.y) - wide(run.before("terrain", i, j)), 0.0) - water,
+                               source.drain ? -depth : 0.0, depth);
         if (depth > 0 && wide(run.before("terrain", i, j)) + water + sand + depth > wide(run.params.largest_height)) {
             counts[LEDGER_REFUSED].add(depth, run.params);
             continue;

@@ -62,10 +62,10 @@ Json source_of(const Source& source) {
         json["center"] = source.center;
     }
     if (source.shape == SourceShape::disc) json["radius"] = source.radius;
-    if (source.discharge.samples.empty())
-        json["rate"] = series(source.rate);
-    else
-        json["discharge"] = series(source.discharge);
+    if (!source.rate.samples.empty()) json["rate"] = series(source.rate);
+    if (!source.discharge.samples.empty()) json["discharge"] = series(source.discharge);
+    if (!source.level.samples.empty()) json["level"] = series(source.level);
+    if (source.drain) json["drain"] = true;
     if (source.set_velocity) json["velocity"] = source.velocity;
     return json;
 }

@@ -261,6 +261,16 @@ Case make_case(std::uint64_t seed) {
         s.material.flow_beta = random.log(0.01, 10);
         s.material.flow_gamma = random.pick({0.0, random.real(0, 2)});
     }
+    for (Source& source : s.sources) {
+        if (source.material != SourceMaterial::water || !random.chance(0.3)) continue;
+        source.level = {{{0, std::min(random.real(-0.2, 2) * size, s.method.largest_height)}}};
+        source.drain = random.chance(0.4);
+        source.set_velocity = false;
+        for (TimeSeries* most : {&source.rate, &source.discharge}) {
+            if (random.chance(0.5)) *most = {};
+            for (auto& [time, value] : most->samples) value = std::fabs(value);
+        }
+    }
     return c;
 }
 

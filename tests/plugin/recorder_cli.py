@@ -6,6 +6,7 @@ import csv
 import json
 import math
 import os
+import re
 import shutil
 import signal
 import struct
@@ -283,6 +284,40 @@ def test_check(recorder):
     recorder.record("--seconds", "0.1", "--no-frames", "--check")
 
 
+def test_until_calm(recorder):
+    """--until-calm ends a run that swings and comes to rest where it says, in the state that a run of those seconds has. Controls: the same
+    without it, a speed that is not reached, and a push late in the run, ahead of which the world rests."""
+    swings = {"format_version": 1, "name": "swings", "grid": {"nx": 24, "ny": 8, "dx": 0.1}, "dt": 0.01, "duration": 30,
+              "material": {"manning": 0.1}, "water": [{"shape": "plane", "height": 0.04},
+                                                      {"shape": "box", "from": [0, 0], "to": [1.2, 0.8], "height": 0.03}]}
+    pushed = {**swings, "name": "pushed", "water": swings["water"][:1], "edits": [
+        {"time": 8, "kind": "push", "shape": "disc", "center": [1.2, 0.4], "radius": 0.4, "velocity": [1, 0]}]}
+    for level in (swings, pushed):
+        (recorder.folder / f"{level['name']}.json").write_text(json.dumps(level), encoding="utf-8")
+
+    def summary(name, *arguments):
+        text = recorder.run(f"{name}.json", "--backend", recorder.backend, "--no-frames", "--summary", "calm.json", *arguments).stdout
+        return json.loads((recorder.folder / "calm.json").read_text(encoding="utf-8")), text
+
+    whole, _ = summary("swings")
+    assert "calm_since" not in whole and abs(whole["simulated_seconds"] - 30) < 0.02
+    calm, text = summary("swings", "--until-calm", "0.05,2", "--dump", "W@0,30", "--out", "calm")
+    since, end = calm["calm_since"], calm["simulated_seconds"]
+    assert calm["completed"] and 1 < since < 20 and 1.99 < end - since < 2.3, (since, end)
+    assert f"calm      since {since:.6g} s: nothing faster than 0.05 m/s" in text, text
+    assert (recorder.folder / "calm" / "W_30.npy").exists(), "what is asked for later shows the end"
+    assert summary("swings", "--seconds", end)[0]["hash"] == calm["hash"]
+    for end, slow in ((since, True), (since - 0.25, False)):  # two seconds over eight looks
+        last = float(re.search(r"speed of water \[m/s\] +(\S+)", summary("swings", "--seconds", end)[1])[1])
+        assert (last <= 0.05) is slow, (end, last)
+    never, text = summary("swings", "--until-calm", "1e-9,2", "--seconds", 10)
+    assert never["calm_since"] is None and abs(never["simulated_seconds"] - 10) < 0.02 and "calm      not yet" in text, text
+    late, _ = summary("pushed", "--until-calm", "0.05,2")
+    assert late["calm_since"] > 8, late["calm_since"]
+    for bad in ("0.02", "0,5", "-1,5", "nan,5", "0.02,0", "0.02,x", "2e4,5", "0.02,5,1"):
+        recorder.refuse("swings.json", "--until-calm", bad, says=[f"--until-calm {bad}", "above 0", "1e-7 ... 1e9 s"])
+
+
 def test_summary(recorder):
     def summary(*arguments):
         recorder.record("--seconds", "0.5", "--no-frames", "--summary", "summary.json", *arguments)
@@ -408,7 +443,7 @@ def main():
     parser.add_argument("--backend", default="cpu")
     parser.add_argument("--nvml", help="libnvidia-ml.so.1 of fake_nvml.c")
     options = parser.parse_args()
-    tests = [test_frames, test_dumps, test_points, test_gauge_beside_wall, test_check, test_summary]
+    tests = [test_frames, test_dumps, test_points, test_gauge_beside_wall, test_check, test_until_calm, test_summary]
     if options.backend == "cpu":  # what meets no device
         tests += [test_lists, test_plan, test_refusals, test_default_folder, test_video_refusals, test_video]
     if os.name == "posix":

@@ -52,9 +52,19 @@ template <class Real> void Solver<Real>::apply_source(const Source& source, doub
     const Real amount = static_cast<Real>(quanta(total, rate * settings.dt));
     const bool is_water = source.material == SourceMaterial::water;
     if (!has(is_water ? EFFECT_WATER : EFFECT_SAND)) return;
+    const bool holds = !source.level.samples.empty(), bounded = !source.rate.samples.empty() || !source.discharge.samples.empty();
+    double height = sample(source.level, time());
+    if (P.quantum > 0) height = std::floor(height / static_cast<double>(P.quantum)) * static_cast<double>(P.quantum);
+    const auto missing = [&](std::size_t cell) {
+        const Real most = bounded ? amount : static_cast<Real>(2 * P.largest_height);
+        return std::clamp(std::max(static_cast<Real>(height) - terrain[cell], Real(0)) - water[cell],
+                          source.drain ? -most : Real(0), most);
+    };
     for (int j = 0; j < x.ny; ++j)
         for (int i = 0; i < x.nx; ++i) {
-            if (covers(i, j)) add_depth(is_water ? water : sand, x.cell(i, j), amount, is_water ? water_added : sand_added);
+            const std::size_t cell = x.cell(i, j);
+            if (covers(i, j))
+                add_depth(is_water ? water : sand, cell, holds ? missing(cell) : amount, is_water ? water_added : sand_added);
         }
 
     if (!source.set_velocity || !is_water || !(rate > 0)) return;

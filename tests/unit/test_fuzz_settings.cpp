@@ -50,6 +50,7 @@ TEST_CASE("random worlds draw what levels have beside their settings: kinds of s
             drawn.insert("source " + std::to_string(static_cast<int>(source.shape)));
             drawn.insert(source.material == SourceMaterial::sand ? "source of sand" : "source of water");
             drawn.insert(source.discharge.samples.empty() ? "rate" : "discharge");
+            if (!source.level.samples.empty()) drawn.insert(source.drain ? "source that holds and drains" : "source that holds");
             if (source.set_velocity) drawn.insert("source with velocity");
         }
         if (!s.rain.samples.empty()) drawn.insert("rain");
@@ -60,9 +61,26 @@ TEST_CASE("random worlds draw what levels have beside their settings: kinds of s
         drawn.insert("method " + s.method.name);
     }
     CAPTURE(drawn.size());
-    for (const char* what : {"side 0", "side 1", "side 2", "side 3", "source 0", "source 1", "source 2", "source of sand",
-                             "source of water", "rate", "discharge", "source with velocity", "rain", "evaporation", "roughness",
-                             "velocities", "method robust", "method published"})
+    for (const char* what : {"side 0",
+                             "side 1",
+                             "side 2",
+                             "side 3",
+                             "source 0",
+                             "source 1",
+                             "source 2",
+                             "source of sand",
+                             "source of water",
+                             "rate",
+                             "discharge",
+                             "source with velocity",
+                             "source that holds",
+                             "source that holds and drains",
+                             "rain",
+                             "evaporation",
+                             "roughness",
+                             "velocities",
+                             "method robust",
+                             "method published"})
         CHECK_MESSAGE(drawn.contains(what), what);
     CHECK(drawn.contains("edit " + std::to_string(static_cast<int>(EditKind::push))));
 }

@@ -185,6 +185,25 @@ TEST_CASE("settings: sources and rain") {
     CHECK(says(with([](Source& s) { s.rate.samples = {{0, 1}, {1, 2e4}}; }), "sources[0].rate[1]: 20000 is outside"));
     CHECK(with([](Source& s) { std::swap(s.rate, s.discharge); }).empty());
     CHECK(says(with([](Source& s) { s.discharge = s.rate; }), "sources[0]: give only one of rate and discharge"));
+    const auto holding = [&](const std::function<void(Source&)>& change) {
+        return with([&](Source& s) {
+            s.level.samples = {{0, 3}};
+            change(s);
+        });
+    };
+    CHECK(holding([](Source&) {}).empty());
+    CHECK(holding([](Source& s) { s.rate.samples.clear(), s.drain = true; }).empty());
+    CHECK(holding([](Source& s) { std::swap(s.rate, s.discharge); }).empty());
+    CHECK(says(holding([](Source& s) {
+                   s.level.samples = {{0, 3}, {1, 17}};
+               }),
+               "sources[0].level[1]: 17 is outside -16 ... 16 (method.largest_height)"));
+    CHECK(says(holding([](Source& s) { s.level.samples = {{0, NOT_A_NUMBER}}; }), "sources[0].level"));
+    CHECK(says(holding([](Source& s) { s.rate.samples = {{0, -1}}; }), "sources[0].rate: -1 is outside 0 ... 10000"));
+    CHECK(says(holding([](Source& s) { s.material = SourceMaterial::sand; }),
+               "sources[0].level: only a source of water holds one"));
+    CHECK(says(holding([](Source& s) { s.set_velocity = true; }), "sources[0].velocity: a source with a level has none"));
+    CHECK(says(with([](Source& s) { s.drain = true; }), "sources[0].drain: only a source with a level has one"));
     CHECK(says(with([](Source& s) {
                    s.rate.samples.clear(), s.discharge.samples = {{0, 2e9}};
                }),

@@ -117,6 +117,8 @@ struct Source {
     bool set_velocity = false;
     std::array<double, 2> velocity = {0, 0}; // forced on the water's faces inside while the rate is positive [m/s]
     TimeSeries discharge = {};               // volume per time, shared by the cells that it covers [m3/s]
+    TimeSeries level = {}; // surface that a source of water holds in each cell [m]; rate or discharge is then the most it brings
+    bool drain = false;    // with a level: takes away what stands above, too
 };
 
 /// What the level wants of one effect: derived from content, or forced.

@@ -163,12 +163,20 @@ Status check_source(const Settings& settings, std::size_t index) {
             return refuse(path + ": lies outside the grid, which spans 0 ... " + number_text(lengths[axis]) + " m in " +
                           (axis == 0 ? "x" : "y"));
     }
-    if (source.rate.samples.empty() == source.discharge.samples.empty())
-        return refuse(path + (source.rate.samples.empty() ? ".rate: missing; depth per time in m/s, or discharge in m3/s"
-                                                          : ": give only one of rate and discharge"));
-    if (Status status = check_series(path + ".rate", source.rate, -RATE_MOST, RATE_MOST); !status) return status;
-    if (Status status = check_series(path + ".discharge", source.discharge, -DISCHARGE_MOST, DISCHARGE_MOST); !status)
+    const bool holds = !source.level.samples.empty(), rated = !source.rate.samples.empty();
+    if (rated && !source.discharge.samples.empty()) return refuse(path + ": give only one of rate and discharge");
+    if (!holds && !rated && source.discharge.samples.empty())
+        return refuse(path + ".rate: missing; depth per time in m/s, or discharge in m3/s, or a level in m");
+    const double share_taken = holds ? 0 : -1; // with a level they are the most that it moves
+    if (Status status = check_series(path + ".rate", source.rate, share_taken * RATE_MOST, RATE_MOST); !status) return status;
+    if (Status status = check_series(path + ".discharge", source.discharge, share_taken * DISCHARGE_MOST, DISCHARGE_MOST);
+        !status)
         return status;
+    const double most = settings.method.largest_height;
+    if (Status status = check_series(path + ".level", source.level, -most, most, HEIGHT_LIMIT); !status) return status;
+    if (source.drain && !holds) return refuse(path + ".drain: only a source with a level has one; a rate below 0 takes away");
+    if (holds && source.material != SourceMaterial::water) return refuse(path + ".level: only a source of water holds one");
+    if (holds && source.set_velocity) return refuse(path + ".velocity: a source with a level has none");
     if (!source.set_velocity) return ok_status();
     if (source.material != SourceMaterial::water) return refuse(path + ".velocity: only a source of water sets one");
     for (std::size_t axis = 0; axis < 2; ++axis)

@@ -13,7 +13,8 @@ bool ever_above_zero(const TimeSeries& series) {
 
 bool source_adds(const Settings& s, SourceMaterial material) {
     return std::any_of(s.sources.begin(), s.sources.end(), [&](const Source& source) {
-        return source.material == material && (ever_above_zero(source.rate) || ever_above_zero(source.discharge));
+        return source.material == material &&
+               (ever_above_zero(source.rate) || ever_above_zero(source.discharge) || !source.level.samples.empty());
     });
 }
 

@@ -41,6 +41,10 @@ std::uint64_t level_digest(const Settings& s) {
             add(value);
         series(source.rate);
         if (!source.discharge.samples.empty()) series(source.discharge);
+        if (!source.level.samples.empty()) {
+            series(source.level);
+            add(double(source.drain));
+        }
     }
     series(s.rain);
     series(s.evaporation);

@@ -103,7 +103,7 @@ std::vector<vec4> source_shapes(const Settings& settings) {
             set(x - 0.25 * dx, y - 0.25 * dx, x + 1.25 * dx, y + 1.25 * dx);
         }
         shapes[2 * n + 1] = {kind, static_cast<float>(s.material == SourceMaterial::water ? MATERIAL_WATER : MATERIAL_SAND),
-                             static_cast<float>(pieces.box_of[n]), 0};
+                             static_cast<float>(pieces.box_of[n]), s.level.samples.empty() ? 0.0F : 1.0F};
     }
     for (std::size_t n = 0; n < pieces.boxes.size(); ++n) {
         const CellBox& box = pieces.boxes[n];

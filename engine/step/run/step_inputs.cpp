@@ -60,6 +60,21 @@ float StepInputs::advance(Total& total, double rate) const {
     return static_cast<float>(difference * quantum_);
 }
 
+vec4 StepInputs::source_input(std::size_t n, double time) {
+    const auto& source = settings_.sources[n];
+    const double rate = rate_of(n, time);
+    if (source.level.samples.empty()) {
+        const bool velocity = source.set_velocity && rate > 0;
+        return {advance(totals_[n], rate), static_cast<float>(source.velocity[0]), static_cast<float>(source.velocity[1]),
+                velocity ? 1.0F : 0.0F};
+    }
+    const bool bounded = !source.rate.samples.empty() || !source.discharge.samples.empty();
+    const double most = 2 * settings_.method.largest_height; // more than any cell lacks
+    const double level = source.level.at(time);
+    return {bounded ? advance(totals_[n], rate) : static_cast<float>(most),
+            static_cast<float>(quantum_ > 0 ? std::floor(level / quantum_) * quantum_ : level), source.drain ? 1.0F : 0.0F, 0.0F};
+}
+
 void StepInputs::set_sides(StepInput& input, double time) {
     const double k = settings_.dt / settings_.grid.dx;
     for (std::size_t n = 0; n < 4; ++n) {
@@ -102,13 +117,7 @@ StepInput StepInputs::next(std::uint64_t step) {
     const std::size_t sources = settings_.sources.size();
     input.rain = advance(totals_[sources], settings_.rain.at(time));
     input.evaporation = advance(totals_[sources + 1], settings_.evaporation.at(time));
-    for (std::size_t n = 0; n < sources; ++n) {
-        const auto& source = settings_.sources[n];
-        const double rate = rate_of(n, time);
-        const bool velocity = source.set_velocity && rate > 0;
-        input.source[n] = {advance(totals_[n], rate), static_cast<float>(source.velocity[0]),
-                           static_cast<float>(source.velocity[1]), velocity ? 1.0F : 0.0F};
-    }
+    for (std::size_t n = 0; n < sources; ++n) input.source[n] = source_input(n, time);
     set_sides(input, time);
     return input;
 }

@@ -29,6 +29,7 @@ class StepInputs {
     float advance(Total& total, double rate) const;
     /// Depth per time of source n [m/s].
     double rate_of(std::size_t n, double time) const;
+    vec4 source_input(std::size_t n, double time);
     void set_sides(StepInput& input, double time);
 
     const Settings settings_;

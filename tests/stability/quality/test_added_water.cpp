@@ -23,6 +23,83 @@ TEST_CASE("a discharge arrives on time to one quantum a face however small it is
     CHECK(std::abs(total(cells_of(*world, "water_height")) - 400 * 5e-6) <= 400 * height_quantum(scene.settings.method));
 }
 
+TEST_CASE("a source with a level fills its cells up to it, keeps them there, and the books have every quantum") {
+    const auto pool = [](bool drain, double rate) {
+        auto scene = flat_scene(24, 16, 0.5, 0.01);
+        scene.fill(scene.fields.terrain, [](double x, double y) { return 0.1 * std::hypot(x - 6, y - 4); });
+        Source source;
+        source.center = {6, 4};
+        source.radius = 1;
+        source.level.samples = {{0, 0.30001}}; // no whole quantum
+        source.drain = drain;
+        if (rate > 0) source.rate.samples = {{0, rate}};
+        scene.settings.sources = {source};
+        return scene;
+    };
+    const auto surface = [](World& world, int i, int j) {
+        return static_cast<double>(cells_of(world, "terrain").at(i, j)) +
+               static_cast<double>(cells_of(world, "water_height").at(i, j));
+    };
+    on_every_backend(pool(true, 0), [&](World& world) {
+        step(world, 1);
+        CHECK(std::abs(surface(world, 12, 8) - 0.30001) < 0.005); // at once; the step itself moves some of it
+        step(world, 6000);
+        const auto stats = stats_of(world);
+        MESSAGE("cone: " << surface(world, 12, 8) << " m in the middle, " << surface(world, 16, 8) << " m beside");
+        CHECK(std::abs(surface(world, 12, 8) - 0.30001) < 1e-4);
+        CHECK(std::abs(surface(world, 16, 8) - 0.30001) < 1e-3); // outside the disc water has found the level
+        CHECK(stats.water_quanta == stats.water_initial + stats.ledger.water_in - stats.ledger.water_out);
+        CHECK(stats.ledger.water_in > 0);
+    });
+    // A rate is the most that it moves: 1 mm/s on the disc's cells.
+    auto slow = make_world(pool(false, 1e-3));
+    step(*slow, 100);
+    const double cells = static_cast<double>(stats_of(*slow).ledger.water_in) * height_quantum(slow->settings().method) / 1e-3;
+    CHECK(cells > 11);
+    CHECK(cells < 13.001); // a disc of 3.14 m2 has 12 cells
+    // What stands above stays, or with drain goes; control: the same without.
+    for (const bool drain : {false, true}) {
+        auto scene = pool(drain, 0);
+        scene.fill(scene.fields.water, [](double x, double y) { return std::max(0.35 - 0.1 * std::hypot(x - 6, y - 4), 0.0); });
+        auto world = make_world(scene);
+        step(*world, 6000);
+        const auto stats = stats_of(*world);
+        MESSAGE((drain ? "drained to " : "stays at ") << surface(*world, 12, 8));
+        CHECK(std::abs(surface(*world, 12, 8) - (drain ? 0.30001 : 0.35)) < 1e-3);
+        CHECK((stats.ledger.water_out > 0) == drain);
+        CHECK(stats.water_quanta == stats.water_initial + stats.ledger.water_in - stats.ledger.water_out);
+    }
+    // Under a higher ground, and where a column would pass the largest height, nothing comes.
+    auto high = pool(true, 0);
+    high.fill(high.fields.terrain, [](double, double) { return 1; });
+    auto world = make_world(high);
+    step(*world, 10);
+    CHECK(total(cells_of(*world, "water_height")) == 0);
+}
+
+TEST_CASE("a source's level follows its series, and a world that is saved and loaded goes on with the same bits") {
+    auto scene = flat_scene(16, 12, 0.5, 0.01);
+    Source source;
+    source.shape = SourceShape::box;
+    source.box = {2, 2, 5, 4};
+    source.level.samples = {{0, 0.1}, {1, 0.3}, {2, 0.2}};
+    source.discharge.samples = {{0, 20}};
+    source.drain = true;
+    scene.settings.sources = {source};
+    auto one = make_world(scene), other = make_world(scene);
+    step(*one, 110);
+    const auto bytes = save(*one);
+    step(*one, 150);
+    REQUIRE(other->snapshots().load(bytes));
+    step(*other, 150);
+    CHECK(hash_of(*one) == hash_of(*other));
+    auto constant = scene;
+    constant.settings.sources[0].level.samples = {{0, 0.3}};
+    auto high = make_world(constant);
+    step(*high, 260);
+    CHECK(hash_of(*high) != hash_of(*one));
+}
+
 TEST_CASE("rain brings no velocity: a stream that it falls on keeps its momentum") {
     for (const int order : {1, 2}) {
         auto scene = flat_scene(200, 1, 0.5, 0.02);
