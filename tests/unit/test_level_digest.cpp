@@ -11,7 +11,7 @@ TEST_CASE("level digest: of the shipped levels, which older snapshots hold") {
     // Changes only where a level or the settings that every level has change: then snapshots and command logs of before are
     // refused, and these numbers are to be replaced.
     const std::pair<const char*, std::uint64_t> levels[] = {
-        {"beach", 13718163372800215206u},     {"canyon", 3014186152427248135u}, {"castle", 12928769157647407096u},
+        {"beach", 3791430135325981710u},      {"canyon", 3014186152427248135u}, {"castle", 12928769157647407096u},
         {"dam_break", 15137642373119595880u}, {"flush", 10252739562935237152u}, {"letters", 13563642716355832467u},
         {"piles", 654329089190002482u},       {"seepage", 793414438401673331u}, {"spring", 16250010896528242060u},
         {"wadi", 785892584679966680u},
