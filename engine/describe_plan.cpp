@@ -31,6 +31,7 @@ std::string describe_plan(const WorldState& world) {
     std::ostringstream out;
     out << "grid " << world.layout().nx << " x " << world.layout().ny << ", dx " << settings.grid.dx << " m, dt " << settings.dt
         << " s, method " << settings.method.name << ", T = " << plan.substeps;
+    if (plan.water_substeps > 1) out << ", N = " << plan.water_substeps;
     for (const auto& choice : choice_table())
         if ((plan.effects & choice.bit) != 0) out << ", " << choice.name;
     out << "\neffects\n";
@@ -42,9 +43,12 @@ std::string describe_plan(const WorldState& world) {
         out << line;
     }
     out << "stages " << (plan.fused ? "fused where the effects allow" : "one by one") << "\n";
-    out << "passes: " << plan.water_passes.size() << " per water step, " << plan.substep_passes.size() << " per sand substep, "
-        << plan.water_passes.size() + plan.substep_passes.size() * static_cast<std::size_t>(plan.substeps)
-        << " in all\n  water step\n";
+    out << "passes: " << plan.water_dispatches() << " per water step, " << plan.substep_passes.size() << " per sand substep, "
+        << plan.dispatches() << " in all\n  water step\n";
+    if (plan.water_substeps > 1 && plan.again_to > plan.again_from)
+        out << "    (" << plan.again_to - plan.again_from << " passes from "
+            << compute::stage_table()[static_cast<std::size_t>(plan.water_passes[plan.again_from].stage)].name << " on run "
+            << plan.water_substeps << " times)\n";
     list_passes(out, plan.water_passes);
     if (!plan.start_passes.empty()) {
         out << "  step 0 as well, ahead of the fluxes\n";

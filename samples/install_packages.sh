@@ -8,9 +8,9 @@ packages_of[demo]="build-essential cmake ninja-build python3 libglm-dev nlohmann
     glslang-tools spirv-tools libvulkan-dev libvulkan-volk-dev mesa-vulkan-drivers libglfw3-dev libimgui-dev" # mesa: a software device
 [[ ! -e /dev/nvidiactl ]] || packages_of[demo]+=" libegl1 libglvnd0 libgl1 libopengl0 libglx0 libgles2" # NVIDIA's Vulkan driver loads these
 packages_of[viewer]="${packages_of[demo]} ffmpeg" # for its videos
-packages_of[import]="${packages_of[demo]} libtiff-dev" # TIFFs in wadi-import
+packages_of[import]="${packages_of[demo]} libtiff-dev libtinyexr-dev" # TIFFs and EXRs in wadi-import
 # To run all tests: the viewer in a window, validation layers, the C# binding, arrays in Python.
-packages_of[tests]="${packages_of[viewer]} libtiff-dev doctest-dev python3-numpy pkg-config vulkan-validationlayers xvfb twm xdotool mono-mcs mono-runtime"
+packages_of[tests]="${packages_of[viewer]} libtiff-dev libtinyexr-dev doctest-dev python3-numpy pkg-config vulkan-validationlayers xvfb twm xdotool mono-mcs mono-runtime"
 packages_of[contributing]="clang-format-14 pre-commit" # beside the tests: CONTRIBUTING.md
 # Lanes of tests/platforms, beside the tests.
 packages_of[windows]="g++-mingw-w64-x86-64-posix wine64"

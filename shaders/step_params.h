@@ -56,7 +56,6 @@ struct WorldParams {
     int ny;                     // cells along y
     int pitch;                  // floats from one row to the next
     int strips;                 // ledger strips: ceil((ny + 1) / STRIP)
-    int substeps;               // T: sand substeps per water step
     int source_count;
     int source_boxes;           // boxes of cells that hold all sources; no two overlap
     int source_rows;            // rows of one column in a piece of a box
@@ -76,7 +75,7 @@ struct WorldParams {
     float dry_threshold;        // eps [m]
     float film;                 // sand no deeper than this has no velocity [m]
 
-    // water step
+    // water substep, dtw = dt/N; dt in what follows is dtw
     float k;                    // dt/dx [s/m]
     float water_velocity_clamp; // alpha dx/dt [m/s]
     float shock_viscosity;      // c1 dt sqrt(g)/dx [1/sqrt(m)], NUMERICS 2.3; 0 = off
@@ -93,13 +92,16 @@ struct WorldParams {
     float bed_shear_threshold;  // stress over rho_w below which sand stays [m2/s2]
     float bed_load;             // 8/((rho_s/rho_w - 1) g) [s2/m]
     float bed_slope_number;     // 2/dx: how the bed's slope turns bed load downhill [1/m]
-    float bed_slope_cap;        // keeps that stable: 0.2 dx/dt [m/s]
+    float bed_slope_cap;        // keeps that stable: 0.2 dx over the step [m/s]
     float limiter;              // 1 = outflow limiter on, 0 = off
-    float inv_substeps;         // 1/T
+    float water_drag;           // dt c_e [kg/m3]
+    float step_k;               // k of the whole step, N k [s/m]
+    float inv_step_k2;          // 1/step_k^2 [m2/s2]
+    float inv_substeps;         // N/T: water substeps per sand substep
 
     // sand substep
     float ks;                   // dts/dx [s/m]
-    float dts;                  // dt/T [s]
+    float dts;                  // the step over T [s]
     float sand_velocity_clamp;  // alpha dx/dts [m/s]
     float sand_gravity_cap;     // 0.25/ks^2 [m2/s2]; 1e30 = no cap
     float density_ratio;        // rho_w/rho_s
@@ -190,7 +192,7 @@ struct EditInput {
 
 // What changes with every water step. At most 2304 bytes.
 struct StepInput {
-    int step;                   // index of the water step
+    int step;                   // index of the step
     float rain;                 // depth of rain in this step [m], a whole number of quanta
     float evaporation;          // largest depth that evaporates in this step [m]
     float interpolation;        // of published outputs: 0 = previous, 1 = current
@@ -198,7 +200,7 @@ struct StepInput {
     vec4 side[4];               // west, east, south, north: discharge per width [m2/s], level [m] or an outflow's slope,
                                 // least ghost depth (negative: the ghost depth) or the wave's elevation [m],
                                 // first and last index of the open span
-    vec4 side_pace[4];          // of waves: dt over the time below which they leave (0: four times the grid's length over a wave's speed)
+    vec4 side_pace[4];          // of waves: dt over the time below which they leave (0: by the grid); share of bed load; z: open_sides
     EditInput edit[MAX_EDITS];
     vec4 wake[MAX_WAKES];       // tiles woken in this step: first column, row, last column, row
     int edit_count;             // edits in this submission of apply_edits

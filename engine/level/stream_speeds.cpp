@@ -101,7 +101,7 @@ void warn_streams(const Settings& s, const InitialFields& fields, std::vector<st
         if (s.sources[n].material == SourceMaterial::water) streams.push_back(stream_of(s.sources[n], s.grid, n));
     for (std::size_t n = 0; n < s.sides.size(); ++n)
         if (s.sides[n].kind == SideKind::discharge) streams.push_back(stream_of(s.sides[n], s.grid, n));
-    const double clamp = s.method.velocity_clamp * s.grid.dx / s.dt;
+    const double clamp = s.method.velocity_clamp * s.grid.dx / s.water_dt();
     for (const Stream& stream : streams) {
         if (stream.per_width <= 0) continue;
         const Run run = run_of(s, fields.terrain, stream);
@@ -109,8 +109,10 @@ void warn_streams(const Settings& s, const InitialFields& fields, std::vector<st
         const auto rounded = [](double value, double parts) { return number_text(std::round(value * parts) / parts); };
         warnings.push_back(stream.name + ": " + rounded(stream.per_width, 1000) + " m2/s that run down a slope of " +
                            rounded(run.slope, 1000) + " come to some " + rounded(run.speed, 100) +
-                           " m/s but will be held at velocity_clamp dx/dt = " + rounded(clamp, 100) + " m/s; use dt <= " +
-                           at_most(s.method.velocity_clamp * s.grid.dx / run.speed) + " s, or more bed_friction or manning");
+                           " m/s but will be held at velocity_clamp dx/dt = " + rounded(clamp, 100) + " m/s; use " +
+                           longest_dt(s, s.method.velocity_clamp * s.grid.dx / run.speed) +
+                           or_water_substeps(s, s.method.velocity_clamp * s.grid.dx / run.speed) +
+                           ", or more bed_friction or manning");
     }
 }
 

@@ -23,9 +23,10 @@ constexpr double RELIEF = 0.125;     // height_range of integer maps, as a share
 constexpr double HEADROOM = 1.5;     // largest_height over the highest terrain
 constexpr double LEAST_HEADROOM = 8; // [m]
 constexpr double DURATION = 60;      // per metre of cell size, so that large cells get as many steps [s]
-constexpr double RAIN = 0.15;    // falls in the first half of the duration, less on cells below 1 m; then streams are left [m]
-constexpr double MANNING = 0.03; // of a clean river
-constexpr double DEGREES = 0.02; // cells below this are in degrees rather than metres
+constexpr double RAIN = 0.15;      // falls in the first half of the duration, less on cells below 1 m; then streams are left [m]
+constexpr double MANNING = 0.03;   // of a clean river
+constexpr double SEA_LEAST = 0.05; // share of the map below 0
+constexpr double DEGREES = 0.02;   // cells below this are in degrees rather than metres
 
 /// Integer maps: black = 0, white = the relief, whatever range of greys the map uses. NPY and ASC: as stored.
 Status scale_heights(Map& map, const std::string& path) {
@@ -52,6 +53,19 @@ void leave_outside(Map& map, double cell) {
         "\"holes\" of a level's map says otherwise");
 }
 
+/// Ground below 0 on a map of elevations is as a rule a sea's bed, of which the map says nothing.
+void note_sea(Map& map) {
+    if (map.integer) return;
+    const auto below = std::count_if(map.values.begin(), map.values.end(), [](float height) { return height < 0; });
+    const double share = static_cast<double>(below) / static_cast<double>(map.values.size());
+    if (share < SEA_LEAST || below == std::ssize(map.values)) return;
+    const auto deepest = static_cast<double>(*std::min_element(map.values.begin(), map.values.end()));
+    map.notes.push_back(
+        number_text(std::round(100 * share)) + " % of it lies below 0, down to " + number_text(std::round(10 * deepest) / 10) +
+        " m: a sea's bed? It starts dry; \"water\": [{\"shape\": \"plane\", \"surface\": 0}] of a level fills it, sides "
+        "with \"kind\": \"level\", \"value\": 0 hold it");
+}
+
 Result<Level> build(const std::string& map_path, const LevelOverrides& overrides) {
     FileRoom room(std::int64_t{MAP_LIMIT} * MAP_LIMIT);
     auto map = read_map(map_path, {}, files_in("", FilesFrom::anywhere), room); // named by the host
@@ -66,6 +80,7 @@ Result<Level> build(const std::string& map_path, const LevelOverrides& overrides
         resample_map(*map, map->nx - 1, map->ny - 1);
     }
     leave_outside(*map, map->cell_size > 0 ? map->cell_size : CELL);
+    note_sea(*map);
     if (Status status = scale_heights(*map, map_path); !status) return status;
 
     const double cell = map->cell_size > 0 ? map->cell_size : CELL;

@@ -222,8 +222,8 @@ Survey survey_fields(const Settings& settings, const InitialFields& fields) {
 }
 
 void warn_water(const Settings& s, const Survey& survey, std::vector<std::string>& warnings) {
-    const double k = s.dt / s.grid.dx;
-    const std::string grid = "dx " + number_text(s.grid.dx) + " m, dt " + number_text(s.dt) + " s: ";
+    const double dt = s.water_dt(), k = dt / s.grid.dx;
+    const std::string grid = "dx " + number_text(s.grid.dx) + " m, dt " + number_text(dt) + " s: ";
     const double celerity = std::sqrt(s.gravity * survey.deepest_water);
     const bool capped = s.method.gravity_cap > 0;
     const double cfl = capped ? WAVE_CFL : UNCAPPED_CFL;
@@ -231,8 +231,9 @@ void warn_water(const Settings& s, const Survey& survey, std::vector<std::string
         const double depth = std::pow(cfl / k, 2) / s.gravity;
         warnings.push_back(grid + "water deeper than " + meters(depth) +
                            (capped ? " moves slower than it should" : " is unstable while method.gravity_cap is off") +
-                           ", and the level has " + meters(survey.deepest_water) + "; use dt <= " +
-                           at_most(cfl * s.grid.dx / celerity) + " s or dx >= " + at_least(s.dt * celerity / cfl) + " m");
+                           ", and the level has " + meters(survey.deepest_water) + "; use " +
+                           longest_dt(s, cfl * s.grid.dx / celerity) + " or dx >= " + at_least(dt * celerity / cfl) + " m" +
+                           or_water_substeps(s, cfl * s.grid.dx / celerity));
     }
     const double front = 2 * std::sqrt(s.gravity * survey.dry_front);
     const double clamp = s.method.velocity_clamp / k;
@@ -240,15 +241,17 @@ void warn_water(const Settings& s, const Survey& survey, std::vector<std::string
         warnings.push_back(grid + "water of " + meters(survey.dry_front) + " beside dry ground should run at up to " +
                            number_text(std::round(front * 100) / 100) +
                            " m/s but is held at velocity_clamp dx/dt = " + number_text(std::round(clamp * 100) / 100) +
-                           " m/s; use dt <= " + at_most(s.method.velocity_clamp * s.grid.dx / front) +
-                           " s or dx >= " + at_least(s.dt * front / s.method.velocity_clamp) + " m");
+                           " m/s; use " + longest_dt(s, s.method.velocity_clamp * s.grid.dx / front) +
+                           " or dx >= " + at_least(dt * front / s.method.velocity_clamp) + " m" +
+                           or_water_substeps(s, s.method.velocity_clamp * s.grid.dx / front));
     for (std::size_t n = 0; n < s.sources.size(); ++n) {
         const Source& source = s.sources[n];
         const double speed = std::max(std::fabs(source.velocity[0]), std::fabs(source.velocity[1]));
         if (source.set_velocity && speed > clamp)
             warnings.push_back("sources[" + std::to_string(n) + "].velocity: " + number_text(speed) +
-                               " m/s is more than velocity_clamp dx/dt = " + number_text(clamp) +
-                               " m/s; use dt <= " + at_most(s.method.velocity_clamp * s.grid.dx / speed) + " s");
+                               " m/s is more than velocity_clamp dx/dt = " + number_text(clamp) + " m/s; use " +
+                               longest_dt(s, s.method.velocity_clamp * s.grid.dx / speed) +
+                               or_water_substeps(s, s.method.velocity_clamp * s.grid.dx / speed));
     }
     const double diffusion_most = 0.2 * s.grid.dx / k;
     if (survey.deepest_sand > 0 && s.material.diffusion_rate > diffusion_most && !forced_off(s, "diffusion"))

@@ -34,7 +34,8 @@ Status Checking::look(const WorldStats& stats) {
 
 Status Checking::check_speeds(const WorldStats& stats) {
     const auto& settings = state_.settings();
-    const double water = settings.method.velocity_clamp * settings.grid.dx / settings.dt, sand = water * settings.method.substeps;
+    const double cell = settings.method.velocity_clamp * settings.grid.dx, water = cell / settings.water_dt(),
+                 sand = cell / settings.dt * settings.method.substeps;
     const auto check = [&](double fastest, double clamp, const std::vector<const char*>& layers) {
         const double most = clamp * (1 + 1e-6); // as floats
         if (!(fastest > most)) return ok_status();

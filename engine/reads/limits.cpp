@@ -28,17 +28,17 @@ std::string around(const LimitCounts::Place& place) {
 
 bool many(std::uint64_t held, std::uint64_t of) { return static_cast<double>(held) > told_share * static_cast<double>(of); }
 
-double clamp_speed(const Settings& settings) { return settings.method.velocity_clamp * settings.grid.dx / settings.dt; }
+double clamp_speed(const Settings& settings) { return settings.method.velocity_clamp * settings.grid.dx / settings.water_dt(); }
 
 } // namespace
 
 double unlimited_dt(const Settings& settings, const LimitCounts& counts) {
-    double dt = settings.dt;
+    double dt = settings.water_dt();
     if (counts.water.clamped_faces > 0)
         dt = std::min(dt, settings.method.velocity_clamp * settings.grid.dx / std::max(counts.clamped_speed, 1e-30));
     if (counts.water.capped_faces > 0)
         dt = std::min(dt, settings.method.gravity_cap * settings.grid.dx / std::max(counts.wave_speed, 1e-30));
-    return dt;
+    return dt * settings.method.water_substeps;
 }
 
 Status Limits::prepare() {
@@ -190,21 +190,21 @@ void Limits::tell(const LimitCounts& c) {
     const LayerLimits &w = c.water, &sand = c.sand;
     const double dts = s.dt / s.method.substeps;
     const std::string more_substeps = "more than method.substeps " + std::to_string(s.method.substeps) + " or a shorter dt";
+    const auto water_dt = [&](double most) { return "use " + longest_dt(s, most) + or_water_substeps(s, most); };
     tell_once(water_clamp, many(w.clamped_faces, w.wet_faces), c, [&] {
         return "water is held at velocity_clamp dx/dt = " + rounded(clamp_speed(s)) + " m/s at " +
                share(w.clamped_faces, w.wet_faces, " wet faces") + around(c.water_clamped_at) + "; it would run at up to some " +
-               rounded(c.clamped_speed) + " m/s: use dt <= " + at_most(s.method.velocity_clamp * s.grid.dx / c.clamped_speed) +
-               " s";
+               rounded(c.clamped_speed) + " m/s: " + water_dt(s.method.velocity_clamp * s.grid.dx / c.clamped_speed);
     });
     const double wave_dt = s.method.gravity_cap * s.grid.dx / std::max(c.wave_speed, 1e-30);
-    tell_once(water_gravity, many(w.capped_faces, w.wet_faces) && wave_dt < told_dt * s.dt, c, [&] {
+    tell_once(water_gravity, many(w.capped_faces, w.wet_faces) && wave_dt < told_dt * s.water_dt(), c, [&] {
         return "gravity of water is capped at " + share(w.capped_faces, w.wet_faces, " wet faces") + around(c.water_capped_at) +
-               ": waves are slower than they should be; use dt <= " + at_most(wave_dt) + " s";
+               ": waves are slower than they should be; " + water_dt(wave_dt);
     });
     tell_once(water_outflow, many(w.limited_cells, w.wet_faces / 2), c, [&] {
         return "water would leave more than it has in " + share(w.limited_cells, w.wet_faces / 2, " wet cells") +
-               around(c.water_limited_at) +
-               ", and is held back; use dt <= " + at_most(s.dt / std::max(4 * s.method.velocity_clamp, 1.1)) + " s";
+               around(c.water_limited_at) + ", and is held back; " +
+               water_dt(s.water_dt() / std::max(4 * s.method.velocity_clamp, 1.1));
     });
     tell_once(sand_clamp, many(sand.clamped_faces, sand.wet_faces), c, [&] {
         return "sand is held at velocity_clamp dx/dts = " + rounded(s.method.velocity_clamp * s.grid.dx / dts) + " m/s at " +

@@ -30,8 +30,8 @@ Range range_of(const std::string& field, const Settings& settings) {
     if (field.ends_with("_height") || field == "wedge_depth") return {0, height};
     const double strain = settings.method.published() ? PUBLISHED_STRAIN_MOST : STRAIN_MOST;
     if (field.find("velocity") == std::string::npos) return {-strain, strain};
-    const double fastest =
-        settings.method.velocity_clamp * settings.grid.dx / settings.dt * std::max(1, settings.method.substeps);
+    const double fastest = settings.method.velocity_clamp * settings.grid.dx / settings.dt *
+                           std::max({1, settings.method.substeps, settings.method.water_substeps});
     const double speed = std::max(SPEED_MOST, 2 * fastest);
     return {-speed, speed};
 }

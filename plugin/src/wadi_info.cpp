@@ -29,7 +29,7 @@ wadi_result wadi_world_get_info(wadi_world_id id, wadi_world_info* info) {
         own.dt = world.settings().dt;
         own.substeps = world.plan().substeps;
         own.duration = hosted.duration;
-        own.passes_per_water_step = static_cast<uint32_t>(world.plan().water_passes.size());
+        own.passes_per_water_step = static_cast<uint32_t>(world.plan().water_dispatches());
         own.passes_per_sand_substep = static_cast<uint32_t>(world.plan().substep_passes.size());
         own.bytes_per_cell = world.plan().bytes_per_cell();
         own.device_bytes = world.state().device().bytes();

@@ -1,7 +1,11 @@
 // wadi-import: a map of heights as a level: level.json and the map in a folder.
+#include "heights.hpp"
 #include "level.hpp"
 #ifdef WADI_IMPORT_TIFF
 #include "tiff.hpp"
+#endif
+#ifdef WADI_IMPORT_EXR
+#include "exr.hpp"
 #endif
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -13,25 +17,40 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_tiff(const std::string& map) {
+std::string ending_of(const std::string& map) {
     std::string ending = fs::path(map).extension().string();
     std::transform(ending.begin(), ending.end(), ending.begin(),
                    [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return ending == ".tif" || ending == ".tiff";
+    return ending;
 }
 
-/// The map in the folder, by its name there; a TIFF becomes an Esri ASCII grid.
-std::string put_into_folder([[maybe_unused]] Request& request) {
-    if (is_tiff(request.map)) {
+Heights read_tiff_or_say([[maybe_unused]] const std::string& map) {
 #ifdef WADI_IMPORT_TIFF
-        const Heights heights = read_tiff(request.map);
+    return read_tiff(map);
+#else
+    fail(map + ": this build has no libtiff (libtiff-dev)");
+#endif
+}
+
+Heights read_exr_or_say([[maybe_unused]] const std::string& map) {
+#ifdef WADI_IMPORT_EXR
+    return read_exr(map);
+#else
+    fail(map + ": this build has no tinyexr (libtinyexr-dev)");
+#endif
+}
+
+/// The map in the folder, by its name there; a TIFF or an EXR becomes an Esri ASCII grid.
+std::string put_into_folder(Request& request) {
+    const std::string ending = ending_of(request.map);
+    const bool tiff = ending == ".tif" || ending == ".tiff";
+    if (tiff || ending == ".exr") {
+        Heights heights = tiff ? read_tiff_or_say(request.map) : read_exr_or_say(request.map);
+        if (!heights.has_cells && request.cell) heights.dx = heights.dy = *request.cell;
         write_grid(heights, (request.folder / "terrain.asc").string());
         for (const std::string& note : heights.notes) std::fprintf(stderr, "note: %s: %s\n", request.map.c_str(), note.c_str());
-        if (request.samples.empty()) request.samples = "cells"; // as GeoTIFF says
+        if (tiff && request.samples.empty()) request.samples = "cells"; // as GeoTIFF says
         return "terrain.asc";
-#else
-        fail(request.map + ": this build has no libtiff (libtiff-dev)");
-#endif
     }
     const fs::path name = fs::path(request.map).filename();
     std::error_code failure;
@@ -75,7 +94,8 @@ void fail(const std::string& text) {
 int main(int argc, char** argv) {
     import_map::Request request;
     std::string size;
-    CLI::App app("Makes a level of a map of heights: .png, .r16, .r32, .raw, .hgt, .npy, .asc, .tif or .tiff", "wadi-import");
+    CLI::App app("Makes a level of a map of heights: .png, .r16, .r32, .raw, .hgt, .npy, .asc, .tif, .tiff or .exr",
+                 "wadi-import");
     app.add_option("map", request.map)->required()->check(CLI::ExistingFile);
     app.add_option("--out", request.folder, "folder of the level; by default the map's name without its ending");
     app.add_option("--cell", request.cell, "side of a cell [m], where the map does not say")->check(CLI::Range(1e-4, 1e4));

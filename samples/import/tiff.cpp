@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <iterator>
 #include <memory>
 #include <numbers>
@@ -13,7 +12,6 @@
 namespace import_map {
 namespace {
 
-constexpr std::uint32_t MOST_SAMPLES = 16384; // along one side, as maps of levels
 constexpr std::uint32_t PIXEL_SCALE = 33550, TIE_POINT = 33922, GEO_KEYS = 34735, GDAL_NODATA = 42113;
 
 /// Tags of GeoTIFF and GDAL that libtiff does not know by itself.
@@ -91,9 +89,7 @@ Heights read_all(const std::string& name, Places& places) {
     TIFFGetFieldDefaulted(tiff.get(), TIFFTAG_SAMPLEFORMAT, &format);
     TIFFGetFieldDefaulted(tiff.get(), TIFFTAG_SAMPLESPERPIXEL, &samples);
     TIFFGetFieldDefaulted(tiff.get(), TIFFTAG_PLANARCONFIG, &planes);
-    if (heights.nx < 1 || heights.ny < 1 || heights.nx > MOST_SAMPLES || heights.ny > MOST_SAMPLES)
-        fail(name + ": " + std::to_string(heights.nx) + " x " + std::to_string(heights.ny) +
-             " samples are outside 1 ... 16384 a side");
+    check_sides(name, heights.nx, heights.ny);
     if (bits % 8 != 0) fail(name + ": samples of " + std::to_string(bits) + " bits are not heights");
     read_places(tiff.get(), heights, places);
     if (samples > 1) heights.notes.push_back("it has " + std::to_string(samples) + " values per sample; the first is taken");
@@ -149,23 +145,6 @@ Heights read_tiff(const std::string& name) {
     Heights heights = read_all(name, places);
     to_metres(heights, places);
     return heights;
-}
-
-void write_grid(const Heights& heights, const std::string& path) {
-    std::ofstream file(path);
-    file.precision(12);
-    file << "ncols " << heights.nx << "\nnrows " << heights.ny << "\nxllcorner " << heights.west << "\nyllcorner "
-         << heights.south;
-    file << "\ndx " << heights.dx << "\ndy " << heights.dy << "\nNODATA_value nan\n";
-    file.precision(9); // each float back to its bits
-    for (std::size_t n = 0; n < heights.rows.size(); ++n) {
-        if (std::isnan(heights.rows[n]))
-            file << "nan";
-        else
-            file << heights.rows[n];
-        file << ((n + 1) % heights.nx == 0 ? '\n' : ' ');
-    }
-    if (!file.flush()) fail(path + ": cannot be written");
 }
 
 } // namespace import_map

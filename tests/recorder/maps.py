@@ -57,6 +57,27 @@ def square(n, code, value, order="<"):
     return b"".join(struct.pack(order + code, value(i, n - 1 - j)) for j in range(n) for i in range(n))
 
 
+def exr(rows, code="f", names=("Y",), tiled=False):
+    """An OpenEXR picture without compression, rows from the north; every channel holds them, all but the first times 2."""
+    kind = {"f": 2, "e": 1, "I": 0}[code]
+    nx, ny = len(rows[0]), len(rows)
+
+    def attribute(name, sort, data):
+        return name.encode() + b"\0" + sort.encode() + b"\0" + struct.pack("<I", len(data)) + data
+
+    channels = b"".join(name.encode() + b"\0" + struct.pack("<IBBBBII", kind, 0, 0, 0, 0, 1, 1) for name in sorted(names)) + b"\0"
+    box = struct.pack("<4i", 0, 0, nx - 1, ny - 1)
+    head = struct.pack("<II", 20000630, 2 | (0x200 if tiled else 0)) + attribute("channels", "chlist", channels) + attribute("compression", "compression", b"\0") + \
+        attribute("dataWindow", "box2i", box) + attribute("displayWindow", "box2i", box) + attribute("lineOrder", "lineOrder", b"\0") + \
+        attribute("pixelAspectRatio", "float", struct.pack("<f", 1)) + attribute("screenWindowCenter", "v2f", struct.pack("<2f", 0, 0)) + \
+        attribute("screenWindowWidth", "float", struct.pack("<f", 1)) + b"\0"
+    lines = [b"".join(struct.pack(f"<{nx}{code}", *((int if code == "I" else float)(h if name == names[0] else 2 * h) for h in row)) for name in sorted(names))
+             for row in rows]
+    starts = len(head) + 8 * ny
+    offsets = b"".join(struct.pack("<Q", starts + y * (8 + len(lines[y]))) for y in range(ny))
+    return head + offsets + b"".join(struct.pack("<iI", y, len(line)) + line for y, line in enumerate(lines))
+
+
 def npy(descr, code, rows, order=False):
     header = f"{{'descr': '{descr}', 'fortran_order': {order}, 'shape': ({len(rows)}, {len(rows[0])}), }}".ljust(117) + "\n"
     return b"\x93NUMPY\x01\0" + struct.pack("<H", len(header)) + header.encode() + b"".join(
@@ -104,6 +125,7 @@ TABLE = {
     "one_line.asc": (asc(end=" "), loads()),
     "signs.asc": (asc(HEADER, [[h - 150 for h in row] for row in NORTH_DOWN]).replace(b" 2 ", b" +2.0e+00 "),
                   loads([[h - 150 for h in row] for row in SOUTH_UP])),
+    "sea.asc": (asc(rows=[[h - 150 for h in row] for row in NORTH_DOWN]), loads(None, ["% of it lies below 0, down to -", "of a level fills it"])),
     "nodata.asc": (with_hole("-9999", "NODATA_value -9999\n"), loads(None, ["taken for outside", "1 of 384 cells hold NODATA_value"])),
     "nodata_null.asc": (with_hole("null", "NODATA_value null\n"), loads(None, ["taken for outside"], low=90)),
     "nodata_nan.asc": (with_hole("nan"), loads(None, ["taken for outside"], low=90)),
@@ -146,7 +168,7 @@ TABLE = {
     "columns.npy": (npy("<f4", "f", SOUTH_UP, True), refused("only arrays in C order")),
     # what none of them is
     "picture.bmp": (b"BM" + bytes(60), refused("maps end in .png")),
-    "heights.exr": (b"\x76\x2f\x31\x01" + bytes(60), refused("maps end in .png")),
+    "heights.exr": (b"\x76\x2f\x31\x01" + bytes(60), refused("maps end in .png")), # by wadi-import alone
 }
 
 # The same by wadi-import, with options of its own.
@@ -169,6 +191,21 @@ IMPORTS = {
     "holes_wall.asc": (with_hole("-9999"), ["--holes", "wall"], loads(None, at={(10, 7): 191, (0, 15): 191})),
     "holes_pit.asc": (with_hole("-9999"), ["--holes", "pit"], loads(None, at={(10, 7): 95.45, (0, 15): 95.45})),
 }
+
+NAN = float("nan")
+EXRS = {
+    "plain.exr": (exr(NORTH_DOWN), ["--cell", "2"], loads()),
+    "half.exr": (exr(NORTH_DOWN, "e"), ["--cell", "2"], loads(tolerance=0.07)),
+    "colours.exr": (exr(NORTH_DOWN, "f", ("R", "B", "G")), ["--cell", "2"], loads(SOUTH_UP)),
+    "hole.exr": (exr([[NAN if (i, j) == (5, 5) else h for i, h in enumerate(row)] for j, row in enumerate(NORTH_DOWN)]), [],
+                 loads(None, ["1 of 384 cells hold NODATA_value"], low=90)),
+    "whole.exr": (exr(NORTH_DOWN, "I"), [], refused("whole numbers are not heights")),
+    "tiles.exr": (exr(NORTH_DOWN, tiled=True), [], refused("in tiles")),
+    "cut.exr": (exr(NORTH_DOWN)[:-300], [], refused("cannot be read as an OpenEXR picture")),
+    "text.exr": (b"no picture", [], refused("cannot be read as an OpenEXR picture")),
+}
+if "--exr" in sys.argv:
+    IMPORTS.update(EXRS)
 
 
 def run(*command):

@@ -128,11 +128,11 @@ inline double sand_speed(World& world) {
 /// What must hold in any scene: every quantum in the ledger, heights >= 0, everything finite, speeds within the clamp.
 inline bool ledger_holds(const World& world, const WorldStats& s) {
     const auto& set = world.settings();
-    const double clamp = set.method.velocity_clamp * set.grid.dx / set.dt * (1 + 1e-6);
+    const double clamp = set.method.velocity_clamp * set.grid.dx * (1 + 1e-6), water_clamp = clamp / set.water_dt();
     const bool exact = s.water_quanta == s.water_initial + s.ledger.water_in - s.ledger.water_out &&
                        s.sand_quanta == s.sand_initial + s.ledger.sand_in - s.ledger.sand_out;
     return (exact || height_quantum(set.method) == 0) && s.not_finite == 0 && s.smallest_height >= 0 &&
-           s.largest_water_speed <= clamp && s.largest_sand_speed <= clamp * set.method.substeps;
+           s.largest_water_speed <= water_clamp && s.largest_sand_speed <= clamp / set.dt * set.method.substeps;
 }
 
 inline void check_books(World& world) {

@@ -95,6 +95,9 @@ TEST_CASE("level errors: material, method, effects") {
     refuses(R"("material": {"saturation": [0.3, 0.2, 0.4]})", "material.saturation[1]: 0.2 must be at least");
     refuses(R"("method": {"name": "robustt"})", "did you mean \"robust\"?");
     refuses(R"("method": {"substeps": 0})", "method.substeps: 0 is outside 1 ... 64");
+    refuses(R"("method": {"water_substeps": 9})", "method.water_substeps: 9 is outside 1 ... 8");
+    refuses(R"("method": {"name": "published", "water_substeps": 2})",
+            "method.water_substeps: 2 goes only with method \"robust\"");
     refuses(R"("method": {"substeps": 2.5})", "2.5 is not a whole number");
     refuses(R"("method": {"outflow_limiter": 1})", "expected true or false, found 1");
     refuses(R"("effects": {"cohesoin": "off"})", "effects.cohesoin: unknown key, did you mean \"cohesion\"?");

@@ -239,21 +239,27 @@ TEST_CASE("level warnings: a layer that changes nothing") {
     CHECK(velocity(R"("from": [0.26, 0], "to": [0.36, 8])", "[0, 0]").empty());
 }
 
-TEST_CASE("shipped levels load without a warning, dam_break with the three its README explains") {
+TEST_CASE("shipped levels load without a warning, dam_break with the one its README explains, as published with two more") {
     for (const char* name : {"piles", "canyon", "beach", "wadi"}) {
         const auto level = load_level((samples() / name / "level.json").string(), {});
         REQUIRE_MESSAGE(level, message(level));
         for (const std::string& warning : level->warnings) CHECK_MESSAGE(false, name << ": " << warning);
     }
     const std::string path = (samples() / "dam_break" / "level.json").string();
-    const auto level = load_level(path, {});
+    const auto shipped = load_level(path, {});
+    REQUIRE_MESSAGE(shipped, message(shipped));
+    REQUIRE(shipped->warnings.size() == 1);
+    CHECK(says(shipped->warnings[0], "acts like 330000 Pa"));
+    LevelOverrides as_published;
+    as_published.variant = "paper";
+    const auto level = load_level(path, as_published);
     REQUIRE_MESSAGE(level, message(level));
     REQUIRE(level->warnings.size() == 3);
     CHECK(says(level->warnings[0], "the level has 8 m; use dt <= 0.0253 s or dx >= 0.886 m"));
-    CHECK(says(level->warnings[1], "dt <= 0.00987 s or dx >= 2.28 m"));
+    CHECK(says(level->warnings[1], "dt <= 0.00987 s or dx >= 2.28 m, or method.water_substeps 5"));
     CHECK(says(level->warnings[2], "acts like 330000 Pa"));
     LevelOverrides overrides;
-    overrides.dt = 0.009; // what the README advises
+    overrides.dt = 0.009; // what the warnings advise
     const auto cured = load_level(path, overrides);
     REQUIRE_MESSAGE(cured, message(cured));
     CHECK(cured->warnings.empty());

@@ -40,6 +40,7 @@ void choose_method(Settings& settings, const std::string& name) {
     Method chosen = known ? Method{} : method;
     chosen.name = name;
     chosen.substeps = method.substeps;
+    if (name != published) chosen.water_substeps = method.water_substeps; // the paper has one water step
     chosen.largest_height = method.largest_height;
     chosen.dry_threshold = method.dry_threshold;
     if (name == published) choose_published(chosen);

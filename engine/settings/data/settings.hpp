@@ -52,10 +52,13 @@ struct Material {
 /// stretch P apart (F = R P), or F as it is.
 enum class StrainTransport : std::uint8_t { polar, direct };
 
+inline constexpr int WATER_SUBSTEPS_MOST = 8; // each has an input of its own in one submission
+
 /// How water and sand are stepped. Every guard is off at a neutral value, so that any one can be studied alone.
 struct Method {
     std::string name = "robust";
     int substeps = 3;               // T
+    int water_substeps = 1;         // N: the water's passes of a step, each of dt/N
     bool outflow_limiter = true;    // NUMERICS 2.2
     double quantum = -1;            // NUMERICS 2.2
     double largest_height = 16;     // of H + hs + W
@@ -152,6 +155,8 @@ struct Settings {
     /// Every bit stays.
     FusedStages fused_stages = FusedStages::automatic;
     /// Of active tiles [cells]; 0 = there are none.
+    /// What the water's passes take for dt: the time step over method.water_substeps [s].
+    double water_dt() const { return dt / method.water_substeps; }
     int tile_side() const {
         return active_tiles == tiles_where_they_gain || active_tiles == tiles_where_cheap ? chosen_tile_side : active_tiles;
     }

@@ -80,6 +80,9 @@ Status check_method(const Method& method) {
                       " (method published looks one cell back)");
     if (method.published() && (method.shock_viscosity > 0 || method.sand_transport_order != 1))
         return refuse("method.name: \"published\" goes only with shock_viscosity 0 and sand_transport_order 1");
+    if (method.published() && method.water_substeps != 1)
+        return refuse("method.water_substeps: " + number_text(method.water_substeps) +
+                      " goes only with method \"robust\"; the paper has one water step");
     if (!method.published() && method.strain_transport != StrainTransport::polar)
         return refuse("method.strain_transport: \"direct\" goes only with method \"published\"");
     if (method.quantum < 0 && method.quantum > -1)

@@ -22,6 +22,16 @@ std::string at_least(double value) {
     return number_text(std::ceil(value / unit * (1 - 1e-12)) * unit);
 }
 
+std::string longest_dt(const Settings& settings, double most) {
+    return "dt <= " + at_most(most * settings.method.water_substeps) + " s";
+}
+
+std::string or_water_substeps(const Settings& settings, double most) {
+    const double wanted = std::ceil(settings.dt / most);
+    if (!(wanted <= WATER_SUBSTEPS_MOST) || settings.method.published()) return "";
+    return ", or method.water_substeps " + number_text(wanted);
+}
+
 std::string outside_text(const std::string& path, double value, double least, double most) {
     return path + ": " + number_text(value) + " is outside " + number_text(least) + " ... " + number_text(most);
 }

@@ -1,5 +1,6 @@
 // Words and numbers of error messages: the nearest known name, numbers as people write them.
 #pragma once
+#include "engine/settings/data/settings.hpp"
 #include <string>
 #include <vector>
 
@@ -12,6 +13,11 @@ std::string number_text(double value);
 std::string at_most(double value);
 /// The same rounded up.
 std::string at_least(double value);
+
+/// "dt <= x s", so that the water's substeps take `most` seconds at most each.
+std::string longest_dt(const Settings& settings, double most);
+/// ", or method.water_substeps N", which keep dt; empty where that takes more than there can be.
+std::string or_water_substeps(const Settings& settings, double most);
 
 /// "path: value is outside least ... most".
 std::string outside_text(const std::string& path, double value, double least, double most);

@@ -42,7 +42,7 @@ double StepPlan::traffic_per_cell() const {
             moved += times * PlanField::element_bytes * (stage.bindings[n].access == compute::Access::inout ? 2 : 1);
         }
     };
-    for (const auto& pass : water_passes) add(pass, 1);
+    for (std::size_t n = 0; n < water_passes.size(); ++n) add(water_passes[n], times(n));
     for (const auto& pass : substep_passes) add(pass, substeps);
     return moved;
 }

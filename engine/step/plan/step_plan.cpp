@@ -69,6 +69,11 @@ void plan_start(PlanBuilder b) {
 void plan_water(PlanBuilder b) {
     if (!b.has(EFFECT_WATER)) return;
     plan_water_motion(b);
+}
+
+// What the sand's substeps take from the water, once for all of them.
+void plan_water_on_sand(PlanBuilder b) {
+    if (!b.has(EFFECT_WATER)) return;
     if (b.has(EFFECT_BED_SHEAR)) b.run("compute_bed_load");
     if (b.has(EFFECT_COHESION) && !b.fuse("smooth_saturation", {})) b.run("compute_saturation");
 }
@@ -160,7 +165,7 @@ int reach_of(const StepPlan& plan) {
             sum.north += most(stage.reach.north);
         }
     };
-    add(plan.water_passes, 1);
+    for (std::size_t n = 0; n < plan.water_passes.size(); ++n) add({plan.water_passes[n]}, plan.times(n));
     add(plan.substep_passes, plan.substeps);
     return std::max({sum.west, sum.south, sum.east, sum.north});
 }
@@ -216,26 +221,42 @@ std::vector<std::string> tile_list(const std::string& ending) {
     return names;
 }
 
+std::vector<PlanPass> StepPlan::water_part(int n, bool start) const {
+    std::vector<PlanPass> part;
+    const auto add = [&](const std::vector<PlanPass>& from, std::size_t begin, std::size_t end) {
+        part.insert(part.end(), from.begin() + static_cast<std::ptrdiff_t>(begin),
+                    from.begin() + static_cast<std::ptrdiff_t>(end));
+    };
+    add(water_passes, n == 0 ? 0 : again_from, start_at);
+    if (start && n == 0) add(start_passes, 0, start_passes.size());
+    add(water_passes, start_at, n + 1 == water_substeps ? water_passes.size() : again_to);
+    return part;
+}
+
 const PlanField* StepPlan::find(const std::string& name) const& {
     const auto found = std::find_if(fields.begin(), fields.end(), [&](const PlanField& f) { return f.name == name; });
     return found == fields.end() ? nullptr : &*found;
 }
 
-StepPlan make_step_plan(std::uint32_t effects, int substeps, PlanChoice choice) {
+StepPlan make_step_plan(std::uint32_t effects, Substeps substeps, PlanChoice choice) {
     StepPlan plan;
     plan.active_tiles = choice.active_tiles;
     plan.fused = choice.fused;
     plan.fused_slopes = choice.fused_slopes;
     plan.effects = effects;
-    plan.substeps = substeps;
+    plan.substeps = substeps.sand;
+    plan.water_substeps = substeps.water;
     plan.tiles_by_material = choice.active_tiles && tells_materials_apart(effects);
     const PlanBuilder water(plan, plan.water_passes, false), substep(plan, plan.substep_passes, true);
     if (choice.active_tiles) plan_active_tiles(water);
+    plan.again_from = plan.water_passes.size();
     plan_inflow(water);
     plan.start_at = plan.water_passes.size();
     plan_start({plan, plan.start_passes, false});
     const bool published = water.has(EFFECT_PUBLISHED);
     published ? plan_published_water(water) : plan_water(water);
+    plan.again_to = plan.water_passes.size();
+    if (!published) plan_water_on_sand(water);
     published ? plan_published_sand(substep) : plan_sand(substep);
     if (!plan.substep_passes.empty()) plan.substep_passes.back().flips.push_back("sand_height");
     published ? plan_published_friction(substep) : plan_sand_forces(substep);

@@ -1,4 +1,4 @@
-// The step plan: effects -> the ordered passes of one water step with its T sand substeps, and the buffers they need.
+// The step plan: effects -> the ordered passes of one step, N water substeps and T sand substeps, and the buffers they need.
 // The only place that knows the order (NUMERICS 3, paper Algorithm 1).
 #pragma once
 #include "engine/step/plan/field_table.hpp"
@@ -39,10 +39,12 @@ struct PlanField {
 
 struct StepPlan {
     std::uint32_t effects = 0;
-    int substeps = 1;
-    std::vector<PlanPass> water_passes; // in order; before the substeps
-    std::vector<PlanPass> start_passes; // step 0 has them as well, ahead of water_passes[start_at]; none of them flips a field
-    std::size_t start_at = 0;
+    int substeps = 1, water_substeps = 1;
+    std::vector<PlanPass> water_passes; // in order; before the sand's substeps
+    /// Those of [again_from, again_to) run in each of the water's substeps, those ahead and behind once a step.
+    std::size_t again_from = 0, again_to = 0;
+    std::vector<PlanPass> start_passes;   // step 0 has them as well, ahead of water_passes[start_at]; none of them flips a field
+    std::size_t start_at = 0;             // within those of every substep
     std::vector<PlanPass> substep_passes; // run T times
     std::vector<PlanField> fields;
     int scratch_blocks = 0;
@@ -65,6 +67,15 @@ struct StepPlan {
     double traffic_per_cell() const;
     /// Bytes per cell that any step must move: the fields of the state once in, those that change once out.
     double least_traffic_per_cell() const;
+    /// The passes of water substep n, from 0 on; `start`: of a world's first.
+    std::vector<PlanPass> water_part(int n, bool start = false) const;
+    /// How often water_passes[n] runs in a step.
+    int times(std::size_t n) const { return n >= again_from && n < again_to ? water_substeps : 1; }
+    /// Dispatches of a step: of the water's passes, and of all.
+    std::size_t water_dispatches() const {
+        return water_passes.size() + (again_to - again_from) * static_cast<std::size_t>(water_substeps - 1);
+    }
+    std::size_t dispatches() const { return water_dispatches() + substep_passes.size() * static_cast<std::size_t>(substeps); }
     const PlanField* find(const std::string& name) const&;
     const PlanField* find(const std::string& name) const&& = delete; // would point into a plan that is gone
     /// What the names of the lists of active tiles end in.
@@ -81,8 +92,14 @@ struct PlanChoice {
     bool fused_slopes = true;
 };
 
+/// Substeps of a step.
+struct Substeps {
+    Substeps(int sand_ones, int water_ones = 1) : sand(sand_ones), water(water_ones) {}
+    int sand, water;
+};
+
 /// Throws std::logic_error where a stage binds a field that field_table() lacks.
-StepPlan make_step_plan(std::uint32_t effects, int substeps, PlanChoice choice = {});
+StepPlan make_step_plan(std::uint32_t effects, Substeps substeps, PlanChoice choice = {});
 
 /// Gives two plans of the same mask, with and without active tiles, the same fields in the same memory, so that a world can go
 /// from one to the other.

@@ -75,13 +75,13 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     const FieldLayout layout{s.grid.nx, s.grid.ny};
     const auto f = as_float;
     const double gravity = s.gravity < least_gravity ? 0 : s.gravity;
-    const double dx = s.grid.dx, dt = s.dt, dts = dt / w.substeps, k = dt / dx, ks = dts / dx, quantum = height_quantum(w);
+    const double dx = s.grid.dx, dt = s.water_dt(), dts = s.dt / w.substeps, k = dt / dx, ks = dts / dx, step_k = s.dt / dx,
+                 quantum = height_quantum(w);
     WorldParams p{};
     p.nx = s.grid.nx;
     p.ny = s.grid.ny;
     p.pitch = layout.pitch();
     p.strips = layout.strips();
-    p.substeps = w.substeps;
     p.tile_size = s.tile_side();
     p.tile_rings = 1; // WorldState widens it to the plan's reach
     p.tile_columns = s.tile_side() > 0 ? FieldLayout::active_tiles(s.grid.nx, s.tile_side()) : 0;
@@ -110,9 +110,12 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     p.shock_viscosity = f(w.shock_viscosity * k * std::sqrt(gravity));
     p.gravity_cap_base = w.gravity_cap > 0 ? f(w.gravity_cap) : gravity_cap_off;
     p.inv_k2 = f(1 / (k * k));
+    p.step_k = f(step_k);
+    p.inv_step_k2 = f(1 / (step_k * step_k));
     const double rest_surface = 2 * ledger_quantum(w);
     p.rest_surface = w.rest_rule ? f(rest_surface) : -1.0F;
-    p.rest_velocity = w.rest_rule ? f(1.5 * k * gravity * rest_surface) : -1.0F; // rounding of the push does not decide
+    const double pushed = (effects & EFFECT_MIXTURE) != 0 ? step_k : k; // what is inside the sand is pushed once a step
+    p.rest_velocity = w.rest_rule ? f(1.5 * pushed * gravity * rest_surface) : -1.0F; // rounding of the push does not decide
     const double spreads = (effects & EFFECT_PUBLISHED) != 0 ? m.diffusion_rate : std::min(m.diffusion_rate, 0.2 * dx * dx / dt);
     p.diffusion_number = f(spreads * dt / (dx * dx));
     p.bed_friction_dt = f(dt * m.bed_friction);
@@ -124,9 +127,9 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     p.bed_shear_threshold = f(0.047 * submerged * m.grain_size);
     p.bed_load = submerged > 0 ? f(8 / submerged) : 0.0F;
     p.bed_slope_number = f(2 / dx);
-    p.bed_slope_cap = f(0.2 * dx / dt);
+    p.bed_slope_cap = f(0.2 * dx / s.dt);
     p.limiter = w.outflow_limiter ? 1.0F : 0.0F;
-    p.inv_substeps = f(1.0 / w.substeps);
+    p.inv_substeps = f(static_cast<double>(w.water_substeps) / w.substeps);
 
     p.ks = f(ks);
     p.dts = f(dts);
@@ -138,6 +141,7 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     p.friction = f(m.friction);
     const double kd = (effects & EFFECT_DRAG) != 0 ? dts * m.exchange_rate : 0;
     p.drag_kd = f(kd);
+    p.water_drag = p.drag_kd * (static_cast<float>(w.substeps) / static_cast<float>(w.water_substeps));
     p.drag_coupling = f(kd * m.water_density / (m.water_density + kd) / m.sand_density);
     p.drag_share = f(kd / (m.water_density + kd));
     const double wedge = m.slope_normal > 0 ? m.friction + std::sqrt(m.friction * m.friction + 1 / m.slope_normal) : steep;

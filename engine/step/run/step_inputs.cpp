@@ -51,7 +51,7 @@ double StepInputs::rate_of(std::size_t n, double time) const {
 }
 
 float StepInputs::advance(Total& total, double rate) const {
-    const double depth = rate * settings_.dt;
+    const double depth = rate * settings_.water_dt();
     if (quantum_ <= 0) return static_cast<float>(depth);
     total.metres += depth;
     const double quanta = std::floor(total.metres / quantum_);
@@ -76,7 +76,7 @@ vec4 StepInputs::source_input(std::size_t n, double time) {
 }
 
 void StepInputs::set_sides(StepInput& input, double time) {
-    const double k = settings_.dt / settings_.grid.dx;
+    const double dt = settings_.water_dt(), k = dt / settings_.grid.dx;
     for (std::size_t n = 0; n < 4; ++n) {
         const auto& side = settings_.sides[n];
         const int cells = n == SIDE_WEST || n == SIDE_EAST ? settings_.grid.ny : settings_.grid.nx;
@@ -98,7 +98,7 @@ void StepInputs::set_sides(StepInput& input, double time) {
             depth = shooting ? -std::max(side.depth, fastest) : std::max(critical, fastest);
         } else if (side.has_level()) {
             depth = side.wave.at(time);
-            input.side_pace[n].x = side.absorb > 0 ? static_cast<float>(std::min(0.5, settings_.dt / side.absorb)) : 0.0F;
+            input.side_pace[n].x = side.absorb > 0 ? static_cast<float>(std::min(0.5, dt / side.absorb)) : 0.0F;
         }
         if (side.kind == SideKind::outflow) value = side.slope;
         const double unless_said = side.kind == SideKind::discharge ? 0 : 1;
@@ -108,17 +108,25 @@ void StepInputs::set_sides(StepInput& input, double time) {
     }
 }
 
-StepInput StepInputs::next(std::uint64_t step) {
+void StepInputs::next(std::uint64_t step, std::span<StepInput> inputs) {
     before_ = totals_;
+    for (std::size_t n = 0; n < inputs.size(); ++n) {
+        inputs[n] = substep(step * inputs.size() + n);
+        inputs[n].step = stage_step(step); // of which tiles keep count
+    }
+}
+
+StepInput StepInputs::substep(std::uint64_t substep) {
     StepInput input{};
-    const double time = static_cast<double>(step) * settings_.dt;
-    input.step = stage_step(step);
-    input.phase = settings_.method.published() ? 0.0F : rounding_phase(step); // the paper says nothing of rounding
+    const double time = static_cast<double>(substep) * settings_.water_dt();
+    input.phase = settings_.method.published() ? 0.0F : rounding_phase(substep); // the paper says nothing of rounding
     const std::size_t sources = settings_.sources.size();
     input.rain = advance(totals_[sources], settings_.rain.at(time));
     input.evaporation = advance(totals_[sources + 1], settings_.evaporation.at(time));
     for (std::size_t n = 0; n < sources; ++n) input.source[n] = source_input(n, time);
     set_sides(input, time);
+    input.side_pace[0].z = substep == 0 ? 1.0F : 0.0F;
+    input.side_pace[0].w = stage_step(substep) % SIDE_SLOPE_EVERY == 0 ? 1.0F : 0.0F;
     return input;
 }
 

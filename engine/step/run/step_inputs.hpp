@@ -1,7 +1,8 @@
-// What changes with every water step: sources, rain and sides over time, in whole quanta.
+// What changes with every water substep: sources, rain and sides over time, in whole quanta.
 #pragma once
 #include "engine/settings/data/settings.hpp"
 #include "shaders/params.hpp"
+#include <span>
 #include <vector>
 
 namespace wadi {
@@ -18,14 +19,22 @@ class StepInputs {
     using Totals = std::vector<Total>;
 
     explicit StepInputs(const Settings& settings);
-    /// The input of step `step`, which must be one more than at the last call.
-    StepInput next(std::uint64_t step);
+    /// The inputs of step `step`, which must be one more than at the last call: one for each of the water's substeps.
+    void next(std::uint64_t step, std::span<StepInput> inputs);
+    /// The same of a world without substeps of the water.
+    StepInput next(std::uint64_t step) {
+        StepInput input;
+        next(step, {&input, 1});
+        return input;
+    }
     /// Takes the last next() back: its step could not be submitted.
     void undo() { totals_ = before_; }
     const Totals& totals() const { return totals_; }
     void set_totals(const Totals& totals) { totals_ = totals; }
 
   private:
+    /// Of a water substep, counted from the world's beginning; all but the number of its step.
+    StepInput substep(std::uint64_t substep);
     float advance(Total& total, double rate) const;
     /// Depth per time of source n [m/s].
     double rate_of(std::size_t n, double time) const;

@@ -30,8 +30,11 @@ Status StepPrograms::append_step(compute::ProgramBuilder& builder, int turn, Par
             builder.timestamp(std::string(compute::stage_table()[static_cast<std::size_t>(pass.stage)].name));
         return status;
     };
-    for (const auto& pass : state_.plan().water_passes) {
-        if (auto status = add(pass); !status) return status;
+    for (int n = 0; n < state_.plan().water_substeps; ++n) {
+        if (n > 0) builder.next_input();
+        for (const auto& pass : state_.plan().water_part(n)) {
+            if (auto status = add(pass); !status) return status;
+        }
     }
     if (state_.plan().active_tiles) {
         if (auto status = active_.append(builder, turn); !status) return status;
@@ -87,19 +90,15 @@ Status StepPrograms::record(bool with_parts, bool timed) {
     return status;
 }
 
-// The water's part, with the start passes or without, or a sand substep.
+// A water substep, the first with the start passes or without, or a sand substep.
 Result<compute::Program> StepPrograms::record_part(int part, bool start, int turn, Parity& parity) {
-    compute::ProgramBuilder builder(start ? "start part" : part == 0 ? "water part" : "sand part");
     const auto& plan = state_.plan();
-    std::vector<PlanPass> passes = part == 0 ? plan.water_passes : plan.substep_passes;
-    if (start) {
-        const auto at = passes.begin() + static_cast<std::ptrdiff_t>(plan.start_at);
-        passes.insert(at, plan.start_passes.begin(), plan.start_passes.end());
-    }
-    for (const auto& pass : passes) {
+    const bool water = part < plan.water_substeps;
+    compute::ProgramBuilder builder(start ? "start part" : water ? "water part" : "sand part");
+    for (const auto& pass : water ? plan.water_part(part, start) : plan.substep_passes) {
         if (auto status = state_.append(builder, pass, parity); !status) return status;
     }
-    if (part == 0 && plan.active_tiles) {
+    if (part + 1 == plan.water_substeps && plan.active_tiles) {
         if (auto status = active_.append(builder, turn); !status) return status;
     }
     return state_.device().compile(builder, state_.params());

@@ -11,8 +11,12 @@ class StepPrograms {
 
     /// Steps of one run: even, so that one program does for a turn.
     static constexpr int run_steps = compute::most_inputs;
-    /// Parts of a water step: 1 + T, or 1 without sand.
-    int parts() const { return state_.plan().substep_passes.empty() ? 1 : 1 + state_.plan().substeps; }
+    static_assert(WATER_SUBSTEPS_MOST <= compute::most_inputs);
+    /// Parts of a step: N of the water and T of the sand, or N without sand.
+    int parts() const {
+        const auto& plan = state_.plan();
+        return plan.water_substeps + (plan.substep_passes.empty() ? 0 : plan.substeps);
+    }
 
     /// Records the whole steps of the state's plan, and of the other one where it has two, and which buffers are current before
     /// each; parts and timed steps of the plan in force, too, where they are asked for.
@@ -22,14 +26,14 @@ class StepPrograms {
     compute::Program step(std::size_t turn) { return now().steps[turn]; }
     Result<compute::Program> timed(std::size_t turn);
     Result<compute::Program> run(std::size_t turn);
-    /// Part 0 is the water's, with the plan's start passes at a world's beginning; the others are sand substeps.
+    /// Water substeps, the first with the plan's start passes at a world's beginning, then sand substeps.
     Result<compute::Program> part(std::size_t turn, std::size_t part, bool start);
 
     /// All programs of all plans.
     struct Programs {
         std::array<compute::Program, 2> steps{}, timed{}, runs{};
         std::array<std::vector<compute::Program>, 2> parts;
-        std::array<compute::Program, 2> starts{}; // the water part of step 0
+        std::array<compute::Program, 2> starts{}; // the first water part of step 0
     };
     using Ways = std::array<Programs, 2>; // of the plan without active tiles and of the one with them
     /// Hands them out and has none from then on.

@@ -45,7 +45,8 @@ Result<std::vector<StageTime>> StepTimings::stage_times() {
         }
         found->passes += repeats;
     };
-    for (const auto& pass : state_.plan().water_passes) add(pass, 1);
+    for (std::size_t n = 0; n < state_.plan().water_passes.size(); ++n)
+        add(state_.plan().water_passes[n], state_.plan().times(n));
     for (const auto& pass : state_.plan().substep_passes) add(pass, state_.plan().substeps);
     if (const auto& other = state_.other_plan()) {
         for (const auto* passes : {&other->water_passes, &other->substep_passes})

@@ -69,10 +69,11 @@ Status Stepper::submit_parts(int parts) {
     for (; parts_done_ < parts; ++parts_done_) {
         auto program = programs_.part(turn, static_cast<std::size_t>(parts_done_), start);
         if (!program) return program.status();
-        auto ticket = state_.device().submit(*program, input_);
+        const int input = std::min(parts_done_, substeps() - 1); // the sand has that of the water's last substep
+        auto ticket = state_.device().submit(*program, inputs_of_step_[static_cast<std::size_t>(input)]);
         if (!ticket) return ticket.status();
         ticket_ = *ticket;
-        if (parts_done_ == 0) tile_use_.submitted(1, ticket_, input_.wake_count > 0);
+        if (parts_done_ == 0) tile_use_.submitted(1, ticket_, inputs_of_step_[0].wake_count > 0);
     }
     return ok_status();
 }
@@ -96,12 +97,11 @@ Status Stepper::complete_step() {
     return hooks_.after_step();
 }
 
-StepInput Stepper::next_input() {
-    StepInput input = inputs_.next(state_.steps);
+void Stepper::next_inputs(std::span<StepInput> inputs) {
     if (turns(state_.steps)) state_.tiles().wake_all();
-    state_.tiles().wake_inputs(input);
-    state_.tiles().put(input);
-    return input;
+    inputs_.next(state_.steps, inputs);
+    for (const StepInput& input : inputs) state_.tiles().wake_inputs(input);
+    state_.tiles().put(inputs[0]); // tiles are chosen once a step
 }
 
 HostTotals Stepper::totals() const { return {state_.steps, state_.sand_initial, state_.water_initial, inputs_.totals()}; }
@@ -128,8 +128,9 @@ Status Stepper::finish_step() {
 Status Stepper::begin() {
     if (!starts()) tile_use_.choose();
     if (auto status = hooks_.before_step(); !status) return status;
-    input_ = next_input();
-    asleep_ = !timings_.on() && tile_use_.asleep() && input_.wake_count == 0;
+    const auto inputs = inputs_of_step();
+    next_inputs(inputs);
+    asleep_ = !timings_.on() && tile_use_.asleep() && inputs[0].wake_count == 0;
     return ok_status();
 }
 
@@ -149,13 +150,13 @@ Status Stepper::step() {
     const auto turn = static_cast<std::size_t>(state_.fields().turn());
     // Timed ones may be missing still, for the way that was not taken so far.
     auto program = timings_.on() ? programs_.timed(turn) : Result<compute::Program>(programs_.step(turn));
-    auto ticket = program ? state_.device().submit(*program, input_) : Result<compute::Ticket>(program.status());
+    auto ticket = program ? state_.device().submit_inputs(*program, inputs_of_step()) : Result<compute::Ticket>(program.status());
     if (!ticket) {
         inputs_.undo();
         return ticket.status();
     }
     ticket_ = *ticket;
-    tile_use_.submitted(1, ticket_, input_.wake_count > 0);
+    tile_use_.submitted(1, ticket_, inputs_of_step_[0].wake_count > 0);
     if (timings_.on()) {
         if (auto status = timings_.submitted(ticket_); !status) return status;
     }
@@ -165,6 +166,7 @@ Status Stepper::step() {
 bool Stepper::can_run() {
     // From turn 0 to turn 0 where the world may go the other way in between.
     if (state_.chooses_tiles() && state_.fields().turn() != 0) return false;
+    if (substeps() > 1) return false; // a step alone has inputs enough for one submission
     return !timings_.on() && !starts() && hooks_.undisturbed(run_steps) == run_steps && !tile_use_.asleep();
 }
 
@@ -182,7 +184,7 @@ Status Stepper::run(bool& taken) {
     const std::uint64_t first = state_.steps;
     bool woken = false;
     for (auto& input : run_inputs_) {
-        input = next_input();
+        next_inputs({&input, 1});
         woken |= input.wake_count > 0;
         state_.tiles().submitted();
         ++state_.steps;
@@ -195,7 +197,6 @@ Status Stepper::run(bool& taken) {
         return ticket.status();
     }
     ticket_ = *ticket;
-    input_ = run_inputs_.back();
     tile_use_.submitted(run_steps, ticket_, woken);
     taken = true;
     return hooks_.after_step();

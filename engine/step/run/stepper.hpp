@@ -1,5 +1,5 @@
-// Runs the step plan: a water step is one program for each of the two buffer parities, or one water part and T sand parts. Many
-// steps with nothing between them go to the device in runs of run_steps.
+// Runs the step plan: a step is one program for each of the two buffer parities, or N water parts and T sand parts. Many steps
+// with nothing between them go to the device in runs of run_steps.
 #pragma once
 #include "engine/step/run/step_inputs.hpp"
 #include "engine/step/run/step_programs.hpp"
@@ -31,9 +31,9 @@ class Stepper {
     Status steps(std::uint64_t count);
     /// Steps of one submission.
     static constexpr int run_steps = StepPrograms::run_steps;
-    /// Submits the next of a water step's parts: the water passes, then each sand substep. The same bits as step().
+    /// Submits the next of a step's parts: each water substep, then each sand substep. The same bits as step().
     Status step_part();
-    /// Parts of a water step: 1 + T, or 1 without sand.
+    /// Parts of a step: N + T, or N without sand.
     int parts() const { return programs_.parts(); }
     /// Parts of the present step already submitted; 0 between two steps.
     int parts_done() const { return parts_done_; }
@@ -94,8 +94,10 @@ class Stepper {
     Status submit_parts(int parts);
     Status finish(int parts);
     Status complete_step();
-    /// The input of the step that comes, with the tiles that it wakes.
-    StepInput next_input();
+    int substeps() const { return state_.settings().method.water_substeps; }
+    std::span<StepInput> inputs_of_step() { return {inputs_of_step_.data(), static_cast<std::size_t>(substeps())}; }
+    /// The inputs of the step that comes, one for each of the water's substeps; the first has the tiles that they wake.
+    void next_inputs(std::span<StepInput> inputs);
 
     WorldState& state_;
     StepInputs inputs_;
@@ -106,7 +108,7 @@ class Stepper {
     std::array<StepInput, run_steps> run_inputs_{};
     int parts_done_ = 0;
     compute::Ticket ticket_;
-    StepInput input_{}; // of the present step
+    std::array<StepInput, WATER_SUBSTEPS_MOST> inputs_of_step_{}; // of the present step
     Hooks hooks_;
 };
 

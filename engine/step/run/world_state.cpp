@@ -42,7 +42,8 @@ bool WorldState::may_choose_tiles() const {
 }
 
 StepPlan WorldState::plan_for(std::uint32_t effects, bool tiles) const {
-    return make_step_plan(effects, settings_.method.substeps, {tiles, fuses(), fuses_slopes()});
+    return make_step_plan(effects, {settings_.method.substeps, settings_.method.water_substeps},
+                          {tiles, fuses(), fuses_slopes()});
 }
 
 Status WorldState::check_device() const {

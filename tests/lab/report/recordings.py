@@ -13,6 +13,8 @@ LEVELS = ROOT / "samples" / "levels"
 sys.path.insert(0, str(ROOT / "tests" / "levels"))
 import measures  # noqa: E402  fields of a recording and numbers taken from them
 
+PAPER = "paper"  # variant of a shipped level that is the published scene, where the level itself is not
+
 
 class Failed(Exception):
     """The recorder refused or broke off; the text is what it said."""
@@ -50,6 +52,7 @@ class Recorder:
                 write_npy(folder / name, nx, ny, values)
         else:
             where = LEVELS / level
+            variant = variant or (PAPER if PAPER in json_of(where).get("variants", {}) else None)
         command = [self.program, str(where), "--backend", self.backend, "--threads", str(self.threads), "--out", str(folder), "--summary", str(folder / "summary.json")]
         for key, value in (("method", method), ("variant", variant), ("accuracy", accuracy), ("dt", dt), ("fused-stages", fused), ("seconds", seconds), ("water-scale", water_scale)):
             if value is not None:
@@ -84,18 +87,24 @@ def write_npy(path, nx, ny, values):
     path.write_bytes(b"\x93NUMPY\x01\x00" + len(head).to_bytes(2, "little") + head.encode() + whole.tobytes())
 
 
+def json_of(folder):
+    """A shipped level's file, its // and /* */ comments left out (no string of a level contains them)."""
+    return json.loads(re.sub(r'("(?:\\.|[^"\\])*")|//[^\n]*|/\*.*?\*/', lambda m: m[1] or "", (folder / "level.json").read_text(), flags=re.S))
+
+
 def read_level(name):
-    """A shipped level as a dict, its // and /* */ comments left out (no string of a level contains them); its maps' paths are
-    absolute, so that it can be written elsewhere."""
+    """A shipped level as a dict, as published where it has such a variant; its maps' paths are absolute, so that it can be written
+    elsewhere."""
     folder = LEVELS / name
-    text = re.sub(r'("(?:\\.|[^"\\])*")|//[^\n]*|/\*.*?\*/', lambda m: m[1] or "", (folder / "level.json").read_text(), flags=re.S)
 
     def absolute(value):
         if isinstance(value, dict):
             return {key: str(folder / inner) if key == "file" else absolute(inner) for key, inner in value.items()}
         return [absolute(inner) for inner in value] if isinstance(value, list) else value
 
-    level = absolute(json.loads(text))
+    level = absolute(json_of(folder))
+    for key, value in level.get("variants", {}).get(PAPER, {}).items():
+        level[key] = {**level[key], **value}
     level.pop("$schema", None)
     return level
 

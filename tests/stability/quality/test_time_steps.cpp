@@ -1,6 +1,8 @@
 // Waves and stress at time steps far beyond what the grid can follow are slowed, but as smooth as within; at steps so short that
 // a flux is a small part of a quantum, velocities still gather.
+#include "engine/level/level.hpp"
 #include "tests/stability/quality.hpp"
+#include <array>
 
 using namespace wadi;
 using namespace wadi::test;
@@ -86,4 +88,69 @@ TEST_CASE("at dt = 1e-5 s water on a slope gathers speed as gravity says, though
     const auto before = cells_of(*longer, "water_height");
     step(*longer, 10);
     CHECK(moved(before, cells_of(*longer, "water_height"), 1) > 0);
+}
+
+namespace {
+
+// The canyon at a test's size, to its end.
+constexpr double CANYON_SECONDS = 70;
+
+Result<Level> canyon(double dt) {
+    LevelOverrides overrides;
+    overrides.size = {100, 128};
+    overrides.dt = dt;
+    return load_level(WADI_SOURCE_DIR "/samples/levels/canyon/level.json", overrides);
+}
+
+/// Sand moved after 50 s and at the end [m3].
+std::array<double, 2> eroded(const Level& level) {
+    const auto world = make_world({level.settings, level.fields});
+    const auto before = cells_of(*world, "sand_height");
+    const auto until = [&](double seconds) {
+        const auto steps = static_cast<int>(std::lround(seconds / level.settings.dt)) - static_cast<int>(world->steps());
+        step(*world, steps);
+        return moved(before, cells_of(*world, "sand_height"), level.settings.grid.dx);
+    };
+    const double some = until(50);
+    return {some, until(CANYON_SECONDS)};
+}
+
+} // namespace
+
+TEST_CASE("the canyon's flood moves the same sand at any dt that the loader takes without a word" * doctest::test_suite("long")) {
+    const double most = 0.0355; // [s]; the loader says so
+    const auto longest = canyon(most), longer = canyon(most * 1.01), quarter = canyon(most / 4), twice = canyon(most * 2);
+    for (const auto* level : {&longest, &longer, &quarter, &twice}) REQUIRE_MESSAGE(*level, level->status().message);
+    CHECK(longest->warnings.empty());
+    CHECK(!longer->warnings.empty());
+    const auto most_sand = eroded(*longest), converged = eroded(*quarter), wrong = eroded(*twice);
+    for (const std::size_t n : {0, 1}) {
+        CAPTURE(n);
+        CHECK(std::fabs(most_sand[n] / converged[n] - 1) < 0.02);
+        CHECK(std::fabs(wrong[n] / converged[n] - 1) > 0.05); // negative control: what the loader warns of
+    }
+}
+
+TEST_CASE("15 to 240 frames a second take the same steps to the same bits" * doctest::test_suite("long")) {
+    const auto level = canyon(0.03);
+    REQUIRE_MESSAGE(level, level.status().message);
+    std::uint64_t expected = 0;
+    for (const std::uint64_t frames : {15, 24, 60, 144, 240}) {
+        CAPTURE(frames);
+        const auto world = make_world({level->settings, level->fields});
+        REQUIRE(world->set_update_settings({.max_steps_in_flight = 0}));
+        Frame frame;
+        for (std::uint64_t n = 0; n < 12 * frames; ++n) REQUIRE(world->update(1'000'000'000 / frames, frame));
+        CHECK(frame.dropped_total == 0);
+        REQUIRE(world->steps() >= 399); // 12 s, less what a frame of whole nanoseconds leaves out
+        step(*world, 400 - static_cast<int>(world->steps()));
+        const auto hash = hash_of(*world);
+        if (expected == 0) expected = hash;
+        CHECK(hash == expected);
+    }
+    const auto coarse = canyon(0.06); // negative control
+    REQUIRE_MESSAGE(coarse, coarse.status().message);
+    const auto other = make_world({coarse->settings, coarse->fields});
+    step(*other, 200);
+    CHECK(hash_of(*other) != expected);
 }
