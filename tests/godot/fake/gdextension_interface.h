@@ -1,5 +1,5 @@
-/* The part of Godot's extension interface that the scene's sources are compiled against without Godot. What they do not call has no type
- * of its own. */
+/* The part of Godot's extension interface that the scene's sources are compiled against without Godot. What they do not call has
+ * no type of its own. */
 #ifndef GDEXTENSION_INTERFACE_H
 #define GDEXTENSION_INTERFACE_H
 
