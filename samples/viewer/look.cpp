@@ -4,6 +4,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
+#include <sstream>
 #include <stdexcept>
 
 namespace viewer {
@@ -22,9 +23,8 @@ float halton(int index, int base) {
 } // namespace
 
 const std::vector<Quality>& quality_presets() {
-    static const std::vector<Quality> presets = {{"low", 1, 192, 32, 32, 6, true, true},
-                                                 {"medium", 2, 256, 64, 64, 8, true, true},
-                                                 {"high", 8, 512, 128, 128, 16, true, false}};
+    static const std::vector<Quality> presets = {
+        {"low", 1, 192, 32, 32, 6, 4, true}, {"medium", 2, 256, 64, 64, 8, 6, true}, {"high", 8, 512, 128, 128, 16, 8, false}};
     return presets;
 }
 
@@ -55,6 +55,28 @@ int view_number(const std::string& name) {
     throw std::runtime_error("view: \"" + name + "\" is none of" + known);
 }
 
+const std::vector<std::string>& features() {
+    static const std::vector<std::string> list = {"foam",     "waves",   "flow-map", "reflection", "refraction",
+                                                  "caustics", "mud",     "grain",    "ripples",    "glitter",
+                                                  "rock",     "shadows", "wet-sand", "clouds",     "haze"};
+    return list;
+}
+
+uint32_t feature_bits(const std::string& list) {
+    uint32_t bits = 0;
+    std::stringstream words(list);
+    for (std::string word; std::getline(words, word, ',');) {
+        const auto found = std::find(features().begin(), features().end(), word);
+        if (found == features().end()) {
+            std::string known;
+            for (const std::string& name : features()) known += " " + name;
+            throw std::runtime_error("feature: \"" + word + "\" is none of" + known);
+        }
+        bits |= 1u << (found - features().begin());
+    }
+    return bits;
+}
+
 float default_clarity(const Grid& grid) {
     constexpr float landscape = 5, stream = 1.5f; // [m]: the sea that a map's length stands for would hide what its valleys hold
     const float model = 0.02f * std::max(grid.lengths().x, grid.lengths().y);
@@ -75,7 +97,7 @@ FrameParams frame_params(const Picture& picture, const Grid& grid, int width, in
     const float low_sun = 1.0f - glm::smoothstep(0.0f, 0.6f, sun.z);
 
     FrameParams p{};
-    p.eye = glm::vec4(camera.eye(), 0);
+    p.eye = glm::vec4(camera.eye(), look.land && picture.view == 0 ? 1.0f : 0.0f);
     p.right = glm::vec4(camera.right() * tan_right, 0);
     p.up = glm::vec4(camera.up() * tan_up, 0);
     p.forward = glm::vec4(camera.forward() - camera.right() * (tan_right * picture.shift), 0);
@@ -84,13 +106,13 @@ FrameParams frame_params(const Picture& picture, const Grid& grid, int width, in
     p.zenith = glm::vec4(0.20f, 0.36f, 0.72f, look.ambient);
     p.horizon = glm::vec4(0.62f, 0.76f, 0.94f, picture.time);
     p.plinth = glm::vec4(0.335f, 0.315f, 0.285f, grid.block.low.z);
-    p.domain = glm::vec4(grid.dx, lengths.x, lengths.y, 0);
+    p.domain = glm::vec4(grid.dx, lengths.x, lengths.y, static_cast<float>(quality.octaves));
     const bool one = quality.samples == 1;
     p.lens = glm::vec4(one ? 0.0f : halton(sample + 1, 2) - 0.5f, one ? 0.0f : halton(sample + 1, 3) - 0.5f,
                        1.0f / static_cast<float>(sample + 1), 2 * tan_up / static_cast<float>(height));
     p.water = glm::vec4(glm::vec3(2.6f, 1.1f, 0.9f) / look.clarity, std::max(0.004f * grid.dx, 1e-4f));
     p.water_glow = glm::vec4(look.water_glow, look.ripples);
-    p.sand_dry = glm::vec4(look.sand_dry, quality.glitter ? look.glitter : 0.0f);
+    p.sand_dry = glm::vec4(look.sand_dry, look.glitter);
     p.sand_wet = glm::vec4(look.sand_wet, look.rim);
     p.rock = glm::vec4(look.rock, 0.15f * grid.dx);
     p.range = glm::vec4(picture.low, picture.high, longest / 40, longest / 160);
@@ -100,6 +122,7 @@ FrameParams frame_params(const Picture& picture, const Grid& grid, int width, in
     p.image = glm::ivec4(width, height, sample, 0);
     p.march_steps = glm::ivec4(quality.primary_steps, quality.reflection_steps, quality.refraction_steps, quality.sky_sectors);
     p.view = glm::ivec4(picture.view, picture.arrows ? 1 : 0, picture.section.shown ? 1 : 0, quality.smooth_edges ? 1 : 0);
+    p.features = glm::ivec4(static_cast<int>(look.features), 0, 0, 0);
     return p;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include "camera.hpp"
 #include "frame_params.hpp"
+#include <cstdint>
 #include <glm/vec2.hpp>
 #include <string>
 #include <vector>
@@ -14,13 +15,18 @@ struct Quality {
     int primary_steps;    // most steps of a ray from the eye
     int reflection_steps; // 0 = water mirrors the sky only
     int refraction_steps;
-    int sky_sectors; // directions in which the horizon is sought for sky light
-    bool glitter;
+    int sky_sectors;   // directions in which the horizon is sought for sky light
+    int octaves;       // of a material's pattern, each 0.45 as long as the last
     bool smooth_edges; // where there is one sample
 };
 const std::vector<Quality>& quality_presets();
 /// Throws std::runtime_error naming the presets.
 const Quality& quality_preset(const std::string& name);
+
+/// What a picture may be drawn without, to see what it brings and costs. Numbers and order are those of shaders/frame.glsl.
+const std::vector<std::string>& features();
+/// Bits of the features of a list such as "foam,glitter". Throws std::runtime_error naming the features.
+uint32_t feature_bits(const std::string& list);
 
 /// Lengths in metres; colours linear.
 struct Look {
@@ -37,6 +43,8 @@ struct Look {
     glm::vec3 sand_wet{0.155f, 0.085f, 0.040f};
     glm::vec3 rock{0.215f, 0.185f, 0.155f};
     glm::vec3 water_glow{0.010f, 0.085f, 0.11f};
+    uint32_t features = ~0u; // bits of what is drawn
+    bool land = true;        // beyond the block its rim goes on to the horizon; otherwise the block stands cut out on a plane
 };
 
 /// A view of a quantity instead of materials.

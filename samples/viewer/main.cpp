@@ -58,6 +58,10 @@ int main_checked(int argc, char** argv) {
                    "foam, height, sky, slope, strain, stress, active")
         ->capture_default_str();
     app.add_flag("--arrows", options.arrows, "arrows of velocity");
+    app.add_flag("--block", options.block, "the block alone, cut out, instead of land that goes on beyond it");
+    app.add_option("--without", options.without,
+                   "draw without some of: foam, waves, flow-map, reflection, refraction, caustics, mud, grain, ripples, glitter, "
+                   "rock, shadows, wet-sand, clouds, haze");
     app.add_flag("--offscreen", options.offscreen, "no window: writes pictures");
     app.add_option("--frames", options.frames, "offscreen: pictures to write")
         ->check(CLI::Range(1, 1000000))
@@ -105,6 +109,7 @@ int main_checked(int argc, char** argv) {
     if (options.out.empty()) options.out = std::filesystem::path("out") / options.level_name;
     quality_preset(options.quality);
     view_number(options.view);
+    feature_bits(options.without);
     if (!options.offscreen) {
         options.panel = true;
         return run_window(options);

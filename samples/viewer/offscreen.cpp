@@ -38,6 +38,8 @@ int run_offscreen(const Options& options) {
         picture.low = views()[static_cast<std::size_t>(picture.view)].low;
         picture.high = views()[static_cast<std::size_t>(picture.view)].high;
         picture.arrows = options.arrows;
+        picture.look.features = ~feature_bits(options.without);
+        picture.look.land = !options.block;
 
         simulation.set_recording(true);
         simulation.show(host_field_of(picture.view));

@@ -18,6 +18,8 @@ struct Options {
     std::string quality = "medium";
     std::string view = "picture";
     bool arrows = false;
+    std::string without; // features, see look.hpp
+    bool block = false;
     // offscreen
     bool offscreen = false;
     uint64_t frames = 1;

@@ -198,7 +198,13 @@ void Panel::quality(Session& session) {
     ImGui::SliderInt("samples", &picture.quality.samples, 1, 16);
     ImGui::SliderInt("reflection steps", &picture.quality.reflection_steps, 0, 256);
     ImGui::SliderInt("sky sectors", &picture.quality.sky_sectors, 4, 32);
-    ImGui::Checkbox("glitter", &picture.quality.glitter);
+    ImGui::SliderInt("octaves of patterns", &picture.quality.octaves, 1, 10);
+    ImGui::Checkbox("land beyond the block", &picture.look.land);
+    if (ImGui::TreeNode("drawn")) {
+        for (std::size_t n = 0; n < features().size(); ++n)
+            ImGui::CheckboxFlags(features()[n].c_str(), &picture.look.features, 1u << n);
+        ImGui::TreePop();
+    }
     const std::vector<std::string>& cameras = camera_presets();
     int camera = -1;
     if (choose(

@@ -372,7 +372,7 @@ std::optional<glm::vec3> Renderer::place_at(uint32_t x, uint32_t y) {
     });
     glm::vec4 seen;
     std::memcpy(&seen, target.mapped, sizeof(seen));
-    if (seen.w < 1.5f) return std::nullopt; // KIND_SKY, KIND_PLINTH in shaders/frame.glsl
+    if (seen.w < 1.5f || seen.w > 5.5f) return std::nullopt; // KIND_SKY, KIND_PLINTH, KIND_FAR_... in shaders/frame.glsl
     return glm::vec3(seen);
 }
 

@@ -23,6 +23,8 @@ Session::Session(const Gpu& device, Renderer& picture_renderer, const Options& o
     picture.low = views()[static_cast<std::size_t>(picture.view)].low;
     picture.high = views()[static_cast<std::size_t>(picture.view)].high;
     picture.arrows = options.arrows;
+    picture.look.features = ~feature_bits(options.without);
+    picture.look.land = !options.block;
     open(options.level_name, options.simulation);
 }
 

@@ -17,6 +17,12 @@ layout(set = 0, binding = 25) uniform sampler2D summit_image; // one texel: see 
 float summit() { return texelFetch(summit_image, ivec2(0), 0).x; }
 
 const int KIND_SKY = 0, KIND_PLINTH = 1, KIND_SOLID = 2, KIND_WATER = 3, KIND_SOLID_WALL = 4, KIND_WATER_WALL = 5;
+const int KIND_FAR_SOLID = 6, KIND_FAR_WATER = 7; // beyond the block, see beyond.glsl
+
+// What a picture may be drawn without. The numbers are those of the list in look.cpp.
+const int FOAM = 0, SMALL_WAVES = 1, FLOW_MAP = 2, REFLECTION = 3, REFRACTION = 4, CAUSTICS = 5, MUD = 6, GRAIN = 7, WIND_RIPPLES = 8, GLITTER = 9,
+          ROCK = 10, SHADOWS = 11, WET_SAND = 12, CLOUDS = 13, HAZE = 14;
+bool drawn(int feature) { return (F.features.x & (1 << feature)) != 0; }
 
 // The pyramid's levels lie in one texture, the base below and the others side by side on top of it: some drivers fetch wrong
 // texels where neighbouring lanes ask for different mip levels. F.image.w: height of the base; F.grid.w: its width.

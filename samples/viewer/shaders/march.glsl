@@ -1,6 +1,6 @@
 // Rays through the height fields. The pyramid skips blocks that a ray passes above; in a patch between four cell centres the
 // surfaces are bilinear, a ray is quadratic over them, and the first root is exact.
-const float NO_ROOT = -1e30;
+const float NO_ROOT = -1e30, NEVER = 1e18;
 const int MARCH_SOLID = 1, MARCH_WATER = 2;
 
 // First t in [t0, t1] at which the ray is at or below the bilinear patch with corners h (x: west south, y: east south,

@@ -1,4 +1,4 @@
-// Hashes and gradient noise. Integer hashes: the same picture on every device.
+// Hashes and noise. Integer hashes: the same picture on every device. Patterns of materials are in metres.
 uint hash_of(uvec2 v) {
     uint h = v.x * 0x9E3779B1u ^ (v.y + 0x7F4A7C15u) * 0x85EBCA77u;
     h ^= h >> 15; h *= 0x2C1B3C6Du;
@@ -21,3 +21,64 @@ vec3 noise_slopes(vec2 p) {
 
 // How much of a pattern of this wavelength a pixel of this size still shows.
 float resolved(float wavelength, float pixel) { return clamp(0.5 * wavelength / pixel - 0.5, 0.0, 1.0); }
+
+vec3 corner_gradient(ivec3 k) {
+    uvec3 v = uvec3(k);
+    uint h = hash_of(uvec2(v.x + v.z * 1664525u, v.y ^ (v.z * 22695477u)));
+    return vec3(unit_of(h), unit_of(h * 747796405u + 1u), unit_of(h * 2891336453u + 7u)) * 2.0 - 1.0;
+}
+
+// Gradient noise in space with its derivatives (K. Perlin, Improving Noise, 2002): x value, about -1 ... 1; yzw d/dp.
+vec4 noise_in_space(vec3 p) {
+    vec3 base = floor(p), f = p - base;
+    ivec3 k = ivec3(base);
+    vec3 u = f * f * f * (f * (f * 6.0 - 15.0) + 10.0), du = 30.0 * f * f * (f * (f - 2.0) + 1.0);
+    vec4 sum = vec4(0.0);
+    for (int corner = 0; corner < 8; ++corner) {
+        ivec3 c = ivec3(corner & 1, (corner >> 1) & 1, corner >> 2);
+        vec3 high = vec3(c), g = corner_gradient(k + c);
+        vec3 w = mix(1.0 - u, u, high), dw = mix(-du, du, high); // weight along each axis and its derivative
+        float value = dot(g, f - high), weight = w.x * w.y * w.z;
+        sum += vec4(value * weight, g * weight + value * vec3(dw.x * w.y * w.z, w.x * dw.y * w.z, w.x * w.y * dw.z));
+    }
+    return sum;
+}
+
+const mat3 TURNED = mat3(0.00, 0.80, 0.60, -0.80, 0.36, -0.48, -0.60, -0.48, 0.64);
+
+// Octaves of it from `wave` [m] down, each 0.45 as long, `keep` as steep as the last, turned, and faded where a pixel no longer
+// shows it: x value, yzw slope. crease: 0 = round lumps, 1 = lumps that meet in sharp creases.
+vec4 rough(vec3 place, float wave, float keep, float crease, float pixel) {
+    vec4 sum = vec4(0.0);
+    float steep = 1.0;
+    mat3 turn = TURNED;
+    for (int n = 0; n < int(F.domain.w); ++n) {
+        float seen = resolved(wave, pixel);
+        if (seen <= 0.0) break;
+        vec4 g = noise_in_space(place * turn / wave + float(n) * 17.3);
+        g = mix(g, g.x > 0.0 ? g : -g, crease) - vec4(0.3 * crease, vec3(0.0));
+        sum += steep * seen * vec4(g.x, turn * g.yzw);
+        wave *= 0.45;
+        steep *= keep;
+        turn = turn * TURNED;
+    }
+    return sum;
+}
+
+// Cells round random points (S. Worley, A Cellular Texture Basis Function, 1996): how much farther the second nearest point is than
+// the nearest, 0 on the walls between cells.
+float from_cell_wall(vec2 p) {
+    ivec2 base = ivec2(floor(p));
+    float nearest = 9.0, second = 9.0;
+    for (int y = -1; y <= 1; ++y) {
+        for (int x = -1; x <= 1; ++x) {
+            ivec2 k = base + ivec2(x, y);
+            uint h = hash_of(uvec2(k));
+            vec2 to = vec2(k) + vec2(unit_of(h), unit_of(h * 747796405u + 3u)) - p;
+            float far2 = dot(to, to);
+            second = min(second, max(nearest, far2));
+            nearest = min(nearest, far2);
+        }
+    }
+    return sqrt(second) - sqrt(nearest);
+}

@@ -26,7 +26,7 @@ float seen_foam(ivec2 c, float depth) {
                        (water_velocity[at(5, ivec2(c.x, high.y), 2) + 1] - water_velocity[at(5, ivec2(c.x, low.y), 2) + 1]) / run.y;
     float rising = -divergence * sqrt(depth / 9.81);
     float breaking = clamp((rising - 0.1) / 0.4, 0.0, 1.0) * clamp(10.0 * depth / F.domain.x, 0.0, 1.0);
-    return max(breaking, 0.45 * foam[at(4, c, 1)]);
+    return max(breaking, 0.28 * foam[at(4, c, 1)]);
 }
 
 void main() {

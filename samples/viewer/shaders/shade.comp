@@ -5,6 +5,7 @@
 #include "march.glsl"
 #include "noise.glsl"
 #include "sky.glsl"
+#include "beyond.glsl"
 #include "ground.glsl"
 #include "waves.glsl"
 #include "false_colour.glsl"
@@ -51,6 +52,53 @@ vec3 shade_wall(vec3 place, vec3 normal, float pixel) {
     return albedo * (F.sunlight.rgb * max(dot(normal, F.sun.xyz), 0.0) + ambient_on(normal, foot));
 }
 
+// What comes through `path` metres of water from below. lights: what shines into it; mud: share of stirred sand, see mud_in.
+vec3 through_water(vec3 below, float path, float mud, vec3 lights) {
+    vec3 through = exp(-(F.water.rgb + mud * vec3(2.2, 3.2, 5.0)) * path);
+    vec3 glow = mix(F.water_glow.rgb, 1.5 * F.sand_wet.rgb, clamp(1.4 * mud, 0.0, 1.0));
+    return below * through + glow * lights * (1.0 - through);
+}
+
+float fresnel_of(vec3 normal, vec3 along) { return 0.02 + 0.98 * pow(1.0 - clamp(-dot(normal, along), 0.0, 1.0), 5.0); }
+
+vec3 foam_colour(vec3 normal, vec4 lit) {
+    float facing = 0.35 + 0.65 * max(dot(normal, F.sun.xyz), 0.0);
+    return 0.8 * (F.sunlight.rgb * (lit.x * facing) + ambient_on(normal, lit.y));
+}
+
+// The land beyond the block. Shadows and foam of the rim fade out from it.
+vec3 shade_beyond(vec3 place, vec3 along, bool water, float pixel) {
+    vec2 rim = on_block(place.xy), uv = texture_of(rim);
+    float away = length(place.xy - rim) / max(F.domain.y, F.domain.z), near = exp(-20.0 * away);
+    vec2 inside = vec2(equal(rim, place.xy));
+    vec4 h = heights_at(rim), slope = textureLod(slopes, uv, 0.0) * inside.xyxy;
+    Ground g = ground_at(vec3(rim, place.z), -along, pixel);
+    g.place = place;
+    g.normal = normalize(vec3(-slope.xy, 1.0));
+    g.sun = mix(1.0, g.sun, near);
+    g.sky = mix(1.0, g.sky, near);
+    vec4 lit = vec4(g.sun, g.sky, 0.0, 0.0);
+    vec3 colour = vec3(0.0);
+    WHERE (water) {
+        vec4 state = textureLod(matter, uv, 0.0), moving = textureLod(flow, uv, 0.0);
+        float depth = h.y - h.x, cover = smoothstep(0.0, 3.0 * F.water.w, depth);
+        Carried carried = carried_at(place.xy, moving.xy);
+        vec3 normal = normalize(vec3(-slope.zw - ripple_slopes(carried, length(moving.xy), pixel) * cover, 1.0));
+        vec3 mirrored = reflect(along, normal);
+        float path = depth / max(-refract(along, normal, 0.75).z, 0.1), mud = mud_in(place, length(moving.xy), state.w, depth, h.w) * cover;
+        g.drowned = cover;
+        g.sun *= caustics_at(place.xy, depth, pixel) * exp(-0.35 * dot(F.water.rgb, vec3(0.33)) * depth);
+        g.place = vec3(place.xy, h.x);
+        vec3 lights = F.sunlight.rgb * (0.75 * lit.x * F.sun.z) + ambient_on(vec3(0.0, 0.0, 1.0), lit.y);
+        colour = through_water(shade_ground(g), path, mud, lights);
+        colour = mix(colour, sky_in(normalize(vec3(mirrored.xy, max(mirrored.z, 0.01)))), drawn(REFLECTION) ? fresnel_of(normal, along) * cover : 0.0);
+        colour += F.sunlight.rgb * (lit.x * cover * 2.5 * pow(max(dot(mirrored, F.sun.xyz), 0.0), 350.0));
+        colour = mix(colour, foam_colour(normal, lit), near * foam_cover(carried, state.y, depth, pixel) * cover);
+    }
+    WHERE (!water) colour = shade_ground(g);
+    return colour;
+}
+
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
     if (any(greaterThanEqual(pixel, F.image.xy))) return;
@@ -72,7 +120,7 @@ void main() {
 
     // Water bends the ray down to the ground below and mirrors another.
     vec3 ground = place, normal = vec3(0.0, 0.0, 1.0), mirrored = along;
-    float path = 0.0, foam = 0.0, cover = 0.0, fresnel = 0.0;
+    float path = 0.0, foam = 0.0, cover = 0.0, fresnel = 0.0, mud = 0.0;
     vec4 lit = vec4(1.0);
     vec3 mirror_colour = vec3(0.0);
     bool lost = false; // the bent ray leaves the block without meeting ground
@@ -80,14 +128,16 @@ void main() {
         vec4 state = textureLod(matter, uv, 0.0);
         vec2 velocity = textureLod(flow, uv, 0.0).xy;
         lit = textureLod(light, uv, 0.0);
+        if (!drawn(SHADOWS)) lit.x = 1.0;
         vec4 h = heights_at(place.xy);
         cover = smoothstep(0.0, 3.0 * F.water.w, h.y - h.x);
         Carried carried = carried_at(place.xy, velocity);
+        mud = mud_in(place, length(velocity), state.w, h.y - h.x, h.w) * cover;
         foam = foam_cover(carried, state.y, h.y - h.x, pixel_size) * cover;
         vec2 slope = textureLod(slopes, uv, 0.0).zw + ripple_slopes(carried, length(velocity), pixel_size) * cover;
         normal = wall ? normalize(to_wall + vec3(0.15 * slope, 0.0)) : normalize(vec3(-slope, 1.0));
         if (dot(normal, along) > -0.02) normal = normalize(normal - along * (dot(normal, along) + 0.02));
-        vec3 bent = refract(along, normal, mix(1.0, 0.75, cover));
+        vec3 bent = drawn(REFRACTION) ? refract(along, normal, mix(1.0, 0.75, cover)) : along;
         int axis;
         vec3 inside = place - (wall ? to_wall * (1e-3 * F.domain.x) : vec3(0.0));
         vec2 span = block_span(inside, bent, axis);
@@ -95,8 +145,12 @@ void main() {
         Hit bed = march(inside, bent, 0.0, min(span.y, most), MARCH_SOLID, F.march_steps.z);
         path = bed.t >= 0.0 ? bed.t : min(span.y, most);
         lost = bed.t < 0.0 && span.y < most;
+        if (lost && F.eye.w != 0.0) { // on to the bed beyond the block
+            path = min((place.z - h.x) / max(-bent.z, 0.1), most);
+            lost = false;
+        }
         ground = inside + bent * path;
-        fresnel = (0.02 + 0.98 * pow(1.0 - clamp(-dot(normal, along), 0.0, 1.0), 5.0)) * cover;
+        fresnel = drawn(REFLECTION) ? fresnel_of(normal, along) * cover : 0.0;
         mirrored = reflect(along, normal);
         if (!wall) mirrored = normalize(vec3(mirrored.xy, max(mirrored.z, 0.01)));
         mirror_colour = mirrored.z > 0.0 ? sky_in(mirrored) : F.plinth.rgb * F.sunlight.rgb * F.sun.z;
@@ -123,7 +177,7 @@ void main() {
                 g.drowned = max(cover, 0.0);
                 // Sunlight on its way down, spread by the waves.
                 float down = max(heights_at(ground.xy).y - ground.z, 0.0);
-                g.sun = mix(g.sun, lit.x, 0.5) * exp(-0.35 * dot(F.water.rgb, vec3(0.33)) * down);
+                g.sun = mix(g.sun, lit.x, 0.5) * caustics_at(ground.xy, down, pixel_size) * exp(-0.35 * dot(F.water.rgb, vec3(0.33)) * down);
             }
             vec3 light_back = shade_ground(g);
             if (turn == 0) colour = light_back;
@@ -135,14 +189,14 @@ void main() {
     WHERE (kind == KIND_SOLID_WALL) colour = shade_wall(place, to_wall, pixel_size);
     WHERE (water) {
         if (lost) colour = ambient_on(vec3(0.0, 0.0, 1.0), 1.0) * 0.5;
-        vec3 through = exp(-F.water.rgb * path);
         vec3 lights = F.sunlight.rgb * (0.75 * lit.x * F.sun.z) + ambient_on(vec3(0.0, 0.0, 1.0), lit.y);
-        colour = colour * through + F.water_glow.rgb * lights * (1.0 - through);
+        colour = through_water(colour, path, mud, lights);
         float glint = pow(max(dot(reflect(along, normal), F.sun.xyz), 0.0), 350.0);
         colour = mix(colour, mirror_colour, fresnel) + F.sunlight.rgb * (lit.x * cover * 2.5 * glint);
-        float foam_light = 0.35 + 0.65 * max(dot(normal, F.sun.xyz), 0.0);
-        colour = mix(colour, 0.8 * (F.sunlight.rgb * (lit.x * foam_light) + ambient_on(normal, lit.y)), wall ? 0.0 : foam);
+        colour = mix(colour, foam_colour(normal, lit), wall ? 0.0 : foam);
     }
+    WHERE (kind >= KIND_FAR_SOLID) colour = shade_beyond(place, along, kind == KIND_FAR_WATER, pixel_size);
+    WHERE (F.eye.w != 0.0 && kind >= KIND_SOLID) colour = through_air(colour, along, distance);
     colour = tone_mapped(colour);
     WHERE (F.view.x != 0 && kind >= KIND_SOLID) {
         vec2 slope = textureLod(slopes, uv, 0.0).xy;
