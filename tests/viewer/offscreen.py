@@ -75,7 +75,7 @@ def test_backends_agree(viewer):
     one, other = (viewer.picture(f"same_{b}", "dam_break", "--backend", b, "--start", 1, "--grid", "96x96", "--size", "192x108") for b in ("cpu", "vulkan"))
     mean, most = difference(one, other)
     print(f"backends: {mean:.3f}, {most:.3f}")
-    assert mean < 1 and most < 12 # the outputs of one are interpolated in time, one step late
+    assert mean < 1.5 and most < 14 # the outputs of one are interpolated in time, one step late, and the net of foam shows it
 
 
 def part(picture, left, top, right, bottom):

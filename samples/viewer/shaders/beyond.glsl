@@ -26,5 +26,11 @@ float meet_beyond(vec3 from, vec3 along, float t0, float t_end) {
     return -1.0;
 }
 
-// Whether the land is drawn: an eye that would be under it sees the block cut out.
-bool goes_on() { return F.eye.w != 0.0 && F.eye.z > top_beyond(F.eye.xy); }
+bool goes_on() { return F.eye.w != 0.0; }
+
+// The eye, pushed up out of ground and water.
+vec3 eye_place() {
+    bool over_land = goes_on() || on_block(F.eye.xy) == F.eye.xy;
+    float lowest = top_beyond(F.eye.xy) + 0.002 * max(F.domain.y, F.domain.z);
+    return vec3(F.eye.xy, over_land ? max(F.eye.z, lowest) : F.eye.z);
+}

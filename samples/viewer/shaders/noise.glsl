@@ -46,16 +46,24 @@ vec4 noise_in_space(vec3 p) {
 
 const mat3 TURNED = mat3(0.00, 0.80, 0.60, -0.80, 0.36, -0.48, -0.60, -0.48, 0.64);
 
-// Octaves of it from `wave` [m] down, each 0.45 as long, `keep` as steep as the last, turned, and faded where a pixel no longer
-// shows it: x value, yzw slope. crease: 0 = round lumps, 1 = lumps that meet in sharp creases.
+// Octaves of it from `wave` [m] down, each 0.45 as long, `keep` as steep as the last, and turned: x value, yzw slope. Those that a pixel
+// no longer shows fade out, and close to the eye those that are far longer than the shortest that it shows, so that their number is
+// bounded. crease: 0 = round lumps, 1 = lumps that meet in sharp creases.
 vec4 rough(vec3 place, float wave, float keep, float crease, float pixel) {
     vec4 sum = vec4(0.0);
     float steep = 1.0;
     mat3 turn = TURNED;
-    for (int n = 0; n < int(F.domain.w); ++n) {
-        float seen = resolved(wave, pixel);
-        if (seen <= 0.0) break;
-        vec4 g = noise_in_space(place * turn / wave + float(n) * 17.3);
+    // Loops are bounded by a count: some drivers give up on others.
+    float longest = 6.0 * pixel * pow(2.2222, F.domain.w), shift = 0.0;
+    for (int n = 0; n < 12 && wave > longest; ++n, shift += 17.3) {
+        wave *= 0.45;
+        steep *= keep;
+        turn = turn * TURNED;
+    }
+    for (int n = 0; n < int(F.domain.w); ++n, shift += 17.3) {
+        float seen = resolved(wave, pixel) * (1.0 - smoothstep(0.5 * longest, longest, wave));
+        if (seen <= 0.0 && wave < longest * 0.4) break;
+        vec4 g = noise_in_space(place * turn / wave + shift);
         g = mix(g, g.x > 0.0 ? g : -g, crease) - vec4(0.3 * crease, vec3(0.0));
         sum += steep * seen * vec4(g.x, turn * g.yzw);
         wave *= 0.45;

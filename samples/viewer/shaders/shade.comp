@@ -106,7 +106,7 @@ void main() {
     int kind = int(seen.w + 0.5);
     vec3 place = seen.xyz;
     vec3 along = ray_through(vec2(pixel));
-    float distance = length(place - F.eye.xyz);
+    float distance = length(place - eye_place());
     float pixel_size = F.lens.w * distance;
     bool water = kind == KIND_WATER || kind == KIND_WATER_WALL;
     bool wall = kind == KIND_SOLID_WALL || kind == KIND_WATER_WALL;
@@ -145,7 +145,7 @@ void main() {
         Hit bed = march(inside, bent, 0.0, min(span.y, most), MARCH_SOLID, F.march_steps.z);
         path = bed.t >= 0.0 ? bed.t : min(span.y, most);
         lost = bed.t < 0.0 && span.y < most;
-        if (lost && F.eye.w != 0.0) { // on to the bed beyond the block
+        if (lost && goes_on()) { // on to the bed beyond the block
             path = min((place.z - h.x) / max(-bent.z, 0.1), most);
             lost = false;
         }
@@ -196,7 +196,7 @@ void main() {
         colour = mix(colour, foam_colour(normal, lit), wall ? 0.0 : foam);
     }
     WHERE (kind >= KIND_FAR_SOLID) colour = shade_beyond(place, along, kind == KIND_FAR_WATER, pixel_size);
-    WHERE (F.eye.w != 0.0 && kind >= KIND_SOLID) colour = through_air(colour, along, distance);
+    WHERE (goes_on() && kind >= KIND_SOLID) colour = through_air(colour, along, distance);
     colour = tone_mapped(colour);
     WHERE (F.view.x != 0 && kind >= KIND_SOLID) {
         vec2 slope = textureLod(slopes, uv, 0.0).xy;
