@@ -2,7 +2,7 @@
 """Makes the gallery: a picture of every level and variant by wadi-viewer, picture.jpg and picture_VARIANT.jpg beside the level,
 and the list of them in samples/levels/README.md. Moment and camera are those of the level's picture.json.
 
-usage: samples/levels/gallery.py VIEWER [LEVEL ...] [--backend auto] [--quality high] [--size 960x540] [--coarse 1] [--moments 1] [--out DIR]
+usage: samples/levels/gallery.py VIEWER [LEVEL ...] [--backend auto] [--quality high] [--size 960x540] [--accuracy balanced] [--coarse 1] [--moments 1] [--out DIR]
 """
 import argparse
 import json
@@ -67,6 +67,8 @@ def take(options, folder, variant, level, picture):
     # "--camera=": a value that begins with a minus sign is no option of its own
     command = [options.viewer, str(folder), "--offscreen", "--jpeg", "--start", time, f"--camera={camera}",
                "--frames", options.moments, "--every", duration / options.moments, "--backend", options.backend, "--quality", options.quality, "--size", options.size]
+    if options.accuracy != "balanced":
+        command += ["--accuracy", options.accuracy]
     if options.coarse > 1:
         command += ["--grid", f"{max(grid['nx'] // options.coarse, 1)}x{max(grid['ny'] // options.coarse, 1)}"]
     if variant is not None:
@@ -97,6 +99,7 @@ def main():
     parser.add_argument("--backend", default="auto", help="of the simulation")
     parser.add_argument("--quality", default="high", help="low, medium, high")
     parser.add_argument("--size", default="960x540")
+    parser.add_argument("--accuracy", default="balanced", help="draft, balanced, accurate: half, all or twice the cells along each axis")
     parser.add_argument("--coarse", type=int, default=1, help="cells N times as wide: to try cameras on slow machines")
     parser.add_argument("--moments", type=int, default=1, help="N pictures over the level's length, without its variants; wants --out")
     parser.add_argument("--out", type=pathlib.Path, help="pictures go into this folder, and the README stays as it is")

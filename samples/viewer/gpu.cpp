@@ -248,12 +248,12 @@ void Buffer::swap(Buffer& other) noexcept {
     std::swap(memory_, other.memory_);
 }
 
-Image::Image(const Gpu& gpu, uint32_t across, uint32_t down, VkFormat format, VkImageUsageFlags usage)
+Image::Image(const Gpu& gpu, uint32_t across, uint32_t down, VkFormat format, VkImageUsageFlags usage, uint32_t depth)
     : width(across), height(down), device_(gpu.device) {
     VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
-    info.imageType = VK_IMAGE_TYPE_2D;
+    info.imageType = depth > 1 ? VK_IMAGE_TYPE_3D : VK_IMAGE_TYPE_2D;
     info.format = format;
-    info.extent = {across, down, 1};
+    info.extent = {across, down, depth};
     info.mipLevels = 1;
     info.arrayLayers = 1;
     info.samples = VK_SAMPLE_COUNT_1_BIT;
@@ -268,7 +268,7 @@ Image::Image(const Gpu& gpu, uint32_t across, uint32_t down, VkFormat format, Vk
     check(vkBindImageMemory(device_, handle, memory_, 0), "vkBindImageMemory");
     VkImageViewCreateInfo view_info{VK_STRUCTURE_TYPE_IMAGE_VIEW_CREATE_INFO};
     view_info.image = handle;
-    view_info.viewType = VK_IMAGE_VIEW_TYPE_2D;
+    view_info.viewType = depth > 1 ? VK_IMAGE_VIEW_TYPE_3D : VK_IMAGE_VIEW_TYPE_2D;
     view_info.format = format;
     view_info.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
     check(vkCreateImageView(device_, &view_info, nullptr, &view), "vkCreateImageView");

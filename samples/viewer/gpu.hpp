@@ -82,7 +82,8 @@ class Buffer {
 class Image {
   public:
     Image() = default;
-    Image(const Gpu& gpu, uint32_t width, uint32_t height, VkFormat format, VkImageUsageFlags usage);
+    /// Of three dimensions where depth > 1.
+    Image(const Gpu& gpu, uint32_t width, uint32_t height, VkFormat format, VkImageUsageFlags usage, uint32_t depth = 1);
     Image(Image&& other) noexcept { swap(other); }
     Image& operator=(Image&& other) noexcept {
         swap(other);

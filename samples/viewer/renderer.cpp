@@ -14,7 +14,8 @@ constexpr uint32_t GROUP = 8; // local size of the passes
 
 // Bindings of shaders/frame.glsl and of the passes.
 constexpr std::array<uint32_t, 7> sampled_bindings = {1, 2, 3, 4, 5, 6, 25};
-constexpr uint32_t first_storage = 14, storage_count = 11, summit_storage = 26;
+constexpr uint32_t first_storage = 14, storage_count = 11, summit_storage = 26, noise_sampled = 28, noise_storage = 29;
+constexpr uint32_t NOISE_SIZE = 64; // texels along each axis of the noise: shaders/noise.glsl
 constexpr std::array<uint32_t, 8> source_bindings = {7, 8, 9, 10, 11, 12, 13, 27};
 
 template <std::size_t N> VkPipeline make_pipeline(const Gpu& gpu, VkPipelineLayout layout, const uint32_t (&words)[N]) {
@@ -48,7 +49,12 @@ Renderer::Renderer(const Gpu& gpu, uint32_t width, uint32_t height, VkImageUsage
     sampler.addressModeU = sampler.addressModeV = sampler.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
     sampler.maxLod = VK_LOD_CLAMP_NONE;
     check(vkCreateSampler(gpu_.device, &sampler, nullptr, &sampler_), "vkCreateSampler");
+    sampler.addressModeU = sampler.addressModeV = sampler.addressModeW = VK_SAMPLER_ADDRESS_MODE_REPEAT;
+    check(vkCreateSampler(gpu_.device, &sampler, nullptr, &tiling_sampler_), "vkCreateSampler");
+    noise_ = Image(gpu_, NOISE_SIZE, NOISE_SIZE, VK_FORMAT_R16G16B16A16_SFLOAT,
+                   VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT, NOISE_SIZE);
     make_layouts();
+    bake_ = make_pipeline(gpu_, pipeline_layout_, bake_spirv);
     prepare_ = make_pipeline(gpu_, pipeline_layout_, prepare_spirv);
     slopes_pass_ = make_pipeline(gpu_, pipeline_layout_, slopes_spirv);
     reduce_ = make_pipeline(gpu_, pipeline_layout_, reduce_spirv);
@@ -84,10 +90,11 @@ Renderer::~Renderer() {
     vkDestroyFence(gpu_.device, done_, nullptr);
     vkFreeCommandBuffers(gpu_.device, gpu_.pool, 1, &commands_);
     vkDestroyDescriptorPool(gpu_.device, pool_, nullptr);
-    for (VkPipeline pipeline : {prepare_, slopes_pass_, reduce_, summit_pass_, light_pass_, see_, shade_, finish_})
+    for (VkPipeline pipeline : {bake_, prepare_, slopes_pass_, reduce_, summit_pass_, light_pass_, see_, shade_, finish_})
         vkDestroyPipeline(gpu_.device, pipeline, nullptr);
     vkDestroyPipelineLayout(gpu_.device, pipeline_layout_, nullptr);
     vkDestroyDescriptorSetLayout(gpu_.device, set_layout_, nullptr);
+    vkDestroySampler(gpu_.device, tiling_sampler_, nullptr);
     vkDestroySampler(gpu_.device, sampler_, nullptr);
 }
 
@@ -101,6 +108,8 @@ void Renderer::make_layouts() {
     for (uint32_t binding : source_bindings) add(binding, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER);
     for (uint32_t n = 0; n < storage_count; ++n) add(first_storage + n, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
     add(summit_storage, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
+    add(noise_sampled, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER);
+    add(noise_storage, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE);
     VkDescriptorSetLayoutCreateInfo info{VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO};
     info.bindingCount = static_cast<uint32_t>(bindings.size());
     info.pBindings = bindings.data();
@@ -157,9 +166,9 @@ void Renderer::make_descriptor_set() {
     vkDestroyDescriptorPool(gpu_.device, pool_, nullptr);
     const std::array<VkDescriptorPoolSize, 4> sizes = {
         VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, 1},
-        VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, static_cast<uint32_t>(sampled_bindings.size())},
+        VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, static_cast<uint32_t>(sampled_bindings.size()) + 1},
         VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, static_cast<uint32_t>(Sources{}.size())},
-        VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, storage_count + 1}};
+        VkDescriptorPoolSize{VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, storage_count + 2}};
     VkDescriptorPoolCreateInfo pool{VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO};
     pool.maxSets = 1;
     pool.poolSizeCount = static_cast<uint32_t>(sizes.size());
@@ -171,7 +180,7 @@ void Renderer::make_descriptor_set() {
     info.pSetLayouts = &set_layout_;
     check(vkAllocateDescriptorSets(gpu_.device, &info, &set_), "vkAllocateDescriptorSets");
     const auto write_image = [&](uint32_t binding, VkDescriptorType type, VkImageView view) {
-        const VkDescriptorImageInfo image{sampler_, view, VK_IMAGE_LAYOUT_GENERAL};
+        const VkDescriptorImageInfo image{binding == noise_sampled ? tiling_sampler_ : sampler_, view, VK_IMAGE_LAYOUT_GENERAL};
         VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
         write.dstSet = set_;
         write.dstBinding = binding;
@@ -189,6 +198,8 @@ void Renderer::make_descriptor_set() {
                                                             colour_.view,  colour_.view, picture_.view};
     for (uint32_t n = 0; n < storage_count; ++n) write_image(first_storage + n, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, storage[n]);
     write_image(summit_storage, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, summit_.view);
+    write_image(noise_sampled, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, noise_.view);
+    write_image(noise_storage, VK_DESCRIPTOR_TYPE_STORAGE_IMAGE, noise_.view);
     const VkDescriptorBufferInfo buffer{params_.handle, 0, sizeof(FrameParams)};
     VkWriteDescriptorSet write{VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET};
     write.dstSet = set_;
@@ -285,6 +296,8 @@ void Renderer::draw(const Picture& what, const Grid& grid, const Sources& source
     }
     vkCmdPipelineBarrier(commands_, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, 0, 1, &ahead,
                          static_cast<uint32_t>(acquired.size()), acquired.data(), 0, nullptr);
+    if (!baked_) dispatch(bake_, NOISE_SIZE, NOISE_SIZE * NOISE_SIZE, 0);
+    baked_ = true;
     mark(0);
     const auto across = static_cast<uint32_t>(nx_), down = static_cast<uint32_t>(ny_);
     dispatch(prepare_, across, down, 0);

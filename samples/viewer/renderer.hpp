@@ -44,11 +44,12 @@ class Renderer {
     static constexpr uint32_t MARKS = 6;
     const Gpu& gpu_;
     VkImageUsageFlags usage_;
-    VkSampler sampler_ = VK_NULL_HANDLE;
+    VkSampler sampler_ = VK_NULL_HANDLE, tiling_sampler_ = VK_NULL_HANDLE;
     VkDescriptorSetLayout set_layout_ = VK_NULL_HANDLE;
     VkPipelineLayout pipeline_layout_ = VK_NULL_HANDLE;
     VkPipeline prepare_ = VK_NULL_HANDLE, slopes_pass_ = VK_NULL_HANDLE, reduce_ = VK_NULL_HANDLE, summit_pass_ = VK_NULL_HANDLE,
-               light_pass_ = VK_NULL_HANDLE, see_ = VK_NULL_HANDLE, shade_ = VK_NULL_HANDLE, finish_ = VK_NULL_HANDLE;
+               light_pass_ = VK_NULL_HANDLE, bake_ = VK_NULL_HANDLE, see_ = VK_NULL_HANDLE, shade_ = VK_NULL_HANDLE,
+               finish_ = VK_NULL_HANDLE;
     VkDescriptorPool pool_ = VK_NULL_HANDLE;
     VkDescriptorSet set_ = VK_NULL_HANDLE;
     VkCommandBuffer commands_ = VK_NULL_HANDLE;
@@ -63,6 +64,8 @@ class Renderer {
     uint32_t levels_ = 0, base_width_ = 0, base_height_ = 0; // of the pyramid
     Image heights_, slopes_, matter_, flow_, light_, pyramid_, summit_;
     Image seen_, colour_, picture_;
+    Image noise_; // baked with the first picture
+    bool baked_ = false;
 
     void make_layouts();
     void make_grid_images(const Grid& grid);

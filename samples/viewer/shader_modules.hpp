@@ -1,5 +1,6 @@
 // SPIR-V of the passes, embedded by the build.
 #pragma once
+#include "viewer_shaders/bake.comp.h"
 #include "viewer_shaders/finish.comp.h"
 #include "viewer_shaders/light.comp.h"
 #include "viewer_shaders/prepare.comp.h"

@@ -13,6 +13,8 @@ layout(set = 0, binding = 6) uniform sampler2D pyramid; // greatest height of pa
 
 layout(set = 0, binding = 25) uniform sampler2D summit_image; // one texel: see summit.comp
 
+layout(set = 0, binding = 28) uniform sampler3D noise_image; // see noise.glsl
+
 // An elevation above every surface [m].
 float summit() { return texelFetch(summit_image, ivec2(0), 0).x; }
 

@@ -22,27 +22,10 @@ vec3 noise_slopes(vec2 p) {
 // How much of a pattern of this wavelength a pixel of this size still shows.
 float resolved(float wavelength, float pixel) { return clamp(0.5 * wavelength / pixel - 0.5, 0.0, 1.0); }
 
-vec3 corner_gradient(ivec3 k) {
-    uvec3 v = uvec3(k);
-    uint h = hash_of(uvec2(v.x + v.z * 1664525u, v.y ^ (v.z * 22695477u)));
-    return vec3(unit_of(h), unit_of(h * 747796405u + 1u), unit_of(h * 2891336453u + 7u)) * 2.0 - 1.0;
-}
-
-// Gradient noise in space with its derivatives (K. Perlin, Improving Noise, 2002): x value, about -1 ... 1; yzw d/dp.
-vec4 noise_in_space(vec3 p) {
-    vec3 base = floor(p), f = p - base;
-    ivec3 k = ivec3(base);
-    vec3 u = f * f * f * (f * (f * 6.0 - 15.0) + 10.0), du = 30.0 * f * f * (f * (f - 2.0) + 1.0);
-    vec4 sum = vec4(0.0);
-    for (int corner = 0; corner < 8; ++corner) {
-        ivec3 c = ivec3(corner & 1, (corner >> 1) & 1, corner >> 2);
-        vec3 high = vec3(c), g = corner_gradient(k + c);
-        vec3 w = mix(1.0 - u, u, high), dw = mix(-du, du, high); // weight along each axis and its derivative
-        float value = dot(g, f - high), weight = w.x * w.y * w.z;
-        sum += vec4(value * weight, g * weight + value * vec3(dw.x * w.y * w.z, w.x * dw.y * w.z, w.x * w.y * dw.z));
-    }
-    return sum;
-}
+// Gradient noise in space with its derivatives, from the image that bake.comp makes: x value, about -1 ... 1; yzw d/dp. It repeats
+// after NOISE_PERIOD, which turned octaves hide.
+const float NOISE_PERIOD = 8.0;
+vec4 noise_in_space(vec3 p) { return textureLod(noise_image, p / NOISE_PERIOD, 0.0); }
 
 const mat3 TURNED = mat3(0.00, 0.80, 0.60, -0.80, 0.36, -0.48, -0.60, -0.48, 0.64);
 
