@@ -31,7 +31,7 @@ endforeach()
 # With checks in it no loop becomes vector code: base alone, which otherwise is checked beside them.
 if(WADI_CHECK_INDICES STREQUAL "ON" OR WADI_SANITIZE)
   set(asked base)
-elseif(WADI_CHECK_INDICES STREQUAL "BASE")
+elseif(WADI_CHECK_INDICES STREQUAL "BASE" OR WADI_NARROW_MASKS STREQUAL "largest") # by which the masks run that the others lack
   list(APPEND asked base)
 endif()
 set(WADI_INSTRUCTION_SETS "")

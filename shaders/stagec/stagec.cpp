@@ -1,14 +1,14 @@
 // stagec: the build's own tool for stage files and fused files. It has no dependencies and is built first.
 //   stagec glsl  EFFECTS_H STAGE OUT.comp          GLSL wrapper: prelude, stage, main()
-//   stagec cpp   EFFECTS_H STAGE OUT.cpp ISA all|largest [BELOW]  a function per mask the stage distinguishes, for one
-//   instruction
-//                                                  set; largest: of each choice of methods the masks that no other one includes;
-//                                                  BELOW: the set whose functions run the masks that are left out
+//   stagec cpp   EFFECTS_H STAGE OUT.cpp ISA all|common|largest [BELOW]  a function per mask the stage distinguishes, for one
+//                                                  instruction set; largest: of each choice of methods the masks that no other
+//                                                  one includes; common: those and all without a choice; BELOW: the set whose
+//                                                  functions run the masks that are left out
 //   stagec cuda  EFFECTS_H STAGE OUT.cu all|largest  every mask as CUDA kernels; largest: masks that no other one includes
 //   stagec nocontract IN.spv OUT.spv               decorates every float operation NoContraction
 //   stagec embed IN.spv OUT.inc                    a module as the words of a C++ array
 //   stagec table EFFECTS_H OUT.cpp SPIRV_DIR|- STAGES...   the stage table that the engine reads
-//   stagec cpurows OUT.cpp ISAS STAGES...          the CPU backend's index of the compiled stages
+//   stagec cpurows OUT.cpp ISAS fused|- STAGES...  the CPU backend's index of the compiled stages, with or without fused ones
 //   stagec cudarows OUT.cpp STAGES...              the CUDA backend's index of the compiled kernels
 #include "writers.hpp"
 
@@ -20,9 +20,9 @@ int main(int argc, char** argv) {
     if (mode == "glsl" && a.size() == 4) {
         const Effects effects = parse_effects(a[1]);
         write_code(a[3], is_fused(a[2]) ? write_glsl(parse_fused(a[2], effects), effects) : write_glsl(parse_stage(a[2])));
-    } else if (mode == "cpp" && (a.size() == 6 || a.size() == 7) && (a[5] == "all" || a[5] == "largest")) {
+    } else if (mode == "cpp" && (a.size() == 6 || a.size() == 7) && (a[5] == "all" || a[5] == "common" || a[5] == "largest")) {
         const Effects effects = parse_effects(a[1]);
-        const CpuSet set{a[4], a.size() == 7 ? a[6] : "", a[5] == "all"};
+        const CpuSet set{a[4], a.size() == 7 ? a[6] : "", a[5]};
         write_code(a[3], is_fused(a[2]) ? write_cpp(parse_fused(a[2], effects), set, effects)
                                         : write_cpp(parse_stage(a[2]), set, effects));
     } else if (mode == "cuda" && a.size() == 5 && (a[4] == "all" || a[4] == "largest")) {
@@ -36,8 +36,8 @@ int main(int argc, char** argv) {
         write_code(a[2], "// Written by stagec." + word_list(a[1]) + "\n");
     } else if (mode == "table" && a.size() >= 5) {
         write_code(a[2], stage_table({a.begin() + 4, a.end()}, parse_effects(a[1]), a[3]));
-    } else if (mode == "cpurows" && a.size() >= 4) {
-        write_code(a[1], cpu_rows(a[2], {a.begin() + 3, a.end()}));
+    } else if (mode == "cpurows" && a.size() >= 5) {
+        write_code(a[1], cpu_rows(a[2], a[3] == "fused", {a.begin() + 4, a.end()}));
     } else if (mode == "cudarows" && a.size() >= 3) {
         std::vector<std::string> names;
         for (std::size_t i = 2; i < a.size(); ++i) names.push_back(stem(a[i]));

@@ -1,4 +1,5 @@
 #include "writers.hpp"
+#include <algorithm>
 #include <sstream>
 
 namespace stagec {
@@ -38,8 +39,14 @@ std::string file_head(const Stage& s, const std::string& isa) {
 // The lowest set has every mask, and what another lacks is that of the set below.
 std::string select_function(const Stage& s, const CpuSet& set, unsigned tested, std::vector<unsigned> masks,
                             const Effects& effects) {
-    const auto& [isa, below, all_masks] = set;
-    if (!below.empty() && !all_masks) masks = largest(masks, ~(effects.at(first_choice) - 1));
+    const auto& [isa, below, chosen] = set;
+    if (!below.empty() && chosen != "all") {
+        const unsigned choices = ~(effects.at(first_choice) - 1);
+        const auto kept = largest(masks, choices);
+        std::erase_if(masks, [&](unsigned mask) {
+            return !(chosen == "common" && (mask & choices) == 0) && std::find(kept.begin(), kept.end(), mask) == kept.end();
+        });
+    }
     std::ostringstream o;
     o << "using Block = void (*)(void* const*, const unsigned long long*, const void*, const void*, int, int, int, int);\n";
     if (!below.empty()) o << "extern \"C\" Block wadi_cpu_" << below << "_" << s.name << "(unsigned effects);\n";

@@ -42,7 +42,7 @@ std::string write_glsl(const FusedStage& fused, const Effects& effects);
 /// An instruction set of the CPU, and the one whose functions run the masks that it lacks ("": none, it has all).
 struct CpuSet {
     std::string isa, below;
-    bool all_masks = true;
+    std::string masks; // all, common or largest
 };
 std::string write_cpp(const Stage& stage, const CpuSet& set, const Effects& effects);
 std::string write_cpp(const FusedStage& fused, const CpuSet& set, const Effects& effects);
@@ -57,7 +57,7 @@ std::string word_list(const std::string& module);
 bool is_fused(const std::string& path);
 /// The stage table that the engine reads; stages and fused stages by their paths.
 std::string stage_table(const std::vector<std::string>& paths, const Effects& effects, const std::string& spirv_dir);
-std::string cpu_rows(const std::string& isas, const std::vector<std::string>& paths);
+std::string cpu_rows(const std::string& isas, bool fused, const std::vector<std::string>& paths);
 std::string cuda_rows(const std::vector<std::string>& stages);
 
 } // namespace stagec

@@ -13,7 +13,7 @@ ALL = "base;avx2;avx512"
 X86 = [  # WADI_CPU_SETS, further definitions, what CMake says
     ("all", {}, f"sets are {ALL}."), ("avx2", {}, "sets are avx2."), ("avx512;base", {}, "sets are base;avx512."),
     ("all", {"WADI_CHECK_INDICES": "ON"}, "sets are base."), ("avx2", {"WADI_SANITIZE": "thread"}, "sets are base."),
-    ("avx2", {"WADI_CHECK_INDICES": "BASE"}, "sets are base;avx2."),
+    ("avx2", {"WADI_CHECK_INDICES": "BASE"}, "sets are base;avx2."), ("avx2", {"WADI_NARROW_MASKS": "largest"}, "sets are base;avx2."),
     ("native", {"CMAKE_CROSSCOMPILING": "ON"}, f"this build is for another one; name all or some of: {ALL}"),
     ("", {}, "is empty"), ("avx", {}, f'names "avx"; it can be all, native, or a list of: {ALL}'), ("all;avx2", {}, 'names "all"'),
 ]
