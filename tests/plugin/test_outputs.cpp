@@ -2,9 +2,7 @@
 // nothing and changes nothing.
 #include "tests/plugin/plugin_world.hpp"
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <cstring>
 #include <initializer_list>
 #include <map>
@@ -417,28 +415,4 @@ TEST_CASE("outputs refuse what they must") {
     settings.interpolate_outputs = 7;
     CHECK(wadi_world_set_update_settings(world.id, &settings) == WADI_ERROR_BAD_ARGUMENT);
     CHECK(error_mentions("interpolate_outputs"));
-}
-
-TEST_CASE("what host copies cost") {
-    for (const auto& backend : backends()) {
-        double milliseconds[2];
-        for (int on = 0; on < 2; ++on) {
-            const World world(backend, 256, 256);
-            const uint32_t mask = WADI_OUTPUT_BIT(WADI_OUTPUT_FREE_SURFACE) | WADI_OUTPUT_BIT(WADI_OUTPUT_NORMAL);
-            REQUIRE(wadi_world_set_outputs(world.id, mask) == WADI_OK);
-            REQUIRE(wadi_world_set_host_outputs(world.id, on == 1 ? mask : 0) == WADI_OK);
-            for (int n = 0; n < 4; ++n) world.update(step_time);
-            world.wait();
-            milliseconds[on] = 1e9;
-            for (int n = 0; n < 6; ++n) {
-                const auto start = std::chrono::steady_clock::now();
-                world.update(step_time);
-                world.wait();
-                const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
-                milliseconds[on] = std::min(milliseconds[on], took.count());
-            }
-        }
-        std::printf("%s 256^2: a step and two outputs %.2f ms, with their copies for the host (1.3 MB) %.2f ms\n",
-                    backend.c_str(), milliseconds[0], milliseconds[1]);
-    }
 }
