@@ -83,35 +83,40 @@ TEST_CASE("water substeps: the same bits on every backend, fused, over tiles, in
     const auto scene = mixed();
     const auto expected = make_world(scene);
     CHECK(describe_plan(expected->state()).find("on run 3 times") != std::string::npos);
-    step(*expected, 40);
+    step(*expected, 16);
     const auto hash = hash_of(*expected);
     auto once = scene;
     once.settings.method.water_substeps = 1; // negative control
     const auto other = make_world(once);
-    step(*other, 40);
+    step(*other, 16);
     CHECK(hash_of(*other) != hash);
     for (const auto& backend : available_backends()) {
         for (const bool fused : {false, true}) {
             for (const int tiles : {0, 8}) {
+                // A software device compiles stages for minutes: there the plainest way and the one with most in it.
+                if (backend != "cpu" && fused != (tiles > 0)) continue;
                 CAPTURE(backend);
                 CAPTURE(fused);
                 CAPTURE(tiles);
                 auto way = scene;
                 way.settings.active_tiles = tiles;
+                way.settings.fused_stages = FusedStages::never;
                 auto world = make_world(way, {.backend = backend, .shared_device = true});
                 const auto& device = world->device().capabilities();
                 if (!device.exact_float || (fused && !device.fused_stages)) continue;
-                way.settings.fused_stages = fused ? FusedStages::always : FusedStages::never;
-                world = make_world(way, {.backend = backend, .shared_device = true});
-                step(*world, 20);
+                if (fused) {
+                    way.settings.fused_stages = FusedStages::always;
+                    world = make_world(way, {.backend = backend, .shared_device = true});
+                }
+                step(*world, 8);
                 const auto saved = save(*world);
-                for (int n = 0; n < 20; ++n) {
+                for (int n = 0; n < 8; ++n) {
                     do REQUIRE(world->stepper().step_part());
                     while (world->stepper().parts_done() > 0);
                 }
                 CHECK(hash_of(*world) == hash);
                 REQUIRE(world->snapshots().load(saved));
-                step(*world, 20);
+                step(*world, 8);
                 CHECK(hash_of(*world) == hash);
             }
         }
@@ -119,7 +124,7 @@ TEST_CASE("water substeps: the same bits on every backend, fused, over tiles, in
     compute::DeviceOptions alone;
     alone.threads = 1;
     const auto single = make_world(scene, {.options = alone});
-    step(*single, 40);
+    step(*single, 16);
     CHECK(hash_of(*single) == hash);
 }
 
