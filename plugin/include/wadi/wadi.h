@@ -16,8 +16,9 @@
  *           which, but for calls that say so, the world must be destroyed. An error changes nothing where the call does not say more.
  *   Counts  *count: room in elements in, their number out; the array may be NULL to ask the number.
  * No call aborts, throws or prints. A world is used by one thread at a time: a call that meets another one inside the same world does
- * nothing and returns BUSY. Different worlds are independent. A forked child cannot use its parent's worlds. The calling thread's
- * floating-point environment counts for nothing and is as it was after every call.
+ * nothing and returns BUSY. Different worlds are independent. A forked child cannot use its parent's worlds. No call may come from a
+ * signal handler: it may wait for a lock that the interrupted thread holds. The calling thread's floating-point environment counts for
+ * nothing and is as it was after every call.
  *
  * A struct that begins with struct_size grows at its end in later versions: start from its wadi_default_*() function, then change what
  * you need. A host and a library of different versions understand each other as long as WADI_ABI_VERSION is the same: what a host's
