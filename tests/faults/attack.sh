@@ -8,8 +8,8 @@ if [ -n "$full" ] && [ "$full" != --full ]; then
     echo "usage: tests/faults/attack.sh BIN [--full]" >&2
     exit 2
 fi
-steps=16000 count=120 seconds=5 gpu_steps=2048 gpu_count=8
-if [ "$full" = --full ]; then steps=200000 count=1000 seconds=120 gpu_steps=10000 gpu_count=1000; fi
+steps=16000 count=120 edits=150 seconds=5 gpu_steps=2048 gpu_count=8
+if [ "$full" = --full ]; then steps=200000 count=1000 edits=5000 seconds=120 gpu_steps=10000 gpu_count=1000; fi
 failed=0
 run() {
     local begin=$SECONDS
@@ -22,6 +22,8 @@ run "$attack" memory
 run "$attack" files
 run "$attack" cost
 run "$attack" numbers
+run "$attack" edited "$edits"
+run "$attack" jobs
 run "$attack" hosts "$seconds"
 run "$attack" soak cpu "$steps"
 run "$attack" cycles cpu "$count"

@@ -132,8 +132,9 @@ WADI_API wadi_result wadi_list_devices(wadi_device_info* infos, uint32_t* count,
 /** Part `n` of a pass of the CPU backend: any thread may run it, parts in any order and at once. */
 typedef void (*wadi_job)(void* data, uint32_t n);
 /** The host's job system: runs job(data, n) for each n below count, on any of its threads or one after the other on one, and returns
- *  when all have returned. A part that has begun may wait for others that have begun: they must be threads, not fibres of one. Called from
- *  a thread of the library, several times a step; must not throw and must not call the library. */
+ *  when all have returned. A part that has begun may wait for others that have begun: they must be threads, not fibres of one. A part that
+ *  is left out, runs twice or begins late changes no bit; none may begin after wadi_destroy_world. Called from a thread of the library,
+ *  several times a step; must not throw and must not call the library. */
 typedef void (*wadi_run_jobs_callback)(void* user, uint32_t count, wadi_job job, void* data);
 /** The host's memory: `bytes` (1 or more) at a multiple of `alignment`, a power of two, or NULL where it refuses. They need not be zero. */
 typedef void* (*wadi_allocate_callback)(void* user, size_t bytes, size_t alignment);

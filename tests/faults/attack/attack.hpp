@@ -39,6 +39,8 @@ int hosts(double seconds);
 int files();
 int cost();
 int numbers();
+int edited(int count);
+int jobs();
 int soak(long steps);
 int cycles(long count);
 
