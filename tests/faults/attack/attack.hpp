@@ -41,6 +41,7 @@ int cost();
 int numbers();
 int edited(int count);
 int jobs();
+int failing_vulkan(int count);
 int soak(long steps);
 int cycles(long count);
 
