@@ -6,7 +6,9 @@
 #include "plugin/src/cost.hpp"
 #include "plugin/src/vulkan_host.hpp"
 #include <algorithm>
+#include <condition_variable>
 #include <cstdio>
+#include <mutex>
 #include <optional>
 #include <thread>
 
@@ -31,16 +33,54 @@ compute::Log to_log(const wadi_device_options& options) {
     };
 }
 
-// A host's threads have a floating-point environment of their own, and so has what runs on them.
+/// What a host's job system is given of a pass: a part that begins once the pass is over, or again, finds nothing to do.
+class JobGate {
+  public:
+    void open(const std::function<void()>& job) {
+        const std::lock_guard lock(mutex_);
+        job_ = &job;
+    }
+    /// Waits for the parts that are inside.
+    void close() {
+        std::unique_lock lock(mutex_);
+        job_ = nullptr;
+        left_.wait(lock, [this] { return inside_ == 0; });
+    }
+    void part() {
+        const std::function<void()>* job = nullptr;
+        {
+            const std::lock_guard lock(mutex_);
+            if (job_ == nullptr) return;
+            job = job_;
+            ++inside_;
+        }
+        (*job)();
+        const std::lock_guard lock(mutex_);
+        if (--inside_ == 0) left_.notify_all();
+    }
+
+  private:
+    std::mutex mutex_;
+    std::condition_variable left_;
+    const std::function<void()>* job_ = nullptr;
+    int inside_ = 0;
+};
+
+// A host's threads have a floating-point environment of their own, and so has what runs on them. Parts share what is left of a
+// pass, so one more, here, does what the host's job system forgot.
 compute::RunJobs to_run_jobs(const wadi_device_options& options) {
     if (options.run_jobs == nullptr) return {};
-    return [run = options.run_jobs, user = options.jobs_user](int count, const std::function<void()>& job) {
+    return [run = options.run_jobs, user = options.jobs_user,
+            gate = std::make_shared<JobGate>()](int count, const std::function<void()>& job) {
         const compute::DefaultFloats kept; // whatever the host's code sets
         const auto part = [](void* data, uint32_t) {
             const compute::DefaultFloats floats;
-            (*static_cast<const std::function<void()>*>(data))();
+            static_cast<JobGate*>(data)->part();
         };
-        run(user, static_cast<uint32_t>(count), part, const_cast<std::function<void()>*>(&job));
+        gate->open(job);
+        run(user, static_cast<uint32_t>(count), part, gate.get());
+        gate->part();
+        gate->close();
     };
 }
 

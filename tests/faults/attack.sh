@@ -8,8 +8,8 @@ if [ -n "$full" ] && [ "$full" != --full ]; then
     echo "usage: tests/faults/attack.sh BIN [--full]" >&2
     exit 2
 fi
-steps=16000 count=120 seconds=5 gpu_steps=2048 gpu_count=8
-if [ "$full" = --full ]; then steps=200000 count=1000 seconds=120 gpu_steps=10000 gpu_count=1000; fi
+steps=16000 count=120 edits=150 seconds=5 gpu_steps=2048 gpu_count=8 failing=12
+if [ "$full" = --full ]; then steps=200000 count=1000 edits=5000 seconds=120 gpu_steps=10000 gpu_count=1000 failing=600; fi
 failed=0
 run() {
     local begin=$SECONDS
@@ -22,6 +22,8 @@ run "$attack" memory
 run "$attack" files
 run "$attack" cost
 run "$attack" numbers
+run "$attack" edited "$edits"
+run "$attack" jobs
 run "$attack" hosts "$seconds"
 run "$attack" soak cpu "$steps"
 run "$attack" cycles cpu "$count"
@@ -30,6 +32,15 @@ none=$(mktemp -d)
 echo | cc -shared -x c - -o "$none/libvulkan.so.1"
 LD_LIBRARY_PATH=$none "$attack" has vulkan
 [ $? = 1 ] || { failed=1; echo "FAILED: a Vulkan loader without an entry point" >&2; }
+# One that hands every call on to the real loader, and lets one fail.
+real=$(ldconfig -p | awk '/libvulkan\.so\.1 .*x86-64|libvulkan\.so\.1 .*AArch64/ { print $NF; exit }')
+if [ -n "$real" ] && "$attack" has vulkan; then
+    if cc -shared -fPIC -Wall -Wextra -Werror -o "$none/libvulkan.so.1" "$(dirname "$0")/attack/failing_vulkan.c" -ldl; then
+        FAILING_VULKAN_REAL=$real LD_LIBRARY_PATH=$none run "$attack" failing_vulkan "$failing"
+    else
+        failed=1
+    fi
+fi
 rm -r "$none"
 for backend in vulkan cuda; do
     if ! "$attack" has "$backend"; then

@@ -8,6 +8,16 @@ using namespace wadi::test;
 
 namespace {
 
+/// At x [m], dry at `end` [s].
+Source spring(double x, double end) {
+    Source source;
+    source.shape = SourceShape::disc;
+    source.center = {x, 3};
+    source.radius = 0.8;
+    source.rate.samples = {{0, 0.05}, {end, 0}};
+    return source;
+}
+
 /// Water alone that all inputs reach: a source and rain that change in time, a discharge, waves, an outflow, a held level.
 Scene poured_on(int order) {
     auto scene = flat_scene(40, 24, 0.25, 1.0 / 64);
@@ -15,12 +25,7 @@ Scene poured_on(int order) {
     scene.settings.method.water_transport_order = order;
     scene.fill(scene.fields.terrain, [](double x, double y) { return 0.3 + 0.02 * x + 0.1 * std::sin(x + y); });
     scene.fill(scene.fields.water, [](double x, double) { return x < 3 ? 0.7 : 0.0; });
-    Source source;
-    source.shape = SourceShape::disc;
-    source.center = {6, 3};
-    source.radius = 0.8;
-    source.rate.samples = {{0, 0.05}, {0.4, 0}};
-    scene.settings.sources = {source};
+    scene.settings.sources = {spring(6, 0.4)};
     scene.settings.rain.samples = {{0, 0}, {0.3, 0.002}};
     auto& sides = scene.settings.sides;
     sides[SIDE_NORTH].kind = SideKind::discharge;
@@ -38,12 +43,7 @@ Scene poured_on(int order) {
 Scene mixed() {
     auto scene = mixed_scene(70, 40);
     scene.settings.method.water_substeps = 3;
-    Source source;
-    source.shape = SourceShape::disc;
-    source.center = {3, 3};
-    source.radius = 0.8;
-    source.rate.samples = {{0, 0.05}, {0.2, 0}};
-    scene.settings.sources = {source};
+    scene.settings.sources = {spring(3, 0.2)};
     scene.settings.sides[SIDE_EAST].kind = SideKind::outflow;
     return scene;
 }

@@ -20,7 +20,8 @@ namespace Wadi
     /// <summary>
     /// The host's job system: runs job(data, n) for each n below count, on any of its threads or one after the other on one, and
     /// returns when all have returned. A part that has begun may wait for others that have begun: they must be threads, not fibres of
-    /// one. Called from a thread of the library, several times a step; must not throw and must not call the library.
+    /// one. A part that is left out, runs twice or begins late changes no bit; none may begin after wadi_destroy_world. Called from a
+    /// thread of the library, several times a step; must not throw and must not call the library.
     /// </summary>
     [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
     public unsafe delegate void RunJobsCallback(void* user, uint count, IntPtr job, void* data);

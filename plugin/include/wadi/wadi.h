@@ -16,8 +16,9 @@
  *           which, but for calls that say so, the world must be destroyed. An error changes nothing where the call does not say more.
  *   Counts  *count: room in elements in, their number out; the array may be NULL to ask the number.
  * No call aborts, throws or prints. A world is used by one thread at a time: a call that meets another one inside the same world does
- * nothing and returns BUSY. Different worlds are independent. A forked child cannot use its parent's worlds. The calling thread's
- * floating-point environment counts for nothing and is as it was after every call.
+ * nothing and returns BUSY. Different worlds are independent. A forked child cannot use its parent's worlds. No call may come from a
+ * signal handler: it may wait for a lock that the interrupted thread holds. The calling thread's floating-point environment counts for
+ * nothing and is as it was after every call.
  *
  * A struct that begins with struct_size grows at its end in later versions: start from its wadi_default_*() function, then change what
  * you need. A host and a library of different versions understand each other as long as WADI_ABI_VERSION is the same: what a host's
@@ -131,8 +132,9 @@ WADI_API wadi_result wadi_list_devices(wadi_device_info* infos, uint32_t* count,
 /** Part `n` of a pass of the CPU backend: any thread may run it, parts in any order and at once. */
 typedef void (*wadi_job)(void* data, uint32_t n);
 /** The host's job system: runs job(data, n) for each n below count, on any of its threads or one after the other on one, and returns
- *  when all have returned. A part that has begun may wait for others that have begun: they must be threads, not fibres of one. Called from
- *  a thread of the library, several times a step; must not throw and must not call the library. */
+ *  when all have returned. A part that has begun may wait for others that have begun: they must be threads, not fibres of one. A part that
+ *  is left out, runs twice or begins late changes no bit; none may begin after wadi_destroy_world. Called from a thread of the library,
+ *  several times a step; must not throw and must not call the library. */
 typedef void (*wadi_run_jobs_callback)(void* user, uint32_t count, wadi_job job, void* data);
 /** The host's memory: `bytes` (1 or more) at a multiple of `alignment`, a power of two, or NULL where it refuses. They need not be zero. */
 typedef void* (*wadi_allocate_callback)(void* user, size_t bytes, size_t alignment);

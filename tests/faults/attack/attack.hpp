@@ -39,6 +39,9 @@ int hosts(double seconds);
 int files();
 int cost();
 int numbers();
+int edited(int count);
+int jobs();
+int failing_vulkan(int count);
 int soak(long steps);
 int cycles(long count);
 

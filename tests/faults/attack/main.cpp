@@ -1,5 +1,5 @@
-// Usage: wadi-test-attack has BACKEND | environment [BACKEND] | memory | hosts SECONDS | files | cost | numbers | soak BACKEND
-// STEPS | cycles BACKEND COUNT.
+// Usage: wadi-test-attack has BACKEND | environment [BACKEND] | memory | hosts SECONDS | files | cost | numbers | edited COUNT |
+// jobs | failing_vulkan COUNT | soak BACKEND STEPS | cycles BACKEND COUNT.
 #include "tests/faults/attack/attack.hpp"
 #include <cstdio>
 #include <cstdlib>
@@ -14,6 +14,9 @@ int main(int argc, char** argv) {
     if (what == "hosts" && argc > 2) return ends(hosts(std::atof(argv[2])));
     if (what == "files") return ends(files());
     if (what == "numbers") return ends(numbers());
+    if (what == "edited" && argc > 2) return ends(edited(std::atoi(argv[2])));
+    if (what == "failing_vulkan" && argc > 2) return ends(failing_vulkan(std::atoi(argv[2])));
+    if (what == "jobs") return ends(jobs());
     if (what == "cost") return ends(cost());
     if (what == "memory") return ends(memory());
     if (!given.empty()) backend = given;
@@ -25,7 +28,6 @@ int main(int argc, char** argv) {
     if (what == "soak" && argc > 3) return ends(soak(std::atol(argv[3])));
     if (what == "cycles" && argc > 3) return ends(cycles(std::atol(argv[3])));
     std::fprintf(stderr, "wadi-test-attack has BACKEND | environment [BACKEND] | memory | hosts SECONDS | files | cost | numbers "
-                         "| soak BACKEND STEPS | "
-                         "cycles BACKEND COUNT\n");
+                         "| edited COUNT | jobs | failing_vulkan COUNT | soak BACKEND STEPS | cycles BACKEND COUNT\n");
     return 2;
 }

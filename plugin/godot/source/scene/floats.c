@@ -85,11 +85,11 @@ static void take_query(Terrain* terrain, uint32_t query) {
     free(all);
 }
 
-/* Of all queries, once the last of them is answered. */
+/* Of all queries, once the last of them is answered; none of those that made room for the scene's own. */
 static void take_answers(Terrain* terrain) {
     uint32_t count = 0;
     for (uint32_t query = 0; query < terrain->body_queries; ++query)
-        if (wadi_world_get_query(terrain->world, terrain->body_tickets[query], NULL, 0, &count, NULL) != WADI_OK) return;
+        if (wadi_world_get_query(terrain->world, terrain->body_tickets[query], NULL, 0, &count, NULL) == WADI_NOT_READY) return;
     for (uint32_t query = 0; query < terrain->body_queries; ++query) take_query(terrain, query);
     terrain->body_queries = 0;
 }
