@@ -133,7 +133,11 @@ struct WorldParams {
     float cliff_share;          // 4/(c_f rho_s g): share of the cohesion that a cliff needs, per cohesion over depth [m/Pa]
     float internal_friction;    // b: friction within spreading sand, a share of mu
     float viscosity_number;     // nu dts/dx^2 of sand in its plane, at most what the explicit step bears beside bulk_viscosity
-    float retained;             // r: depth of water per depth of sand that pores hold back
+    float porosity;             // n: share of the sand that is pores (NUMERICS 2.23); 1 without mixture and in `published`
+    float inv_porosity;
+    float buoyancy;             // beta: share of the sand that displaces water, 1 - n, 1 for n = 1
+    float pressed_grains;       // share of the sand on whose grains a sloping surface of water pushes: 1 - n, 0 without drag
+    float retained;             // r: share of its pores in which sand holds water back
     float inv_drainable;        // 1/(1 - r)
     float prestress;            // 1: sand starts in balance, NUMERICS 2.20; 0: unstrained
 

@@ -52,9 +52,23 @@ Status read_root(const Json& json, LevelFiles& files, Level& level, LevelLayers&
     return status;
 }
 
+/// Layers draw how deep water stands; in sand only the pores hold water (NUMERICS 2.23).
+void fill_pores(const Settings& settings, InitialFields& fields) {
+    const auto n = static_cast<float>(settings.material.porosity);
+    const auto one_layer = [](const auto& entry) { return entry.first == "mixture" && entry.second == Force::off; };
+    const auto& forced = settings.effects;
+    if (n == 1 || fields.sand.empty() || settings.method.published() || std::any_of(forced.begin(), forced.end(), one_layer))
+        return;
+    for (std::size_t cell = 0; cell < fields.water.size(); ++cell) {
+        const float sand = fields.sand[cell], depth = fields.water[cell];
+        fields.water[cell] = depth < sand ? n * depth : depth - (sand - n * sand);
+    }
+}
+
 Status draw(const LevelLayers& layers, const LevelGrid& grid, LevelFiles& files, Level& level) {
     InitialFields& fields = level.fields;
     if (Status status = draw_layers(layers, grid, files, fields, level.warnings); !status) return status;
+    fill_pores(level.settings, fields);
     const auto draw_of = [&](bool sand, std::vector<float>& x, std::vector<float>& y) {
         return draw_velocities(layers.velocities, sand, grid, files, x, y, level.warnings);
     };

@@ -40,7 +40,7 @@ struct Survey {
 struct Column {
     double terrain = 0;
     double sand = 0;
-    double water = 0;
+    double water = 0; // from the terrain to its surface
     double ground() const { return terrain + sand; }
     double surface() const { return terrain + sand + std::max(water - sand, 0.0); }
     double wetness() const { return sand > 0 ? std::min(water / sand, 1.0) : 0; }
@@ -69,12 +69,14 @@ bool forced_off(const Settings& settings, const char* effect) {
 /// What of the settings decides whether a wet slope holds.
 struct SlopeLaw {
     double density_ratio, friction, chi;
+    double porosity, buoyancy; // n, beta (NUMERICS 2.23)
     bool drag;
 
     explicit SlopeLaw(const Settings& settings)
         : density_ratio(settings.material.water_density / settings.material.sand_density), friction(settings.material.friction),
           chi(forced_off(settings, "slope_normal") ? 0 : settings.material.slope_normal),
-          drag(settings.material.exchange_rate > 0 && !forced_off(settings, "drag")) {}
+          porosity(forced_off(settings, "mixture") || settings.method.published() ? 1 : settings.material.porosity),
+          buoyancy(porosity < 1 ? 1 - porosity : 1), drag(settings.material.exchange_rate > 0 && !forced_off(settings, "drag")) {}
 };
 
 /// What pushes and holds sand on a wet slope, per weight of the sand (section 4).
@@ -86,7 +88,7 @@ struct WetSlope {
     /// `wetness`: share of the sand's depth that water fills; `fall`: of the water's surface per fall of the sand's.
     WetSlope(const SlopeLaw& law, double wetness, double fall) {
         const double ratio = law.density_ratio * wetness;
-        held = std::max(law.friction * (1 - ratio), 0.0);
+        held = std::max(law.friction * (1 - law.buoyancy * ratio), 0.0);
         water = law.drag ? ratio * fall : 0;
         chi = law.chi;
     }
@@ -108,7 +110,8 @@ class Columns {
     Column at(int i, int j) const {
         const std::size_t cell = static_cast<std::size_t>(j) * static_cast<std::size_t>(grid_.nx) + static_cast<std::size_t>(i);
         const auto part = [&](const std::vector<float>& field) { return field.empty() ? 0.0 : static_cast<double>(field[cell]); };
-        return Column{part(fields_.terrain), part(fields_.sand), part(fields_.water)};
+        const double sand = part(fields_.sand), water = part(fields_.water), pores = law.porosity * sand;
+        return Column{part(fields_.terrain), sand, water < pores ? water / law.porosity : water + (sand - pores)};
     }
 
     /// How far sand falls within a cell of (i, j): a wall that runs through cells is lower in these, and whole around them.

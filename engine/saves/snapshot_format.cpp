@@ -11,7 +11,7 @@ constexpr char magic[] = "WADISNAP";
 constexpr std::size_t fields_at = 12, material_at = 80, name_bytes = 32, field_bytes = name_bytes + 8, total_bytes = 16;
 
 // How many numbers of the material a version holds: keys are added at the end.
-std::size_t material_numbers(std::uint32_t version) { return version == 4 ? 23 : material_keys().size(); }
+std::size_t material_numbers(std::uint32_t version) { return version == 4 ? 23 : version == 5 ? 27 : material_keys().size(); }
 
 std::size_t fixed_bytes(std::uint32_t version) { return material_at + 8 * material_numbers(version); }
 

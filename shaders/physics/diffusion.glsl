@@ -2,22 +2,32 @@
 #ifndef PHYSICS_DIFFUSION
 #define PHYSICS_DIFFUSION
 #include "../physics/drag.glsl"
+#include "../physics/pores.glsl"
 #include "../physics/scalar.glsl"
 
-// What of a cell moves mixed water: its heights and its free surface [m].
+// What of a cell moves mixed water: the depth at which that stands, the sand's, the free surface [m], and by how much a depth of water lifts it.
 struct WetSand {
-    float water, sand, surface;
+    float water, sand, surface, lifts;
 };
+
+FN WetSand wet_sand_of(float ground, float sand, PoreWater within) {
+    WetSand w;
+    w.water = within.depth;
+    w.sand = sand;
+    w.surface = ground + within.depth;
+    w.lifts = within.lifts;
+    return w;
+}
 
 FN float mixed_of(WetSand cell) { return wmin(cell.water, cell.sand); }
 
 // The smaller of the gradients of the mixed height and of the free surface, none where they disagree in sign or the surface is as level as
-// rounding leaves it, so that a lake at rest stays at rest. number = c dt/dx^2.
+// rounding leaves it, so that a lake at rest stays at rest. number = n c dt/dx^2.
 FN float limited_diffusion(WetSand low, WetSand high, float number, float dry, float rest_surface) {
     float fall = high.surface - low.surface;
     float s = minmod(mixed_of(high) - mixed_of(low), fall);
     bool sand = both(low.sand > dry, high.sand > dry);
-    return both(wabs(fall) > rest_surface, both(s != 0.0f, sand)) ? -number * s : 0.0f;
+    return both(wabs(fall) > rest_surface * wmax(low.lifts, high.lifts), both(s != 0.0f, sand)) ? -number * s : 0.0f;
 }
 
 // By the height alone, sand or not (method published).

@@ -28,8 +28,8 @@ FN void explicit_drag(REF(float) sand, REF(float) water, float impulse, float sa
     water = wclamp(water + gained, -1.0e15f, 1.0e15f);
 }
 
-// How freely water moves through sand, 0 up to the share W/hs that pores hold back and 1 where they are full or there is no sand
-// (NUMERICS 2.19).
+// How freely water moves through sand, 0 up to the share of its pores that hold back and 1 where they are full or there is no sand
+// (NUMERICS 2.19). water: the depth at which its surface stands.
 FN float relative_permeability(float water, float sand, float retained, float inv_drainable) {
     bool partly = both(water > retained * sand, water < sand);
     float drainable = 0.0f;

@@ -3,6 +3,7 @@
 #define PHYSICS_PRESTRESS
 #include "../physics/drag.glsl"
 #include "../physics/pore_pressure.glsl"
+#include "../physics/pores.glsl"
 #include "../physics/slope_push.glsl"
 #include "../physics/strain.glsl"
 #include "../physics/velocity.glsl"
@@ -17,9 +18,9 @@ FN float balancing_tension(float height, float weight, float gravity, float sand
 }
 
 // What pushes by 2.7: water that is free to move stands level and carries its share of the sand, water that pores hold back leans on it.
-FN float level_weight(float wet, float free, bool dragged, float density_ratio) {
+FN float level_weight(float wet, float free, bool dragged, float density_ratio, float porosity) {
     float leans = dragged ? 1.0f - free : 0.0f;
-    return 1.0f + density_ratio * square(wet) * (leans - free);
+    return 1.0f + density_ratio * (porosity * square(wet)) * (leans - free);
 }
 
 // V - I of equal tension all around: tr of (lambda + mu) tr/J = tension with J = exp(tr), by Newton's method, which from below closes
@@ -38,17 +39,18 @@ FN float stretch_under(float tension, float inv_bulk, float largest_tr) {
 // saturation, here the cell's own.
 FN float in_balance(WorldParams world, float height, float water, bool cohesive) {
     if (world.prestress == 0.0f) return 0.0f;
-    float saturation = cohesive ? divide_or_zero(water, water + height) : 0.0f;
+    PoreWater within = pore_water(water, height, world.porosity, world.inv_porosity, world.quantum, world.inv_quantum);
+    float saturation = cohesive ? divide_or_zero(within.depth, within.depth + height) : 0.0f;
     float c = cohesion(saturation, world.cohesion0, world.cohesion1, world.phi1, world.phi2, world.phi3, world.slope01, world.slope12,
                        world.slope23);
     c = wmin(c, world.cohesion_cap * height);
     float inv_height = divide_or_zero(1.0f, height);
-    float mixed = wmin(water, height);
-    PoreShares pores = pore_shares(full_depth(water, height, world.retained, world.inv_drainable), mixed, inv_height);
-    float weight = effective_weight(pores, world.density_ratio);
+    PoreShares pores = pore_shares(full_depth(within.depth, height, world.retained, world.inv_drainable), within.mixed, inv_height, world.porosity);
+    float weight = effective_weight(pores, world.density_ratio, world.buoyancy);
     if (world.slope_normal == 0.0f) {
-        weight = level_weight(divide_or_zero(mixed, height), relative_permeability(water, height, world.retained, world.inv_drainable),
-                              world.drag_kd > 0.0f, world.density_ratio);
+        weight = level_weight(divide_or_zero(wmin(within.depth, height), height),
+                              relative_permeability(within.depth, height, world.retained, world.inv_drainable), world.drag_kd > 0.0f,
+                              world.density_ratio, world.porosity);
     }
     float pushed = balancing_tension(height, weight, sand_gravity(world.gravity, height, world.sand_gravity_cap), world.sand_density);
     float least = least_cliff_push(wmin(1.0f, cohesive_share_of(c, lean_reciprocal_or_zero(height), world.cliff_share)), world.wedge_weight);

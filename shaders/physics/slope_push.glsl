@@ -197,9 +197,9 @@ FN SlopeShares with_cohesion(SlopeShares dry, Bed bed, float push, float held, f
 
 // The push as a fall along the face's axis [m]: of the sand's own weight what pore pressure does not bear, limited by the wedge. Held water
 // falls as its sand does: drag brings what its own surface has (table_rise), here is the rest.
-FN float slope_push(SlopeShares s, float rise, float table_rise, PoreShares pores, float density_ratio) {
+FN float slope_push(SlopeShares s, float rise, float table_rise, PoreShares pores, float density_ratio, float buoyancy) {
     float own = s.weight * s.push * rise;
-    return pushing_weight(pores, density_ratio) * own + density_ratio * pores.held * (own - table_rise);
+    return pushing_weight(pores, density_ratio, buoyancy) * own + density_ratio * pores.held * (own - table_rise);
 }
 
 // Highest plane through a cell that is no steeper than the failing one from any neighbour, nor above the sand nor below the ground: sides and
@@ -234,6 +234,22 @@ FN float stress_share(float cohesive) { return wclamp(0.5f * cohesive - 1.0f, 0.
 FN float withheld_push(float rise, SlopeShares s, float passive, float stressed, float weight) {
     float borne = passive + stressed * (1.0f - passive);
     return (borne - s.weight * s.push) * rise * weight;
+}
+
+// What is left of a push of water on grains, and of the withheld push, as falls.
+struct GrainPush {
+    float left, withheld;
+};
+
+// Where it drives them uphill against their own push it calls that forth: no more than it is, and no more than moves them up.
+FN GrainPush met_by_slope(float own, float pushed, float withheld) {
+    float uphill = withheld > 0.0f ? wmin(-(own + pushed), withheld) : wmin(own + pushed, -withheld);
+    float called = wmin(wmax(uphill, 0.0f), wabs(pushed));
+    float met = withheld > 0.0f ? called : -called;
+    GrainPush push;
+    push.left = pushed + met;
+    push.withheld = withheld - met;
+    return push;
 }
 
 #endif

@@ -16,7 +16,7 @@ constexpr double PI = 3.14159265358979323846;
 constexpr std::array grids = {"33x17", "1x1", "1x9", "9x1", "63x5", "64x4", "65x3", "70x50"};
 constexpr std::array scenes = {"random", "dam_break",    "lake",      "cliff", "islands", "slope",
                                "flat",   "one_wet_cell", "thin_film", "deep",  "creep",   "brimful"};
-constexpr std::array methods = {"default", "plain", "bare", "unsmoothed", "coarse"};
+constexpr std::array methods = {"default", "plain", "bare", "unsmoothed", "coarse", "porous"};
 
 // Position in a scene: metres are x, y; u, v run from 0 to 1, s along the longer axis.
 struct Place {
@@ -307,7 +307,10 @@ Result<Scene> make_scene(const std::string& grid, const std::string& name, const
     s.method.shock_viscosity = 0; // a choice, on by default
     for (const auto& choice : choice_table())
         if ((effects & choice.bit) != 0) choice.choose(s);
-    if (!set_method(s.method, method)) return error(Code::bad_argument, "method=" + method + ": no such choice");
+    if (method == "porous")
+        s.material.porosity = 0.4; // of the material, and named like one
+    else if (!set_method(s.method, method))
+        return error(Code::bad_argument, "method=" + method + ": no such choice");
     if (name == "deep") {
         make_deep(scene);
         if (s.method.quantum > 0) s.method.quantum = std::ldexp(1.0, -8);

@@ -44,6 +44,7 @@ std::vector<CaseSpec> list() {
     add("bounds", "33x17", ALL | SECOND, "random", "default", 300);
     add("bounds", "33x17", ALL | SECOND, "thin_film", "default", 300);
     add("bounds", "33x17", ALL | SAND_SECOND, "random", "default", 300);
+    add("bounds", "33x17", ALL, "random", "porous", 300);
     add("bounds", "33x17", EFFECT_SAND | ELASTIC | SLOPES | SAND_SECOND, "cliff", "default", 300);
     add("bounds", "33x17", WET | ELASTIC | EFFECT_COHESION | SECOND, "cliff", "plain", 300);
     add("bounds", "33x17", ALL_PUBLISHED, "random", "default", 300);
@@ -79,6 +80,8 @@ std::vector<CaseSpec> list() {
         add(symmetry, "33x17", ALL, "random", "default", 40);
         add(symmetry, "33x17", ALL | SECOND, "random", "default", 40);
         add(symmetry, "33x17", ALL | FLOWING, "random", "default", 40);
+        add(symmetry, "33x17", ALL, "random", "porous", 40);
+        add(symmetry, "33x17", ALL | SECOND, "random", "porous", 40);
         add(symmetry, "33x17", ALL | SAND_SECOND, "random", "default", 40);
         add(symmetry, "33x17", ALL_PUBLISHED | DIRECT, "random", "default", 40);
         add(symmetry, "33x17", ALL_PUBLISHED, "random", "default", 40);

@@ -31,7 +31,7 @@ struct Marks {
         const double water = has(EFFECT_WATER) ? at("water_height", i, j) : 0,
                      sand = has(EFFECT_SAND) ? at("sand_height", i, j) : 0;
         if (layer == 's') return sand;
-        const double mixed = has(EFFECT_MIXTURE) ? std::min(water, sand) : 0;
+        const double mixed = has(EFFECT_MIXTURE) ? std::min(water, pore_room(run.params, sand)) : 0;
         return layer == 'm' ? mixed : water - mixed;
     }
     static std::string velocity(char layer, char axis) {
@@ -69,8 +69,8 @@ struct Marks {
         for (const bool y : {false, true}) {
             const bool inner = y ? j > 0 && j < p.ny && i < p.nx : i > 0 && i < p.nx && j < p.ny;
             if (!inner) continue;
-            const char* name = sand ? "sand_height" : "water_height";
-            const double deepest = std::max(at(name, i, j), y ? at(name, i, j - 1) : at(name, i - 1, j));
+            const auto deep = [&](int a, int b) { return sand ? at("sand_height", a, b) : standing_water<double>(run, a, b); };
+            const double deepest = std::max(deep(i, j), y ? deep(i, j - 1) : deep(i - 1, j));
             double cap = static_cast<double>(p.sand_gravity_cap);
             if (!sand) {
                 double speed = std::abs(y ? v('w', i, j) : u('w', i, j));
@@ -141,7 +141,7 @@ struct Limits {
 
     double height(const char* name, int i, int j) const { return static_cast<double>(run.before(name, i, j)); }
     double surface(int i, int j) const {
-        return height("terrain", i, j) + std::max(height("water_height", i, j), height("sand_height", i, j));
+        return height("terrain", i, j) + std::max(standing_water<double>(run, i, j), height("sand_height", i, j));
     }
     /// Friction of the bed against the fall of the surface: u^2 = g S h/(c + g n^2 h^(-1/3)), at most 1e8.
     double driven2(int i, int j, double depth) const {
@@ -191,13 +191,13 @@ Verdict check_limit_counts(const StageRun& run) {
                     const auto size = [&](const char* name, int a, int b) { return std::abs(limits.height(name, a, b)); };
                     const double speed = std::max({size("water_velocity_x", i, j), size("water_velocity_x", i + 1, j),
                                                    size("water_velocity_y", i, j), size("water_velocity_y", i, j + 1)});
-                    wave = std::max(wave, speed + std::sqrt(static_cast<double>(p.gravity) * w));
+                    wave = std::max(wave, speed + std::sqrt(static_cast<double>(p.gravity) * standing_water<double>(run, i, j)));
                 }
                 const double column = limits.height("terrain", i, j) + s + w, most = static_cast<double>(p.largest_height);
                 counts[8] += column > most * (1 + 1e-6) ? 1 : 0;
                 unsure += std::abs(column - most) <= 1e-6 * most ? 1 : 0;
                 highest = std::max(highest, column);
-                const double depth = w - std::min(w, s);
+                const double depth = w - std::min(w, pore_room(p, s));
                 if (!water || depth <= static_cast<double>(p.dry_threshold)) continue;
                 top = std::max(top, limits.surface(i, j));
                 if (!beside(0, 12, 48)) continue;

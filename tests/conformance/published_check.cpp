@@ -17,7 +17,7 @@ template <class Real> struct Publisher {
 
     Real in(const char* binding, int i, int j) const { return static_cast<Real>(run.before(binding, i, j)); }
     Real param(float value) const { return static_cast<Real>(value); }
-    Real water(int i, int j) const { return in("water_height", i, j); }
+    Real water(int i, int j) const { return standing_water<Real>(run, i, j); }
     Real sand(int i, int j) const { return in("sand_height", i, j); }
     Real depth(int i, int j) const { return std::max(water(i, j) - sand(i, j), Real(0)); }
     // The rim repeats its cells.

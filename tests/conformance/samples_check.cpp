@@ -16,7 +16,7 @@ template <class Real> struct Sampler {
     const StageRun& run;
 
     Real field(const char* name, int i, int j) const { return static_cast<Real>(run.before(name, i, j)); }
-    Real water(int i, int j) const { return field("water_height", i, j); }
+    Real water(int i, int j) const { return standing_water<Real>(run, i, j); }
     Real sand(int i, int j) const { return field("sand_height", i, j); }
     Real surface(int i, int j) const { return field("terrain", i, j) + std::max(water(i, j), sand(i, j)); }
     int column(int i) const { return std::clamp(i, 0, run.params.nx - 1); }

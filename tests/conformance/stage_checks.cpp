@@ -83,7 +83,8 @@ void count_sources(const StageRun& run, int i, int j, Counts& counts) {
         const vec4& now = run.pilot.input.source[n];
         double depth = wide(now.x);
         if (!source.level.samples.empty())
-            depth = std::clamp(std::max(wide(now.y) - wide(run.before("terrain", i, j)), 0.0) - water,
+            depth = std::clamp(water_standing(run.params, std::max(wide(now.y) - wide(run.before("terrain", i, j)), 0.0), sand) -
+                                   water,
                                source.drain ? -depth : 0.0, depth);
         if (depth > 0 && wide(run.before("terrain", i, j)) + water + sand + depth > wide(run.params.largest_height)) {
             counts[LEDGER_REFUSED].add(depth, run.params);
@@ -209,6 +210,15 @@ const BenchBuffer& StageRun::buffer(const char* binding) const {
 float StageRun::before(const char* binding, int i, int j) const {
     const BenchBuffer& from = buffer(binding);
     return from.exists ? std::bit_cast<float>(from.before[FieldLayout{params.nx, params.ny}.index(i, j)]) : 0.0F;
+}
+
+double pore_room(const WorldParams& params, double sand) {
+    const double room = static_cast<double>(params.porosity) * sand, quantum = static_cast<double>(params.quantum);
+    return quantum > 0 ? std::floor(room / quantum) * quantum : room;
+}
+
+double water_standing(const WorldParams& params, double depth, double sand) {
+    return depth < sand ? pore_room(params, depth) : depth - (sand - pore_room(params, sand));
 }
 
 bool has_definition(const std::string& stage) {

@@ -4,6 +4,7 @@
 #include "tests/conformance/bench.hpp"
 #include "tests/conformance/compare.hpp"
 #include "tests/conformance/stage_reference.hpp"
+#include <algorithm>
 
 namespace wadi::conformance {
 
@@ -18,6 +19,20 @@ struct StageRun {
     const BenchBuffer& buffer(const char* binding) const;
     float before(const char* binding, int i, int j) const; // 0 where the mask lacks the binding
 };
+
+/// NUMERICS 2.23: water that the pores of so much sand hold.
+double pore_room(const WorldParams& params, double sand);
+/// The water whose surface stands so deep over the ground, in whole quanta.
+double water_standing(const WorldParams& params, double depth, double sand);
+/// How deep a cell's water stands, from the ground to its surface.
+template <class Real> Real standing_water(const StageRun& run, int i, int j) {
+    const auto sand = static_cast<double>(run.before("sand_height", i, j)),
+               water = static_cast<double>(run.before("water_height", i, j));
+    const double room = pore_room(run.params, sand);
+    if (water <= 0) return 0;
+    return static_cast<Real>(water < room ? std::min(water / static_cast<double>(run.params.porosity), sand)
+                                          : water + (sand - room));
+}
 
 bool has_definition(const std::string& stage);
 /// The direct check of a stage; ok where it has none.

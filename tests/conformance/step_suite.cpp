@@ -77,6 +77,9 @@ constexpr Row against_reference[] = {
     {"33x17", WET | EFFECT_BED_SHEAR | SAND_SECOND, "dam_break", "default", 2},
     {"33x17", EFFECT_SAND | SLOPES | FLOWING, "slope", "default", 3},
     {"33x17", WET | ELASTIC | EFFECT_COHESION | SLOPES | EFFECT_RETENTION | FLOWING, "slope", "default", 2},
+    {"33x17", WET | SLOPES | EFFECT_RETENTION, "dam_break", "porous", 2},
+    {"33x17", WET | ELASTIC | EFFECT_COHESION | SLOPES | EFFECT_RETENTION, "slope", "porous", 2},
+    {"33x17", WET | SECOND, "slope", "porous", 3},
     {"33x17", ALL, "flat", "default", 2},
     {"1x1", ALL, "flat", "default", 2},
 };
@@ -99,6 +102,8 @@ constexpr Row in_bits[] = {
     {"33x17", EFFECT_WATER | SECOND, "dam_break", "default", 40},
     {"64x4", WET | SECOND, "slope", "coarse", 30},
     {"33x17", ALL | FLOWING, "random", "default", 20},
+    {"33x17", ALL, "random", "porous", 20},
+    {"33x17", ALL | SECOND, "random", "porous", 20},
     {"33x17", ALL | SECOND, "random", "default", 20},
     {"33x17", ALL | SECOND, "random", "bare", 20},
     {"1x1", ALL | SECOND, "random", "default", 20},

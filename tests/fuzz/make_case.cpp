@@ -261,6 +261,8 @@ Case make_case(std::uint64_t seed) {
         s.material.flow_beta = random.log(0.01, 10);
         s.material.flow_gamma = random.pick({0.0, random.real(0, 2)});
     }
+    if (random.chance(0.5))
+        s.material.porosity = random.pick({0.4, 0.375, random.real(0.01, 1), random.log(0.01, 0.05), 1 - random.log(1e-7, 1e-2)});
     for (Source& source : s.sources) {
         if (source.material != SourceMaterial::water || !random.chance(0.3)) continue;
         source.level = {{{0, std::min(random.real(-0.2, 2) * size, s.method.largest_height)}}};

@@ -23,13 +23,14 @@ template <class Real> Real Solver<Real>::balance(Real depth, Real held) const {
     if (!settings.method.prestress || !(depth > Real(0)) || !has(EFFECT_ELASTOPLASTIC)) return Real(0);
     const auto real = [](double x) { return static_cast<Real>(x); };
     const Material& m = settings.material;
-    const Real c = cohesion(has(EFFECT_COHESION) ? held / (held + depth) : Real(0), depth);
-    const Real wet = std::min(held, depth) / depth;
-    const Real full = full_depth(depth, held) / depth;
-    Real pushes = (wet - full) - full; // of the water's weight
+    const Real stands = standing(held, depth);
+    const Real c = cohesion(has(EFFECT_COHESION) ? stands / (stands + depth) : Real(0), depth);
+    const Real wet = std::min(stands, depth) / depth;
+    const Real full = full_depth(depth, stands) / depth;
+    Real pushes = (std::min(held, pore_room(depth)) / depth - P.porosity * full) - P.displaces * full; // of the water's weight
     if (!has(EFFECT_SLOPE_NORMAL)) {
         const Real kr = has(EFFECT_RETENTION) ? full * full * full : Real(1);
-        pushes = wet * wet * ((P.exchange > Real(0) ? Real(1) - kr : Real(0)) - kr);
+        pushes = P.porosity * wet * wet * ((P.exchange > Real(0) ? Real(1) - kr : Real(0)) - kr);
     }
     const Real carried = std::max(Real(1) + P.rho_w / P.rho_s * pushes, Real(0));
     const Real T = P.rho_s * sand_gravity(depth) * depth / Real(2) * carried;
@@ -58,11 +59,12 @@ template <class Real> void Solver<Real>::bound_balance() {
     const Axis x = axis(false);
     const auto real = [](double value) { return static_cast<Real>(value); };
     const auto weight = [&](std::size_t c) { // what pushes of it
-        const Real full = full_depth(sand[c], water[c]);
-        return std::max(Real(1) + P.rho_w / P.rho_s * (std::min(water[c], sand[c]) - Real(2) * full) / sand[c], Real(0));
+        const Real full = full_depth(sand[c], standing(c));
+        const Real held = std::min(water[c], pore_room(sand[c])) - P.porosity * full;
+        return std::max(Real(1) + P.rho_w / P.rho_s * (held - P.displaces * full) / sand[c], Real(0));
     };
     const auto clings = [&](std::size_t c) {
-        const Real whole = cohesion(water[c] / (water[c] + sand[c]), std::numeric_limits<Real>::infinity());
+        const Real whole = cohesion(standing(c) / (standing(c) + sand[c]), std::numeric_limits<Real>::infinity());
         return P.adhesion * whole / P.yield_cohesion;
     };
     Field<Real> pull(cells());

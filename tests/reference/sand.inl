@@ -12,7 +12,7 @@ template <class Real> void Solver<Real>::compute_sand_flux() { limited_flux(Laye
 template <class Real> void Solver<Real>::integrate_sand_height() {
     const Axis x = axis(false);
     sand_before = sand;
-    for (std::size_t c = 0; c < cells(); ++c) mixed_before[c] = std::min(water[c], sand[c]);
+    for (std::size_t c = 0; c < cells(); ++c) mixed_before[c] = std::min(water[c], pore_room(sand[c]));
     for (int j = 0; j < x.ny; ++j)
         for (int i = 0; i < x.nx; ++i) {
             Real& h = sand[x.cell(i, j)];
@@ -62,9 +62,9 @@ template <class Real> void Solver<Real>::add_gravity(const Faces<Real>& old, con
     const std::size_t L = ax.cell(a - 1, b);
     const std::size_t R = ax.cell(a, b);
     const std::size_t f = ax.face(a, b);
-    const Real buoyancy = P.rho_w / P.rho_s;
-    const auto open_water = [&](std::size_t c) { return water[c] - std::min(water[c], sand[c]); };
-    const auto surface = [&](std::size_t c) { return terrain[c] + sand[c] + buoyancy * open_water(c); };
+    const Real ratio = P.rho_w / P.rho_s;
+    const auto open_water = [&](std::size_t c) { return water[c] - std::min(water[c], pore_room(sand[c])); };
+    const auto surface = [&](std::size_t c) { return terrain[c] + sand[c] + ratio * open_water(c); };
     const Real S_L = surface(L);
     const Real S_R = surface(R);
     const Real g_f = sand_gravity(std::max(sand[L], sand[R]));
@@ -75,19 +75,26 @@ template <class Real> void Solver<Real>::add_gravity(const Faces<Real>& old, con
     if (has(EFFECT_SLOPE_NORMAL)) {
         const Pores pores = pores_at(L, R);
         const Real own = slope.C * slope.r * slope.d;
-        const Real borne = std::max(Real(1) - buoyancy * pores.full, Real(0)); // by the water's pressure
+        const Real borne = std::max(Real(1) - ratio * P.displaces * pores.full, Real(0)); // by the water's pressure
         // What drag brings of held water: the fall of the water's surface, where 2.4c lets it.
-        const Real eta_L = terrain[L] + water[L];
-        const Real eta_R = terrain[R] + water[R];
+        const Real eta_L = water_surface(L);
+        const Real eta_R = water_surface(R);
         const Real brought = blocked(mixed[L], mixed[R], eta_L, eta_R, P.eps) ? Real(0) : eta_R - eta_L;
-        const Real weight = std::max(Real(1) - buoyancy * (pores.full - pores.held), Real(0));
-        u -= P.k_sand * g_f * (borne * own + buoyancy * pores.held * (own - brought) + weight * wedge_push(ax, a, b, slope, own));
+        const Real weight = std::max(Real(1) - ratio * (P.displaces * pores.full - pores.held), Real(0));
+        const Real down = borne * own + ratio * pores.held * (own - brought) + weight * wedge_push(ax, a, b, slope, own);
         // Rankine's passive pressure, (1 + sin phi)/(1 - sin phi) times the sand's own, where no stress bears it.
         const Real sine = P.friction / std::sqrt(Real(1) + P.friction * P.friction);
         const Real passive = (Real(1) + sine) / (Real(1) - sine);
         const Real k = stressed(deeper_cohesion(L, R));
         const Real K = k + (Real(1) - k) * passive;
-        withheld_push.along(ax)[f] = pushed ? P.k_sand * g_f * (K - slope.C * slope.r) * slope.d * borne : Real(0);
+        // 2.23: pressure drives the grains, too; uphill they meet the sand above.
+        const Real withheld = (K - slope.C * slope.r) * slope.d * borne;
+        const Real grains = ratio * P.pressed * pores.full * brought;
+        const Real side = withheld > Real(0) ? Real(1) : Real(-1);
+        const Real uphill = std::max(-side * (down + grains), Real(0));
+        const Real met = side * std::min({uphill, std::abs(withheld), std::abs(grains)});
+        u -= P.k_sand * g_f * (down + grains + met);
+        withheld_push.along(ax)[f] = pushed ? P.k_sand * g_f * (withheld - met) : Real(0);
     } else {
         u -= P.k_sand * g_f * (S_R - S_L);
     }

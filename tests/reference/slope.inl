@@ -80,16 +80,16 @@ template <class Real> Real Solver<Real>::culmann_share(Real S, Real S_b, Real C_
 }
 
 /// 2.19: depth of sand with full pores.
-template <class Real> Real Solver<Real>::full_depth(Real depth, Real held) const {
-    if (!has(EFFECT_RETENTION)) return std::min(held, depth);
-    return std::clamp((held - P.retained * depth) / (Real(1) - P.retained), Real(0), depth);
+template <class Real> Real Solver<Real>::full_depth(Real depth, Real stands) const {
+    if (!has(EFFECT_RETENTION)) return std::min(stands, depth);
+    return std::clamp((stands - P.retained * depth) / (Real(1) - P.retained), Real(0), depth);
 }
 
 template <class Real> auto Solver<Real>::pores_at(std::size_t L, std::size_t R) const -> Pores {
     const Real depth = sand[L] + sand[R];
     if (depth <= Real(0)) return {Real(0), Real(0)};
-    const Real full = (full_depth(sand[L], water[L]) + full_depth(sand[R], water[R])) / depth;
-    return {full, (mixed[L] + mixed[R]) / depth - full};
+    const Real full = (full_depth(sand[L], standing(L)) + full_depth(sand[R], standing(R))) / depth;
+    return {full, (mixed[L] + mixed[R]) / depth - P.porosity * full};
 }
 
 /// 2.7: k, how much of its weight's pressure the stress of a cell bears.
@@ -116,10 +116,10 @@ template <class Real> Real Solver<Real>::level_friction(const Axis& ax, int a, i
     const std::size_t L = ax.cell(a - 1, b);
     const std::size_t R = ax.cell(a, b);
     const Real hs_bar = mean(sand[L], sand[R]);
-    Real wet = hs_bar > Real(0) ? mean(mixed[L], mixed[R]) / hs_bar : Real(0);
+    Real wet = hs_bar > Real(0) ? P.displaces * mean(mixed[L], mixed[R]) / P.porosity / hs_bar : Real(0);
     if (has(EFFECT_SLOPE_NORMAL)) { // what pores hold back weighs as the sand does
         const Pores pores = pores_at(L, R);
-        wet = pores.full - pores.held;
+        wet = P.displaces * pores.full - pores.held;
     }
     const Real weight = std::max(Real(1) - P.rho_w / P.rho_s * wet, Real(0));
     const Real g =
@@ -180,8 +180,9 @@ template <class Real> void Solver<Real>::shear_in_plane(const Faces<Real>& old, 
 
 /// 2.19: permeability of a cell's sand for its water, relative to full pores.
 template <class Real> Real Solver<Real>::relative_permeability(std::size_t c) const {
-    if (water[c] >= sand[c]) return Real(1);
-    const Real s = (water[c] / sand[c] - P.retained) / (Real(1) - P.retained);
+    const Real stands = standing(c);
+    if (stands >= sand[c]) return Real(1);
+    const Real s = (stands / sand[c] - P.retained) / (Real(1) - P.retained);
     return s > Real(0) ? s * s * s : Real(0);
 }
 

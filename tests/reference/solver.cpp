@@ -48,6 +48,11 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
     P.flow_length = static_cast<Real>(material.flow_length);
     P.flow_beta = static_cast<Real>(material.flow_beta);
     P.flow_gamma = static_cast<Real>(material.flow_gamma);
+    // 2.23: one layer of water, and the paper, know no pores; as large as the sand they leave no grains.
+    const double porosity = has(EFFECT_MIXTURE) && !has(EFFECT_PUBLISHED) ? material.porosity : 1;
+    P.porosity = static_cast<Real>(static_cast<float>(porosity));
+    P.displaces = static_cast<Real>(porosity < 1 ? 1 - porosity : 1);
+    P.pressed = static_cast<Real>(has(EFFECT_DRAG) ? 1 - porosity : 0);
     const double measured = has(EFFECT_SLOPE_NORMAL) ? 0.78 : 1;
     const double apex = has(EFFECT_PUBLISHED) ? 1 : measured * 4 * material.yield_friction * rankine;
     P.yield_cohesion = static_cast<Real>(apex);
@@ -57,7 +62,7 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
     P.phi1 = static_cast<Real>(material.saturation[0]);
     P.phi2 = static_cast<Real>(material.saturation[1]);
     P.phi3 = static_cast<Real>(material.saturation[2]);
-    P.exchange = has(EFFECT_DRAG) ? static_cast<Real>(material.exchange_rate) : Real(0);
+    P.exchange = has(EFFECT_DRAG) ? static_cast<Real>(porosity * material.exchange_rate) : Real(0);
     P.bed_friction = has(EFFECT_BED_FRICTION) ? static_cast<Real>(material.bed_friction) : Real(0);
     P.manning = has(EFFECT_BED_FRICTION) ? static_cast<Real>(material.manning) : Real(0);
     P.bed_shear = has(EFFECT_BED_SHEAR) ? static_cast<Real>(material.bed_shear) : Real(0);

@@ -24,6 +24,8 @@ template <class Real> struct Constants {
     Real fast_friction{};             // mu_2 of 2.8
     Real flow_length{}, flow_beta{};  // L [m], beta of 2.8
     Real flow_gamma{};                // gamma of 2.8
+    Real porosity{};                  // n of 2.23
+    Real displaces{}, pressed{};      // beta, share of grains that a sloping surface of water pushes (2.23)
     Real c0{}, c1{}, c2{};            // cohesion of the yield surface [Pa]
     Real yield_cohesion{};            // its share of the material's
     Real phi1{}, phi2{}, phi3{};      // saturation
@@ -47,7 +49,7 @@ template <class Real> struct Constants {
     Real plane{};           // 2.18: slope s_p of the failing plane
     Real spread_friction{}; // 2.18: b, share of mu
     Real shear_number{};    // 2.18: nu substep/dx^2 of the in-plane viscosity, bounded for stability
-    Real retained{};        // 2.19: W/hs that pores hold back
+    Real retained{};        // 2.19: share of the pores that hold back
     int substeps{};
     int smoothing{}; // radius of the saturation's low-pass [cells]
     bool limiter{};
@@ -72,7 +74,7 @@ template <class Real> class Solver {
     void apply_rain();
     void update_open_sides();                    // 2.9, water
     void start_water_velocity();                 // 2.16, in step 0 -> pure_velocity
-    void split_water();                          // mixed = min(W, hs), pure = W - mixed
+    void split_water();                          // mixed = min(W, P), pure = W - mixed
     void update_water_boundary_types();          // 2.12 -> pure_type, mixed_type
     void diffuse_mixed_velocity();               // 2.15 -> mixed_velocity
     void diffuse_mixed_water();                  // 2.1 -> diffusion_flux
@@ -136,7 +138,7 @@ template <class Real> class Solver {
     Faces<Real> sand_velocity, pure_velocity, mixed_velocity; // us, uw, um [m/s]
 
     // Intermediate fields. Fluxes are depths per step, k q [m].
-    Field<Real> pure, mixed; // h_w, h_m; without mixture pure = W is the water layer
+    Field<Real> pure, mixed; // h_w, M; without mixture pure = W is the water layer
     Field<Real> pure_predicted, mixed_predicted;
     Field<Real> pure_scale, mixed_scale, sand_scale;
     Faces<Real> diffusion_flux; // q_D [m2/s]
@@ -148,7 +150,7 @@ template <class Real> class Solver {
     Faces<Real> pure_type, mixed_type, sand_type; // boundary types: 0 untracked, 1 tracked, 2 fixed
     Faces<Real> extrapolated;                     // velocity of one layer
     Field<Real> saturation;                       // phibar
-    Field<Real> sand_before, mixed_before;        // hs^n and min(W, hs^n)
+    Field<Real> sand_before, mixed_before;        // hs^n and min(W, P^n)
     Field<Real> sxx, sxy, syy;                    // Cauchy stress [Pa]
     Field<Real> cohesive_share;                   // R of 2.18, 0 without elastoplastic
     Faces<Real> friction_limit, withheld_push;    // 2.18: N, k_sand g_f (K - C r) d (1 - r^ f) [m/s]
@@ -245,7 +247,13 @@ template <class Real> class Solver {
         Real full, held;
     };
     Pores pores_at(std::size_t left, std::size_t right) const;
-    Real full_depth(Real sand_depth, Real held) const;
+    Real full_depth(Real sand_depth, Real stands) const;
+    Real pore_room(Real depth) const;
+    Real standing(Real held, Real depth) const;
+    Real standing(std::size_t cell) const;
+    Real water_surface(std::size_t cell) const;
+    Real water_at_level(std::size_t cell, Real level) const;
+    Real lifts(std::size_t one, std::size_t other) const;
     Real stressed(Real cohesive) const;
     Real level_friction(const Axis& axis, int a, int b) const;
     Real adhesion(std::size_t left, std::size_t right) const;

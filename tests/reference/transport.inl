@@ -1,6 +1,7 @@
 // Transport that every layer shares: outflow limiter, upwind flux (2.2) and momentum advection (2.3).
 #pragma once
 #include "shaders/effects.h"
+#include "tests/reference/pores.inl"
 #include "tests/reference/rules.hpp"
 #include "tests/reference/solver.hpp"
 #include <limits>
@@ -35,7 +36,8 @@ template <class Real> Real Solver<Real>::face_depth(Layer layer, const Axis& ax,
         if (cell >= 0 && cell < ax.along()) {
             const std::size_t c = ax.cell(cell, b);
             if (layer == Layer::sand) return Column{sand[c], terrain[c] + sand[c]};
-            return Column{layer == Layer::pure ? pure[c] : mixed[c], terrain[c] + water[c]};
+            if (layer == Layer::pure) return Column{pure[c], pure[c]};
+            return Column{mixed[c], P.porosity * water_surface(c)};
         }
         const bool next = layer == Layer::pure && (cell == -1 || cell == ax.along());
         const Real outside = next ? ghost_water.along(ax)[ax.face(cell == -1 ? 0 : cell, b)] : Real(0);

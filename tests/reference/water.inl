@@ -6,7 +6,7 @@ namespace wadi::reference {
 
 template <class Real> void Solver<Real>::split_water() {
     for (std::size_t c = 0; c < cells(); ++c) {
-        mixed[c] = has(EFFECT_SAND) ? std::min(water[c], sand[c]) : Real(0);
+        mixed[c] = has(EFFECT_SAND) ? std::min(water[c], pore_room(sand[c])) : Real(0);
         pure[c] = has(EFFECT_MIXTURE) ? water[c] - mixed[c] : water[c];
     }
 }
@@ -15,10 +15,11 @@ template <class Real> Real Solver<Real>::diffusion(const Axis& ax, int a, int b)
     const std::size_t L = ax.cell(a - 1, b);
     const std::size_t R = ax.cell(a, b);
     Real q(0);
+    const auto wet = [&](std::size_t c) { return std::min(standing(c), sand[c]); };
     if (has(EFFECT_PUBLISHED))
         q = -P.diffusion * (mixed[R] - mixed[L]) / P.dx;
-    else if (sand[L] > P.eps && sand[R] > P.eps && std::abs((terrain[R] + water[R]) - (terrain[L] + water[L])) > P.rest_surface)
-        q = -P.diffusion * minmod(mixed[R] - mixed[L], (terrain[R] + water[R]) - (terrain[L] + water[L])) / P.dx;
+    else if (sand[L] > P.eps && sand[R] > P.eps && std::abs(water_surface(R) - water_surface(L)) > P.rest_surface * lifts(L, R))
+        q = -P.porosity * P.diffusion * minmod(wet(R) - wet(L), water_surface(R) - water_surface(L)) / P.dx;
     return has(EFFECT_RETENTION) ? q * relative_permeability(q > Real(0) ? L : R) : q;
 }
 
@@ -113,8 +114,8 @@ template <class Real> Real Solver<Real>::friction_rate(std::size_t L, std::size_
 template <class Real> Real Solver<Real>::depth_beside(std::size_t from, std::size_t to) const {
     if (!has(EFFECT_MIXTURE) || !has(EFFECT_SLOPE_NORMAL) || P.exchange <= Real(0)) return Real(0);
     const Real top = terrain[to] + sand[to];
-    if (terrain[to] + water[to] >= top) return Real(0);
-    const Real upper = std::min(terrain[from] + water[from], top);
+    if (water_surface(to) >= top) return Real(0);
+    const Real upper = std::min(water_surface(from), top);
     return std::max(upper - std::max(terrain[from] + sand[from], terrain[to]), Real(0));
 }
 
@@ -135,21 +136,22 @@ void Solver<Real>::water_face(const Faces<Real>& pure_old, const Faces<Real>& mi
     const std::size_t L = ax.cell(a - 1, b);
     const std::size_t R = ax.cell(a, b);
     const std::size_t f = ax.face(a, b);
-    const Real eta_L = terrain[L] + water[L];
-    const Real eta_R = terrain[R] + water[R];
+    const Real eta_L = water_surface(L);
+    const Real eta_R = water_surface(R);
     const Real rise = eta_R - eta_L;
-    const bool level = std::abs(rise) <= P.rest_surface;
+    const Real coarse = lifts(L, R);
+    const bool level = std::abs(rise) <= P.rest_surface * coarse;
     Real& uw = pure_velocity.along(ax)[f];
     Real& um = mixed_velocity.along(ax)[f];
     const Real before = pure_old.along(ax)[f];
     const Real fastest = std::max(std::abs(uw), std::abs(um));
-    const Real push = P.k * water_gravity(fastest, std::max(water[L], water[R])) * rise;
+    const Real push = P.k * water_gravity(fastest, std::max(standing(L), standing(R))) * rise;
 
     uw -= push;
     const Real beside_L = depth_beside(L, R);
     const Real beside_R = depth_beside(R, L);
     enter_sand(uw, um, L, R, uw > Real(0) ? beside_L : beside_R);
-    if (level && std::abs(uw) <= P.rest_velocity) uw = Real(0);
+    if (level && std::abs(uw) <= P.rest_velocity * coarse) uw = Real(0);
     uw = leaving_wet(uw, pure[L], pure[R], P.eps);
     const Real across = across_face(pure_old, ax, a, b);
     uw = rubbed(uw, across, std::hypot(before, across), P.dt * friction_rate(L, R));
@@ -158,7 +160,7 @@ void Solver<Real>::water_face(const Faces<Real>& pure_old, const Faces<Real>& mi
     if (!has(EFFECT_MIXTURE)) return;
     Real& share = mixed_push.along(ax)[f];
     share = push / Real(P.substeps);
-    const bool rests = level && std::abs(um) <= P.rest_velocity;
+    const bool rests = level && std::abs(um) <= P.rest_velocity * coarse;
     if (rests || blocked(mixed[L] + beside_L, mixed[R] + beside_R, eta_L, eta_R, P.eps)) {
         um = Real(0);
         share = Real(0);
@@ -224,13 +226,13 @@ template <class Real> void Solver<Real>::center_water_velocity() {
         const std::size_t L = ax.cell(a - 1, b);
         const std::size_t R = ax.cell(a, b);
         const std::size_t f = ax.face(a, b);
-        const Real eta_L = terrain[L] + water[L];
-        const Real eta_R = terrain[R] + water[R];
+        const Real eta_L = water_surface(L);
+        const Real eta_R = water_surface(R);
         if (blocked(pure[L], pure[R], eta_L, eta_R, P.eps)) return;
         const Real u = pure_velocity.along(ax)[f];
         const Real across = across_face(pure_velocity, ax, a, b);
-        const Real push = P.k * water_gravity(std::abs(u), std::max(water[L], water[R])) * (eta_R - eta_L);
-        const auto eta = [&](int cell) { return terrain[ax.cell(cell, b)] + water[ax.cell(cell, b)]; };
+        const Real push = P.k * water_gravity(std::abs(u), std::max(standing(L), standing(R))) * (eta_R - eta_L);
+        const auto eta = [&](int cell) { return water_surface(ax.cell(cell, b)); };
         const Real rise = eta_R - eta_L;
         const Real rise_low = a > 1 ? eta_L - eta(a - 2) : rise;
         const Real rise_high = a + 1 < ax.along() ? eta(a + 1) - eta_R : rise;
@@ -280,7 +282,7 @@ template <class Real> void Solver<Real>::compute_bed_load() {
         const std::size_t R = ax.cell(a, b);
         Real& q = bed_load.along(ax)[ax.face(a, b)];
         q = Real(0);
-        if (water[L] - sand[L] <= P.eps || water[R] - sand[R] <= P.eps) return;
+        if (pure[L] <= P.eps || pure[R] <= P.eps) return;
         const Real u = pure_velocity.along(ax)[ax.face(a, b)];
         const Real v = across_face(pure_velocity, ax, a, b);
         const Real speed = std::sqrt(u * u + v * v);
@@ -299,14 +301,14 @@ template <class Real> void Solver<Real>::compute_saturation() {
         for (int i = 0; i < x.nx; ++i) {
             Real numerator(0);
             Real denominator(0);
-            // The value that cell (i + di, j + dj) adds: to the numerator W, to the denominator W + hs.
+            // The value that cell (i + di, j + dj) adds: to the numerator d, to the denominator d + hs.
             const auto term = [&](int di, int dj, bool top) {
                 const int ii = i + di;
                 const int jj = j + dj;
                 if (ii < 0 || jj < 0 || ii >= x.nx || jj >= x.ny) return Real(0);
                 const std::size_t c = x.cell(ii, jj);
                 if (sand[c] <= P.eps) return Real(0);
-                return top ? water[c] : water[c] + sand[c];
+                return top ? standing(c) : standing(c) + sand[c];
             };
             const auto add = [&](bool top, Real& sum) {
                 for (int p = 0; p <= radius; ++p) {

@@ -113,6 +113,7 @@ WorldParams content_params(std::uint32_t effects) {
     m.sand_viscosity = 0.05;
     m.retention = 0.3;
     m.flow_length = 2e-3;
+    m.porosity = 0.4;
     m.exchange_rate = 3e4;
     m.cohesion_dry = 500;
     settings.method.shock_viscosity = 0.25;

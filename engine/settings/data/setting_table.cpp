@@ -100,6 +100,8 @@ constexpr Setting rows[] = {
      "how little deep sand feels of it: 0.65 for sand, 0.136 for glass beads", InDigest::where_set},
     {"material.flow_gamma", material<&Material::flow_gamma>, {0, 10}, "", EFFECT_FLOW_FRICTION,
      "what sand at rest feels of it, as a Froude number: 0.77 for sand, 0 for glass beads", InDigest::where_set},
+    {"material.porosity", material<&Material::porosity>, {0.01, 1}, "", EFFECT_MIXTURE,
+     "share of the sand that is pores, 0.4 for sand; 1 = as large as the sand", InDigest::where_set},
     {"method.substeps", method<&Method::substeps>, {1, 64}, "", EFFECT_SAND, "sand substeps per water step"},
     {"method.water_substeps", method<&Method::water_substeps>, {1, WATER_SUBSTEPS_MOST}, "", EFFECT_WATER,
      "water substeps per step, ahead of the sand's", InDigest::where_set},

@@ -45,6 +45,7 @@ struct Material {
     double flow_length = 0;         // L of NUMERICS 2.8; 0 = friction is the same at every speed
     double flow_beta = 0.65;        // beta, gamma of NUMERICS 2.8
     double flow_gamma = 0.77;
+    double porosity = 1; // n of NUMERICS 2.23; 1 = pores as large as the sand
     friend bool operator==(const Material&, const Material&) = default;
 };
 

@@ -49,6 +49,11 @@ double yield_cohesion(const Material& m, std::uint32_t effects) {
     return measured * 4 * m.yield_friction * rankine(m);
 }
 
+// Share of the sand that is pores. Without two layers of water, and in the paper's method, they are as large as the sand.
+double pore_share(const Material& m, std::uint32_t effects) {
+    return (effects & EFFECT_MIXTURE) != 0 && (effects & EFFECT_PUBLISHED) == 0 ? m.porosity : 1;
+}
+
 // Slope of the plane on which a wedge of sand behind a cliff gains most momentum: of all s that of the largest (s - mu)/(s (1 +
 // chi s^2)), mass times acceleration; a root of 2 chi s^3 - 3 mu chi s^2 - mu. Not below a tenth, where wedges would be longer
 // than what they explain.
@@ -117,7 +122,7 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     const double pushed = (effects & EFFECT_MIXTURE) != 0 ? step_k : k; // what is inside the sand is pushed once a step
     p.rest_velocity = w.rest_rule ? f(1.5 * pushed * gravity * rest_surface) : -1.0F; // rounding of the push does not decide
     const double spreads = (effects & EFFECT_PUBLISHED) != 0 ? m.diffusion_rate : std::min(m.diffusion_rate, 0.2 * dx * dx / dt);
-    p.diffusion_number = f(spreads * dt / (dx * dx));
+    p.diffusion_number = f(pore_share(m, effects) * spreads * dt / (dx * dx));
     p.bed_friction_dt = f(dt * m.bed_friction);
     p.manning = f(m.manning);
     p.gravity_dt = f(dt * gravity);
@@ -139,7 +144,12 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     p.water_density = f(m.water_density);
     p.sand_density = f(m.sand_density);
     p.friction = f(m.friction);
-    const double kd = (effects & EFFECT_DRAG) != 0 ? dts * m.exchange_rate : 0;
+    const double n = pore_share(m, effects);
+    p.porosity = f(n);
+    p.inv_porosity = f(1 / n);
+    p.buoyancy = n < 1 ? f(1 - n) : 1.0F;
+    p.pressed_grains = (effects & EFFECT_DRAG) != 0 ? f(1 - n) : 0.0F;
+    const double kd = (effects & EFFECT_DRAG) != 0 ? dts * n * m.exchange_rate : 0;
     p.drag_kd = f(kd);
     p.water_drag = p.drag_kd * (static_cast<float>(w.substeps) / static_cast<float>(w.water_substeps));
     p.drag_coupling = f(kd * m.water_density / (m.water_density + kd) / m.sand_density);

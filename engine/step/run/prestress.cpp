@@ -26,11 +26,13 @@ Column column_of(const WorldParams& p, double ground, double sand, double water,
     const double tr = 2 * std::log1p(stretch);
     column.pull = column.allowed = sand * static_cast<double>(p.lambda + p.shear) * tr * std::exp(-tr);
     if (sand <= static_cast<double>(p.dry_threshold)) return column;
-    const double mixed = std::min(water, sand), retained = static_cast<double>(p.retained);
-    const double drainable = static_cast<double>(p.inv_drainable);
-    const double full = retained > 0 ? std::clamp((water - retained * sand) * drainable, 0.0, sand) : mixed;
-    column.weight = std::max(0.0, 1 + static_cast<double>(p.density_ratio) * (mixed - 2 * full) / sand);
-    const auto phi = static_cast<float>(water / (water + sand));
+    const double retained = static_cast<double>(p.retained), drainable = static_cast<double>(p.inv_drainable);
+    const double porosity = static_cast<double>(p.porosity), buoyancy = static_cast<double>(p.buoyancy);
+    const double room = porosity * sand, stands = water < room ? water / porosity : water + (sand - room); // 2.23
+    const double full = retained > 0 ? std::clamp((stands - retained * sand) * drainable, 0.0, sand) : std::min(stands, sand);
+    const double held = std::min(water, room) - porosity * full;
+    column.weight = std::max(0.0, 1 - static_cast<double>(p.density_ratio) * (buoyancy * full - held) / sand);
+    const auto phi = static_cast<float>(stands / (stands + sand));
     float c = phi < p.phi1   ? p.cohesion0 + phi * p.slope01
               : phi < p.phi2 ? p.cohesion1 + (phi - p.phi1) * p.slope12
                              : (p.phi3 - phi) * p.slope23;

@@ -64,10 +64,13 @@ void check_symmetric(Scene scene, bool transpose, bool mirror) {
 } // namespace
 
 TEST_CASE("transposed, mirrored and both, with all coupled effects and open sides") {
-    for (const double quantum : {-1.0, 0.0}) {
+    for (const auto [quantum, porosity] :
+         {std::pair(-1.0, 1.0), std::pair(0.0, 1.0), std::pair(-1.0, 0.4), std::pair(0.0, 0.4)}) {
         CAPTURE(quantum);
+        CAPTURE(porosity);
         auto scene = mixed_scene(40, 31);
         scene.settings.method.quantum = quantum;
+        scene.settings.material.porosity = porosity;
         scene.settings.sides[SIDE_WEST] = {SideKind::level, 0, 1e30, {{{0, 1.5}}}};
         scene.settings.sides[SIDE_EAST] = {SideKind::outflow, 0, 1e30, {}};
         check_symmetric(scene, true, false);
