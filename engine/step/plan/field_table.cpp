@@ -103,9 +103,9 @@ constexpr FieldRow rows[] = {
      "step in which it was seen to hold water"},
     {"active_sand_seen", tiles, none, no_hash, no_host, "", "steps", EFFECT_WATER | EFFECT_SAND,
      "step in which it was seen to hold sand"},
-    {"water_depth", published, cell, no_hash, 3, "hw", "m", always, "pure water above the sand, W - min(W, hs)"},
-    {"free_surface", published, cell, no_hash, 4, "surface", "m", always, "H + max(W, hs): what a viewer sees"},
-    {"surface_saturation", published, cell, no_hash, 5, "phi", "1", always, "W/(W + hs) where there is sand, else 0"},
+    {"water_depth", published, cell, no_hash, 3, "hw", "m", always, "pure water above the sand, W - min(W, P)"},
+    {"free_surface", published, cell, no_hash, 4, "surface", "m", always, "H + max(D, hs): what a viewer sees"},
+    {"surface_saturation", published, cell, no_hash, 5, "phi", "1", always, "D/(D + hs) where there is sand, else 0"},
 };
 // clang-format on
 

@@ -82,7 +82,7 @@ namespace Wadi
         FreeSurface = 2,
         /// <summary>hs [m], 1 float</summary>
         SandDepth = 3,
-        /// <summary>pure water above the sand, W - min(W, hs) [m], 1 float</summary>
+        /// <summary>pure water above the sand, what its pores do not hold [m], 1 float</summary>
         WaterDepth = 4,
         /// <summary>W/(W + hs) where there is sand, else 0; 1 float</summary>
         Saturation = 5,
@@ -150,7 +150,7 @@ namespace Wadi
         SandDepth = 1,
         /// <summary>W, depth of all water, above the sand and inside it [m]</summary>
         TotalWaterDepth = 2,
-        /// <summary>pure water above the sand, W - min(W, hs) [m]</summary>
+        /// <summary>pure water above the sand, what its pores do not hold [m]</summary>
         WaterDepth = 3,
         /// <summary>H + max(W, hs), elevation of what a viewer sees [m]</summary>
         FreeSurface = 4,

@@ -407,7 +407,7 @@ typedef enum wadi_output WADI_ENUM {
     WADI_OUTPUT_SAND_SURFACE = 1,   /* elevation of the solid surface H + hs [m], 1 float */
     WADI_OUTPUT_FREE_SURFACE = 2,   /* elevation of the visible surface H + max(W, hs) [m], 1 float */
     WADI_OUTPUT_SAND_DEPTH = 3,     /* hs [m], 1 float */
-    WADI_OUTPUT_WATER_DEPTH = 4,    /* pure water above the sand, W - min(W, hs) [m], 1 float */
+    WADI_OUTPUT_WATER_DEPTH = 4,    /* pure water above the sand, what its pores do not hold [m], 1 float */
     WADI_OUTPUT_SATURATION = 5,     /* W/(W + hs) where there is sand, else 0; 1 float */
     WADI_OUTPUT_FLOW = 6,           /* flow map: velocity of pure water, what is seen to move, east and north [m/s], 2 floats */
     WADI_OUTPUT_SAND_VELOCITY = 7,  /* east and north [m/s], 2 floats */
@@ -517,7 +517,7 @@ typedef enum wadi_field WADI_ENUM {
     WADI_FIELD_TERRAIN = 0,          /* H, elevation of the ground [m] */
     WADI_FIELD_SAND_DEPTH = 1,       /* hs [m] */
     WADI_FIELD_TOTAL_WATER_DEPTH = 2, /* W, depth of all water, above the sand and inside it [m] */
-    WADI_FIELD_WATER_DEPTH = 3,      /* pure water above the sand, W - min(W, hs) [m] */
+    WADI_FIELD_WATER_DEPTH = 3,      /* pure water above the sand, what its pores do not hold [m] */
     WADI_FIELD_FREE_SURFACE = 4,     /* H + max(W, hs), elevation of what a viewer sees [m] */
     WADI_FIELD_SATURATION = 5,       /* W/(W + hs) where there is sand, else 0 */
     WADI_FIELD_WATER_VELOCITY_X = 6, /* pure water, cell centre [m/s] */

@@ -64,7 +64,7 @@ void check_symmetric(Scene scene, bool transpose, bool mirror) {
 } // namespace
 
 TEST_CASE("transposed, mirrored and both, with all coupled effects and open sides") {
-    for (const auto [quantum, porosity] :
+    for (const auto& [quantum, porosity] :
          {std::pair(-1.0, 1.0), std::pair(0.0, 1.0), std::pair(-1.0, 0.4), std::pair(0.0, 0.4)}) {
         CAPTURE(quantum);
         CAPTURE(porosity);
