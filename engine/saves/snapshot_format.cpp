@@ -10,8 +10,15 @@ namespace {
 constexpr char magic[] = "WADISNAP";
 constexpr std::size_t fields_at = 12, material_at = 80, name_bytes = 32, field_bytes = name_bytes + 8, total_bytes = 16;
 
-// How many numbers of the material a version holds: keys are added at the end.
+// How many numbers of the material a version holds: keys are added ahead of those of lists, which are saturation's.
 std::size_t material_numbers(std::uint32_t version) { return version == 4 ? 23 : version == 5 ? 27 : material_keys().size(); }
+
+// The key of a number that a version holds.
+int material_key(std::uint32_t version, int number) {
+    constexpr int of_lists = 3;
+    const int numbers = static_cast<int>(material_numbers(version)), keys = static_cast<int>(material_keys().size());
+    return number < numbers - of_lists ? number : number + keys - numbers;
+}
 
 std::size_t fixed_bytes(std::uint32_t version) { return material_at + 8 * material_numbers(version); }
 
@@ -66,8 +73,8 @@ Result<SnapshotHeader> read_header(std::span<const std::byte> snapshot) {
     header.totals = {get<std::uint64_t>(snapshot, 56), get<std::int64_t>(snapshot, 64), get<std::int64_t>(snapshot, 72), {}};
     const std::uint64_t totals = get<std::uint32_t>(snapshot, 44), fields = get<std::uint32_t>(snapshot, fields_at);
     std::size_t at = material_at;
-    for (int key = 0; key < static_cast<int>(material_numbers(header.version)); ++key, at += 8)
-        set_material_value(header.material, key, get<double>(snapshot, at));
+    for (int n = 0; n < static_cast<int>(material_numbers(header.version)); ++n, at += 8)
+        set_material_value(header.material, material_key(header.version, n), get<double>(snapshot, at));
     if (auto status = validate(header.material); !status) return broken(status.message);
     if (at + totals * total_bytes + fields * field_bytes > bytes) return broken("its lists pass its end");
     for (std::uint64_t n = 0; n < totals; ++n, at += total_bytes)

@@ -12,7 +12,7 @@
 //     48  u64      digest of the level's settings
 //     56  u64      steps
 //     64  i64[2]   quanta of sand and water that the ledger began with
-//     80  f64      per number of material_keys(): its value; in version 4 the first 23, in 5 the first 27
+//     80  f64      per number of material_keys(): its value; 23 of them in version 4, 27 in 5
 //      .  f64[2]   per running total: metres, whole quanta
 //      .  per field: char[32] name, u64 bytes
 //      .  the fields in that order, as they lie on the device, ghosts and padding included
