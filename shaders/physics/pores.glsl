@@ -13,7 +13,7 @@ struct PoreWater {
 // P: depth of water that the pores of so much sand hold, in whole quanta. No branch spares a porosity of 1 here: on GPUs branches cost more
 // than what they spare.
 FN float pore_room(float sand, float porosity, float quantum, float inv_quantum) {
-    return porosity < 1.0f ? whole_quanta(porosity * sand, quantum, inv_quantum) : sand;
+    return whole_quanta(porosity * sand, quantum, inv_quantum);
 }
 
 // M alone.
@@ -21,20 +21,20 @@ FN float mixed_water(float water, float sand, float porosity, float quantum, flo
     return wmin(water, pore_room(sand, porosity, quantum, inv_quantum));
 }
 
-FN PoreWater pore_water(float water, float sand, float porosity, float inv_porosity, float quantum, float inv_quantum) {
-    float room = pore_room(sand, porosity, quantum, inv_quantum);
-    bool part = water < room;
-    float above = water > 0.0f ? water + (sand - room) : water; // some quanta of sand have room for none
-    PoreWater w;
-    w.mixed = wmin(water, room);
-    w.depth = part ? wmin(water * inv_porosity, sand) : above;
-    w.lifts = part ? inv_porosity : 1.0f;
-    return w;
-}
-
 // Depth from the ground to the water's surface, 0 where there is none. With a porosity of 1 it is the water's own, in every bit.
 FN float standing_depth(float water, float sand, float porosity, float inv_porosity, float quantum, float inv_quantum) {
-    return pore_water(water, sand, porosity, inv_porosity, quantum, inv_quantum).depth;
+    float room = pore_room(sand, porosity, quantum, inv_quantum);
+    float within = wmin(water * inv_porosity, sand);
+    float above = water > 0.0f ? water + (sand - room) : 0.0f; // some quanta of sand have room for none
+    return water < room ? within : above;
+}
+
+FN PoreWater pore_water(float water, float sand, float porosity, float inv_porosity, float quantum, float inv_quantum) {
+    PoreWater w;
+    w.mixed = mixed_water(water, sand, porosity, quantum, inv_quantum);
+    w.depth = standing_depth(water, sand, porosity, inv_porosity, quantum, inv_quantum);
+    w.lifts = water < pore_room(sand, porosity, quantum, inv_quantum) ? inv_porosity : 1.0f;
+    return w;
 }
 
 // The same but for rounding to quanta, cheaper: for what asks for no level surface.
