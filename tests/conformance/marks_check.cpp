@@ -31,7 +31,7 @@ struct Marks {
         const double water = has(EFFECT_WATER) ? at("water_height", i, j) : 0,
                      sand = has(EFFECT_SAND) ? at("sand_height", i, j) : 0;
         if (layer == 's') return sand;
-        const double mixed = has(EFFECT_MIXTURE) ? std::min(water, pore_room(run.params, sand)) : 0;
+        const double mixed = has(EFFECT_MIXTURE) ? std::min(water, static_cast<double>(run.params.porosity) * sand) : 0;
         return layer == 'm' ? mixed : water - mixed;
     }
     static std::string velocity(char layer, char axis) {
