@@ -1,4 +1,4 @@
-// A command log as bytes. Little-endian, version 2, behind the header of sealed_bytes.hpp:
+// A command log as bytes. Little-endian, version 3, behind the header of sealed_bytes.hpp:
 //     12  u32      number of stamps
 //     32  u64      digest of the level's settings
 //     40  u64      number of commands
@@ -6,7 +6,9 @@
 //      .  per command: u32 kind, u32 layer, u64 step, then
 //         edit:   u32 kind, capsule, stamp, 0; f64 x0, y0, x1, y1, radius, softness, amount, strength, velocity x, y
 //         region: i32 i0, j0, nx, ny; f32 values
-//         material: u32 index of material_keys(), 0; f64 value
+//         material: u32 number, 0; f64 value. The number is the index in material_keys(), but from `list_numbers` on it counts
+//         the keys of lists (saturation), which come last there: a key that is new moves no number. Version 2 had the index among
+//         its 23 keys.
 #include "engine/edits/command_log.hpp"
 #include "engine/saves/sealed_bytes.hpp"
 #include "engine/settings/rules/material_keys.hpp"
@@ -16,7 +18,8 @@ namespace wadi {
 namespace {
 
 constexpr char magic[] = "WADICMDS";
-constexpr std::uint32_t version = 2;
+constexpr std::uint32_t version = 3, oldest_version = 2;
+constexpr int list_keys = 3, list_numbers = 0x10000;
 constexpr std::size_t stamps_at = 12, lists_at = 48;
 enum class Kind : std::uint32_t { edit, region, trim, material };
 
@@ -90,9 +93,13 @@ void write(Writer& to, const RegionWrite& region) {
 
 void write(Writer& to, const Trim& trim) { write(to, Kind::trim, EditLayer::terrain, trim.step); }
 
+// Index of the first key of lists among `keys` of them.
+constexpr int first_of_lists(std::size_t keys) { return static_cast<int>(keys) - list_keys; }
+
 void write(Writer& to, const MaterialChange& change) {
     write(to, Kind::material, EditLayer::terrain, change.step);
-    to.add(static_cast<std::uint32_t>(change.key));
+    const int past = change.key - first_of_lists(material_keys().size());
+    to.add(static_cast<std::uint32_t>(past < 0 ? change.key : list_numbers + past));
     to.add(std::uint32_t{0});
     to.add(change.value);
 }
@@ -116,9 +123,15 @@ RegionWrite read_region(Reader& from, EditLayer layer, std::uint64_t step) {
     return write;
 }
 
-MaterialChange read_material(Reader& from, std::uint64_t step) {
+MaterialChange read_material(Reader& from, std::uint32_t of_version, std::uint64_t step) {
+    constexpr std::size_t keys_of_2 = 23;
     MaterialChange change{step, 0, 0};
-    change.key = static_cast<int>(from.next<std::uint32_t>() % material_keys().size());
+    const std::uint32_t number = from.next<std::uint32_t>();
+    const int lists = of_version == 2 ? first_of_lists(keys_of_2) : list_numbers,
+              scalars = first_of_lists(material_keys().size());
+    const bool of_list = number >= static_cast<std::uint32_t>(lists);
+    change.key = of_list ? scalars + static_cast<int>((number - static_cast<std::uint32_t>(lists)) % std::uint32_t{list_keys})
+                         : static_cast<int>(number % static_cast<std::uint32_t>(scalars));
     from.next<std::uint32_t>();
     change.value = from.next<double>();
     return change;
@@ -145,7 +158,7 @@ std::vector<std::byte> write_commands(std::uint64_t level, std::span<const Stamp
 }
 
 Result<CommandList> read_commands(std::span<const std::byte> bytes) {
-    if (auto status = check_sealed("command log", bytes, magic, {version, version}, lists_at); !status) return status;
+    if (auto status = check_sealed("command log", bytes, magic, {oldest_version, version}, lists_at); !status) return status;
     CommandList list;
     list.level = get<std::uint64_t>(bytes, sealed_header_bytes);
     const auto stamps = get<std::uint32_t>(bytes, stamps_at);
@@ -169,7 +182,7 @@ Result<CommandList> read_commands(std::span<const std::byte> bytes) {
         } else if (kind == Kind::region) {
             list.commands.emplace_back(read_region(from, layer, step));
         } else if (kind == Kind::material) {
-            list.commands.emplace_back(read_material(from, step));
+            list.commands.emplace_back(read_material(from, sealed_version(bytes), step));
         } else {
             list.commands.emplace_back(Trim{step});
         }

@@ -24,7 +24,7 @@ struct Kept {
 };
 // One row for each version since that of the first release.
 const Kept snapshots[] = {{4, 5135146086101446750u, 0.61}, {5, 5135146086101446750u, 0.61}, {6, 5135146086101446750u, 0.61}};
-const uint32_t logs[] = {2};
+const uint32_t logs[] = {2, 3};
 constexpr uint64_t steps = 12;
 
 std::filesystem::path folder() { return std::filesystem::path(WADI_SOURCE_DIR) / "tests" / "plugin" / "saves"; }

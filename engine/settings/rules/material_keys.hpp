@@ -12,7 +12,8 @@ struct MaterialKey {
     std::uint32_t effect = 0; // through which it acts; 0 = through several
 };
 
-/// All of them, by the rows of setting_table(); the index is written to snapshots and command logs.
+/// All of them, by the rows of setting_table(); those of lists (saturation) come last. What snapshots and command logs hold of
+/// the index: snapshot_format.hpp, command_format.cpp.
 std::span<const MaterialKey> material_keys();
 /// Index of a name, or -1.
 int find_material_key(std::string_view name);
