@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """Holds wadi-tune to what the recorder then measures. Usage: judge.py BIN [LEVEL ...] [options]; needs numpy.
 
-Levels are shipped ones, or with --drawn N --seed S N that drawn_levels.py draws, or both. For each level: tunes a copy of it, records the variant that was written (time: least of three whole recordings), and compares its surfaces
+Levels are shipped ones, or with --drawn N --seed S N that drawn_levels.py draws, or both. For each level: tunes a copy of it, records the variant that was written (time: three whole recordings), and compares its surfaces
 with those of a run that is finer than any the tuner made. Prints a table in Markdown; exit code 1 where a time is off by more than 15 %
-or an error by more than a factor of 1.5, where more than a third of the errors are not told, or where a program fails."""
+from all three, or an error by more than a factor of 1.5, where more than a third of the errors are not told, or where a program fails."""
 import argparse
 import json
 import math
@@ -111,14 +111,14 @@ def judge(arguments, name, source, scratch):
     _, truth = record(recorder, level, "finest", tuned["piece_seconds"], checkpoints, scratch, ["--backend", arguments.backend])
     errors = {kind: error(mine, truth, KINDS[kind], tuned["checkpoints"]) if tuned[kind]["moved"] else None for kind in KINDS}
     early = {kind: error(mine, truth, KINDS[kind], tuned[kind]["early_checkpoints"]) if tuned[kind]["early_checkpoints"] else None for kind in KINDS}
-    return tuned, min(times), (nx, ny), errors, early
+    return tuned, sorted(times), (nx, ny), errors, early
 
 
-def offences(tuned, ms, errors, early):
-    """What the tuner said too far from what was measured."""
+def offences(tuned, times, errors, early):
+    """What the tuner said too far from what was measured; times: of each recording, rising. They differ by what others on the machine do."""
     chosen, found = tuned["chosen"], []
-    if max(ms / chosen["ms_per_frame"], chosen["ms_per_frame"] / ms) > MOST_TIME:
-        found.append(f"{chosen['ms_per_frame']:.3g} ms said, {ms:.3g} ms recorded")
+    if not times[0] / MOST_TIME <= chosen["ms_per_frame"] <= times[-1] * MOST_TIME:
+        found.append(f"{chosen['ms_per_frame']:.3g} ms said, {times[0]:.3g} to {times[-1]:.3g} ms recorded")
     for kind in KINDS:
         for part, said, judged, told in (("", chosen[f"{kind}_percent"], errors[kind], tuned[kind]["converges"]),
                                          (" at first", tuned[kind]["early_percent"], early[kind], True)):
@@ -179,18 +179,18 @@ def main():
             source = find(pathlib.Path(scratch))
             name = name or source.name
             try:
-                tuned, ms, finest, errors, early = judge(arguments, name, source, pathlib.Path(scratch))
+                tuned, times, finest, errors, early = judge(arguments, name, source, pathlib.Path(scratch))
             except subprocess.CalledProcessError as failure:
                 print(f"| `{name}` | failed |", flush=True)
                 off.append(f"{name}: {(failure.stderr.strip().splitlines() or ['?'])[-1]}")
                 continue
-        off += [f"{name}: {line}" for line in offences(tuned, ms, errors, early)]
+        off += [f"{name}: {line}" for line in offences(tuned, times, errors, early)]
         left += untold(tuned, errors)
         chosen, model = tuned["chosen"], tuned["predicted"]
         cells = [cell(tuned, kind, errors[kind], early[kind]) for kind in KINDS]
         orders = "".join(str(chosen[f"{kind}_transport_order"]) for kind in ("water", "sand"))
         way = f"orders {orders}, T {chosen['substeps']}{', tiles' if chosen['active_tiles'] == 1 else ''}"
-        print(f"| `{name}` | {chosen['nx']} x {chosen['ny']}, {way} | {model['ms_per_frame']:.2f} | {chosen['ms_per_frame']:.2f} | {ms:.2f} | "
+        print(f"| `{name}` | {chosen['nx']} x {chosen['ny']}, {way} | {model['ms_per_frame']:.2f} | {chosen['ms_per_frame']:.2f} | {times[0]:.2f} | "
               f"{cells[0]} | {cells[1]} | {finest[0]} x {finest[1]}, {tuned['piece_seconds']:.3g} s |", flush=True)
     if len(jobs) > 1 and sum(left) > MOST_UNTOLD * len(left):
         off.append(f"{sum(left)} of {len(left)} errors are not told")

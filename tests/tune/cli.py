@@ -91,15 +91,15 @@ def test_judge_objects():
     tuned = {"chosen": {"ms_per_frame": 1, "sand_percent": 1, "water_percent": 2}, "sand": {"converges": True, "early_checkpoints": 0, "early_percent": 0},
              "water": {"converges": False, "early_checkpoints": 0, "early_percent": 0}}
     good, no_early = {"sand": 1.1, "water": 2}, {"sand": None, "water": None}
-    assert judge.offences(tuned, 1.1, good, no_early) == []
-    assert len(judge.offences(tuned, 1.2, good, no_early)) == len(judge.offences(tuned, 0.8, good, no_early)) == 1
-    assert len(judge.offences(tuned, 1, {"sand": 1.6, "water": 2}, no_early)) == len(judge.offences(tuned, 1, {"sand": 0.6, "water": 2}, no_early)) == 1
-    assert judge.offences(tuned, 1, {"sand": 1, "water": 9}, no_early) == [] != judge.offences(tuned, 1, {"sand": 1, "water": 1}, no_early), "at least 2"
+    assert judge.offences(tuned, [1.1, 1.4], good, no_early) == []
+    assert len(judge.offences(tuned, [1.2, 1.4], good, no_early)) == len(judge.offences(tuned, [0.7, 0.8], good, no_early)) == 1
+    assert len(judge.offences(tuned, [1], {"sand": 1.6, "water": 2}, no_early)) == len(judge.offences(tuned, [1], {"sand": 0.6, "water": 2}, no_early)) == 1
+    assert judge.offences(tuned, [1], {"sand": 1, "water": 9}, no_early) == [] != judge.offences(tuned, [1], {"sand": 1, "water": 1}, no_early), "at least 2"
     assert judge.proportional({"nx": 208, "ny": 128}, 374.4) == (377, 232) and judge.proportional({"nx": 48, "ny": 32}, 196.8) == (198, 132)
     assert judge.untold(tuned, good) == [False, True] and judge.untold(tuned, {"sand": None, "water": 2}) == [True]
     tuned["water"] |= {"early_checkpoints": 1, "early_percent": 1}
-    assert judge.untold(tuned, good) == [False, False] and judge.offences(tuned, 1, good, no_early | {"water": 1.4}) == []
-    assert len(judge.offences(tuned, 1, good, no_early | {"water": 1.6})) == len(judge.offences(tuned, 1, good, no_early | {"water": 0.6})) == 1
+    assert judge.untold(tuned, good) == [False, False] and judge.offences(tuned, [1], good, no_early | {"water": 1.4}) == []
+    assert len(judge.offences(tuned, [1], good, no_early | {"water": 1.6})) == len(judge.offences(tuned, [1], good, no_early | {"water": 0.6})) == 1
 
 
 def test_judge_goes_on(folder):
