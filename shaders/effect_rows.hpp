@@ -35,6 +35,7 @@ inline constexpr EffectRow effect_rows[] = {
      "sand that spreads or shears in its plane is slowed from within"},
     {EFFECT_RETENTION, "retention", EFFECT_MIXTURE | EFFECT_DRAG, "pores hold back a share of the water: damp sand stays damp"},
     {EFFECT_ROUGHNESS, "roughness", EFFECT_BED_FRICTION, "Manning's n from cell to cell"},
+    {EFFECT_RAIN_MAP, "rain_map", EFFECT_RAIN, "how much of the rain falls on each cell"},
 };
 
 /// Choices: bits of the same mask above those, from settings and never from content. Without what it needs a choice has nothing

@@ -16,7 +16,8 @@ static_assert(sizeof(StepInput) <= 2304, "StepInput must stay within 2304 bytes"
 static_assert(offsetof(StepInput, source) == 16 && offsetof(StepInput, side) == 16 + 16 * MAX_SOURCES);
 static_assert(offsetof(StepInput, edit) == offsetof(StepInput, side) + 16 * 8 && sizeof(StepInput) % 16 == 0);
 static_assert(sizeof(EditInput) == 64 && alignof(EditInput) == 4, "std140 begins each edit at a multiple of 16 bytes");
-static_assert(offsetof(StepInput, wake) == offsetof(StepInput, edit) + sizeof(EditInput) * MAX_EDITS);
+static_assert(offsetof(StepInput, mapped_rain) == offsetof(StepInput, edit) + sizeof(EditInput) * MAX_EDITS);
+static_assert(offsetof(StepInput, wake) == offsetof(StepInput, mapped_rain) + 16);
 
 /// The layout every field shares: GHOST ghost cells around, one more column and row for the last faces. Cell 0 of each row lies
 /// at a multiple of 32 elements (LEAD and the pitch are), so that a row begins a line of 128 bytes; its west ghosts end the row

@@ -206,6 +206,7 @@ struct StepInput {
                                 // first and last index of the open span
     vec4 side_pace[4];          // of waves: dt over the time below which they leave (0: by the grid); share of bed load; z: open_sides
     EditInput edit[MAX_EDITS];
+    vec4 mapped_rain;           // under a rain map: depth of rain where it rains most in this step [m], a whole number of quanta; quanta of it before, modulo 65536
     vec4 wake[MAX_WAKES];       // tiles woken in this step: first column, row, last column, row
     int edit_count;             // edits in this submission of apply_edits
     int point_count;            // points of a POINTS stage

@@ -466,8 +466,8 @@ Status LevelFiles::take_work(std::int64_t more) {
                                      number_text(static_cast<double>(work_most)));
 }
 
-Status draw_roughness(std::vector<Layer> layers, const LevelGrid& grid, LevelFiles& files, std::vector<float>& roughness,
-                      std::vector<std::string>& warnings) {
+Status draw_numbers(std::vector<Layer> layers, const LevelGrid& grid, LevelFiles& files, std::vector<float>& numbers,
+                    std::vector<std::string>& warnings) {
     LevelGrid unrounded = grid;
     unrounded.quantum = 0;
     LayerLists lists;
@@ -475,7 +475,7 @@ Status draw_roughness(std::vector<Layer> layers, const LevelGrid& grid, LevelFil
     lists.of_heights = false;
     InitialFields drawn;
     Status status = draw_layers(lists, unrounded, files, drawn, warnings);
-    roughness = std::move(drawn.terrain);
+    numbers = std::move(drawn.terrain);
     return status;
 }
 

@@ -26,10 +26,10 @@ struct LevelGrid {
     double quantum = 0; // fields are rounded to multiples of it, so that lakes are flat to the bit; 0 = not rounded [m]
 };
 
-enum class LayerTarget { terrain, sand, water, roughness };
+enum class LayerTarget { terrain, sand, water, roughness, rain };
 enum class Combine { add, set, max, min, subtract };
 enum class Amount {
-    height,  // depth, or elevation of terrain [m]; of roughness its value [s/m^(1/3)]
+    height,  // depth, or elevation of terrain [m]; of roughness its value [s/m^(1/3)], of rain how many times it
     surface, // absolute elevation: filled up from the ground below [m]
     wet,     // water as a share of the sand's depth
 };
@@ -102,9 +102,9 @@ struct LayerLists {
 Status draw_layers(const LayerLists& lists, const LevelGrid& grid, LevelFiles& files, InitialFields& fields,
                    std::vector<std::string>& warnings);
 
-/// Draws the roughness that layers say at the middles of cells; empty without layers.
-Status draw_roughness(std::vector<Layer> layers, const LevelGrid& grid, LevelFiles& files, std::vector<float>& roughness,
-                      std::vector<std::string>& warnings);
+/// Draws what layers of roughness or rain say at the middles of cells; empty without layers.
+Status draw_numbers(std::vector<Layer> layers, const LevelGrid& grid, LevelFiles& files, std::vector<float>& numbers,
+                    std::vector<std::string>& warnings);
 
 /// Draws the velocities of water or of sand at the middles of cells into x and y; both stay empty when no layer sets any. A
 /// layer that changes no cell is worth a warning.

@@ -47,6 +47,7 @@ Status read_root(const Json& json, LevelFiles& files, Level& level, LevelLayers&
     if (const Json* list = root.find("water")) layers.water = read_layers(*list, "water", LayerTarget::water, status);
     if (const Json* list = root.find("roughness"))
         layers.roughness = read_layers(*list, "roughness", LayerTarget::roughness, status);
+    if (const Json* list = root.find("rain_map")) layers.rain = read_layers(*list, "rain_map", LayerTarget::rain, status);
     if (const Json* list = root.find("velocities")) layers.velocities = read_velocities(*list, "velocities", status);
     root.finish();
     return status;
@@ -74,17 +75,20 @@ Status draw(const LevelLayers& layers, const LevelGrid& grid, LevelFiles& files,
     };
     if (Status status = draw_of(false, fields.velocity_x, fields.velocity_y); !status) return status;
     if (Status status = draw_of(true, fields.sand_velocity_x, fields.sand_velocity_y); !status) return status;
-    return draw_roughness(layers.roughness, grid, files, level.settings.roughness, level.warnings);
+    if (Status status = draw_numbers(layers.roughness, grid, files, level.settings.roughness, level.warnings); !status)
+        return status;
+    return draw_numbers(layers.rain, grid, files, level.settings.rain_map, level.warnings);
 }
 
 std::int64_t cells_of(const Grid& grid) { return std::int64_t{grid.nx} * grid.ny; }
 
 /// What draw() will count.
 std::int64_t work_of(const LevelLayers& layers, const LevelGrid& grid, std::int64_t most) {
-    LayerLists roughness;
+    LayerLists roughness, rain;
     roughness.terrain = layers.roughness;
+    rain.terrain = layers.rain;
     return layers_work(layers, grid, most).looks + layers_work(roughness, grid, most).looks +
-           static_cast<std::int64_t>(layers.velocities.size()) * grid.nx * grid.ny;
+           layers_work(rain, grid, most).looks + static_cast<std::int64_t>(layers.velocities.size()) * grid.nx * grid.ny;
 }
 
 Result<Level> parse(const std::string& text, const FileReader& reader, const LevelOverrides& overrides) {

@@ -129,9 +129,11 @@ Result<LevelCost> account(const std::string& text, const FileReader& reader, con
     Account sums(files, cost);
     if (Status status = sums.add_layers(layers, grid); !status) return status;
     if (Status status = sums.add_velocities(layers.velocities, grid); !status) return status;
-    LayerLists roughness;
-    roughness.terrain = layers.roughness;
-    if (Status status = sums.add_layers(roughness, grid); !status) return status;
+    for (const std::vector<Layer>* drawn_alike : {&layers.roughness, &layers.rain}) {
+        LayerLists lists;
+        lists.terrain = *drawn_alike;
+        if (Status status = sums.add_layers(lists, grid); !status) return status;
+    }
     const Settings& settings = read->level.settings;
     cost.cells = cells_of(grid);
     cost.host_bytes = ALWAYS + PER_TEXT * text.size() + PER_SERIES * of_series + sums.host_bytes(grid);

@@ -59,7 +59,7 @@ void stretch(Settings& settings, double factor) {
 
 // Before anything of the grid's size is asked for: the system may end a process that touches more than there is.
 Status check_memory(const Grid& grid) {
-    constexpr std::uint64_t drawn = 32; // bytes per cell: terrain, sand, water, four velocities, roughness
+    constexpr std::uint64_t drawn = 36; // bytes per cell: terrain, sand, water, four velocities, roughness, rain
     const std::uint64_t bytes = std::uint64_t(grid.nx) * std::uint64_t(grid.ny) * drawn, available = available_memory();
     if (available == 0 || bytes <= available / 10 * 9) return ok_status();
     return error(Code::out_of_memory, "grid: " + std::to_string(grid.nx) + " x " + std::to_string(grid.ny) + " cells need " +

@@ -15,10 +15,16 @@ const std::vector<std::string> REGION_NAMES = {"plane", "box", "cylinder"}; // a
 /// Whether the layer lies on others.
 bool of_column(LayerTarget target) { return target == LayerTarget::sand || target == LayerTarget::water; }
 
+/// What the layers' numbers are where they are no heights; else nothing.
+const MapMeaning* number_of(LayerTarget target) {
+    static const MapMeaning roughness{"manning", 0, MANNING_MOST}, rain{"times", 0, RAIN_TIMES_MOST};
+    return target == LayerTarget::roughness ? &roughness : target == LayerTarget::rain ? &rain : nullptr;
+}
+
 /// Reads exactly one of height, surface and wet, as far as the target and the shape have them.
 void read_amount(ObjectReader& reader, LayerTarget target, Layer& layer) {
-    if (target == LayerTarget::roughness) {
-        reader.required_number("manning", layer.top, 0, MANNING_MOST);
+    if (const MapMeaning* number = number_of(target)) {
+        reader.required_number(number->name, layer.top, number->least, number->most);
         return;
     }
     const bool cone = layer.shape.kind == ShapeKind::cone;
@@ -101,13 +107,13 @@ void read_noise(ObjectReader& reader, Shape& shape) {
 
 void read_shape(ObjectReader& reader, LayerTarget target, Layer& layer) {
     int kind = 0;
-    reader.choice("shape", target == LayerTarget::roughness ? REGION_NAMES : SHAPE_NAMES, kind);
+    reader.choice("shape", number_of(target) != nullptr ? REGION_NAMES : SHAPE_NAMES, kind);
     layer.shape.kind = static_cast<ShapeKind>(kind);
     if (reader.failed()) return;
     if (layer.shape.kind == ShapeKind::noise) return read_noise(reader, layer.shape);
     read_amount(reader, target, layer);
     read_outline(reader, layer.shape);
-    if (layer.amount == Amount::wet || target == LayerTarget::roughness) return;
+    if (layer.amount == Amount::wet || number_of(target) != nullptr) return;
     if (layer.shape.kind == ShapeKind::plane) {
         reader.number("slope_x", layer.shape.slope[0], -SIDE_SLOPE_MOST, SIDE_SLOPE_MOST);
         reader.number("slope_y", layer.shape.slope[1], -SIDE_SLOPE_MOST, SIDE_SLOPE_MOST);
@@ -154,7 +160,7 @@ MapSource read_map_source(ObjectReader& reader, const MapMeaning& meaning) {
 }
 
 void read_map_layer(ObjectReader& reader, LayerTarget target, Layer& layer) {
-    layer.map = read_map_source(reader, target == LayerTarget::roughness ? MapMeaning{"manning", 0, MANNING_MOST} : MapMeaning{});
+    layer.map = read_map_source(reader, number_of(target) != nullptr ? *number_of(target) : MapMeaning{});
     bool absolute = false;
     if (of_column(target)) reader.boolean("absolute", absolute);
     if (absolute) layer.amount = Amount::surface;

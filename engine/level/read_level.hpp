@@ -8,7 +8,7 @@ namespace wadi {
 
 struct LevelLayers : LayerLists {
     std::vector<VelocityLayer> velocities;
-    std::vector<Layer> roughness;
+    std::vector<Layer> roughness, rain;
 };
 
 struct ReadLevel {

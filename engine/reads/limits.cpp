@@ -1,5 +1,6 @@
 #include "engine/reads/limits.hpp"
 #include "engine/settings/rules/messages.hpp"
+#include "shaders/physics/limit_marks.glsl"
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -27,6 +28,13 @@ std::string around(const LimitCounts::Place& place) {
 }
 
 bool many(std::uint64_t held, std::uint64_t of) { return static_cast<double>(held) > told_share * static_cast<double>(of); }
+
+/// Of the marks of one layer in a cell and on its four faces.
+std::uint32_t held_by(std::uint32_t marks) {
+    const auto bit = [marks](std::uint32_t of, std::uint32_t held) { return (marks & of) != 0 ? held : 0u; };
+    return bit(3 * (MARK_CLAMPED_x + MARK_CLAMPED_y), HELD_SPEED) | bit(MARK_CAPPED_x + MARK_CAPPED_y, HELD_GRAVITY) |
+           bit(MARK_LIMITED, HELD_OUTFLOW);
+}
 
 double clamp_speed(const Settings& settings) { return settings.method.velocity_clamp * settings.grid.dx / settings.water_dt(); }
 
@@ -117,15 +125,38 @@ LimitCounts Limits::counts(std::uint64_t step) const {
     return all;
 }
 
-Result<LimitCounts> Limits::count() {
+Status Limits::run() {
     if (auto status = prepare(); !status) return status;
     auto ticket = program_->submit();
     if (!ticket) return ticket.status();
     if (auto status = state_.device().wait(*ticket); !status) return status;
-    pending_ = {};
+    pending_ = {}; // what it found has been overwritten
+    return ok_status();
+}
+
+Result<LimitCounts> Limits::count() {
+    if (auto status = run(); !status) return status;
     newest_ = counts(state_.steps);
     tell(*newest_);
     return *newest_;
+}
+
+Status Limits::read(const Region& region, std::span<float> values) {
+    if (auto status = run(); !status) return status;
+    const auto& layout = state_.layout();
+    const std::size_t pitch = static_cast<std::size_t>(layout.pitch()), width = static_cast<std::size_t>(region.nx);
+    std::vector<std::uint32_t> rows(pitch + width + 1); // a row of cells with the faces beyond them
+    for (int j = 0; j < region.ny; ++j) {
+        const std::size_t first = layout.index(region.i0, region.j0 + j);
+        if (auto status = state_.device().read(buffers_[0], first * 4, std::as_writable_bytes(std::span(rows))); !status)
+            return status;
+        for (std::size_t i = 0; i < width; ++i) {
+            const std::uint32_t marks = rows[i] | (rows[i + 1] & FACE_MARKS_x) | (rows[i + pitch] & FACE_MARKS_y);
+            values[static_cast<std::size_t>(j) * width + i] =
+                static_cast<float>(held_by(marks) | held_by(marks >> SAND_MARKS) << HELD_SAND);
+        }
+    }
+    return ok_status();
 }
 
 Status Limits::watch() {

@@ -1,10 +1,12 @@
 // Limits at work: where guards hold a flow back, counted on the device. Statistics ask for it; a world with a log looks now and
 // then by itself, never waiting for the device, and tells once of each limit that changes what the world does.
 #pragma once
+#include "engine/step/run/region.hpp"
 #include "engine/step/run/state_program.hpp"
 #include "engine/step/run/stepper.hpp"
 #include <array>
 #include <optional>
+#include <span>
 
 namespace wadi {
 
@@ -34,6 +36,10 @@ struct LimitCounts {
 /// where none does [s].
 double unlimited_dt(const Settings& settings, const LimitCounts& counts);
 
+/// What holds a cell, of water; of sand the same three bits higher.
+inline constexpr std::uint32_t HELD_SPEED = 1, HELD_GRAVITY = 2, HELD_OUTFLOW = 4;
+inline constexpr int HELD_SAND = 3;
+
 class Limits {
   public:
     static constexpr std::uint64_t interval = 64; // steps between two looks
@@ -42,6 +48,10 @@ class Limits {
 
     /// Now; waits for the device. Between two steps only.
     Result<LimitCounts> count();
+
+    /// Which of the guards hold the cells of a region in the next step, or its faces: for each a sum of HELD_... by rows.
+    /// Waits for the device. Between two steps only. Errors: as count().
+    Status read(const Region& region, std::span<float> values);
 
     /// From now on the world looks by itself. Allocates and records. Errors: out_of_memory; it does not look then.
     Status watch();
@@ -58,6 +68,7 @@ class Limits {
     enum Told { water_clamp, water_gravity, water_outflow, sand_clamp, sand_gravity, sand_outflow, high_columns, kinds };
 
     Status prepare();
+    Status run();
     LimitCounts counts(std::uint64_t step) const;
     void look();
     void collect();

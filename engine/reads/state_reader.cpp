@@ -139,6 +139,7 @@ Status StateReader::read(const std::string& name, const Region& region, std::spa
     if (auto status = check_region("read", region, state_.settings().grid, values.size()); !status) return status;
     if (auto status = stepper_.finish_step(); !status) return status;
     const FieldRow* row = find_field(name);
+    if (name == "limits") return limits_.read(region, values);
     if (row != nullptr && row->role == FieldRole::published) {
         const std::string stage = name == "surface_saturation" ? "publish_saturation" : "publish_" + name;
         auto status = publish(stage, {}, {row->name.data()}); // the program keeps the pointer

@@ -27,7 +27,7 @@ class StateReader {
     StateReader(WorldState& state, Stepper& stepper, Limits& limits) : state_(state), stepper_(stepper), limits_(limits) {}
 
     /// The floats in a region of a field by its plan name ("water_height", ...), at cell centres for velocities, or of a
-    /// published field ("water_depth", "free_surface", "surface_saturation"). A field the mask lacks is zero.
+    /// published field ("water_depth", "free_surface", "surface_saturation", "limits"). A field the mask lacks is zero.
     /// Errors: bad_argument for any other name, and those of check_region(); device_lost.
     Status read(const std::string& name, const Region& region, std::span<float> values);
     /// All cells.

@@ -397,6 +397,7 @@ wadi_result wadi_create_world_from_arrays(const wadi_world_arrays* arrays, const
         copy(level->fields.velocity_x, own.velocity_x);
         copy(level->fields.velocity_y, own.velocity_y);
         copy(level->settings.roughness, own.roughness);
+        copy(level->settings.rain_map, own.rain_map);
         level->warnings = level_warnings(level->settings, level->fields);
         return host(std::move(level), asked, world);
     });

@@ -55,7 +55,7 @@ int main_checked(int argc, char** argv) {
     app.add_option("--quality", options.quality, "low, medium or high")->capture_default_str();
     app.add_option("--view", options.view,
                    "picture, or a quantity as false colour: depth, speed, saturation, froude, sand, sand-speed, "
-                   "foam, height, sky, slope, strain, stress, active")
+                   "foam, height, sky, slope, strain, stress, active, limits")
         ->capture_default_str();
     app.add_flag("--arrows", options.arrows, "arrows of velocity");
     app.add_flag("--block", options.block, "the block alone, cut out, instead of land that goes on beyond it");

@@ -58,6 +58,7 @@ HostField host_field_of(int view) {
     return name == "strain"   ? HostField::strain
            : name == "stress" ? HostField::stress
            : name == "active" ? HostField::activity
+           : name == "limits" ? HostField::limits
                               : HostField::none;
 }
 
@@ -184,6 +185,7 @@ void Simulation::show(HostField field) {
 void Simulation::fill_host_field(bool whole) {
     if (host_field_ == HostField::strain || host_field_ == HostField::stress) read_strain();
     if (host_field_ == HostField::activity) read_activity(whole);
+    if (host_field_ == HostField::limits) read_limits();
 }
 
 // Of the left stretch V in the plane: the size of ln V, or that of the stress that material of these numbers answers with, in
@@ -212,6 +214,20 @@ void Simulation::read_strain() {
         const float trace = lambda * (a + b), area = std::exp(a + b);
         to[n] =
             host_field_ == HostField::strain ? std::hypot(a, b) : std::hypot(trace + 2 * shear * a, trace + 2 * shear * b) / area;
+    }
+}
+
+// The worst that holds a cell: 3 the speed limit, 2 capped gravity, 1 limited outflow, of water or sand.
+void Simulation::read_limits() {
+    auto* to = static_cast<float*>(host_field_buffer_.mapped);
+    const std::size_t cells = static_cast<std::size_t>(info.nx) * static_cast<std::size_t>(info.ny);
+    check(wadi_world_read_field(world, WADI_FIELD_LIMITS, to, cells), "reading the limits");
+    for (std::size_t n = 0; n < cells; ++n) {
+        const auto held = static_cast<unsigned>(to[n]);
+        to[n] = (held & (WADI_LIMIT_WATER_SPEED | WADI_LIMIT_SAND_SPEED)) != 0       ? 3.0f
+                : (held & (WADI_LIMIT_WATER_GRAVITY | WADI_LIMIT_SAND_GRAVITY)) != 0 ? 2.0f
+                : held != 0                                                          ? 1.0f
+                                                                                     : 0.0f;
     }
 }
 

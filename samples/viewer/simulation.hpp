@@ -47,7 +47,7 @@ struct Submission {
 };
 
 /// A quantity per cell that the plugin does not publish: read or made on the host for each picture, which waits for the world.
-enum class HostField { none, strain, stress, activity };
+enum class HostField { none, strain, stress, activity, limits };
 /// What a view (views() in look.hpp) needs.
 HostField host_field_of(int view);
 
@@ -96,6 +96,7 @@ class Simulation {
     void fill_host_field(bool whole);
     void read_strain();
     void read_activity(bool whole);
+    void read_limits();
     bool stage();
 };
 

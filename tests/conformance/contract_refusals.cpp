@@ -34,8 +34,8 @@ void bad_dispatches(Session&, Device& device, Expect& expect) {
         builder.dispatch(*dispatch);
         refuse_program(device, expect, builder, small_params(), "program 'refused', dispatch 'rain'" + words);
     };
-    refuse(" of apply_rain: 3 slots, the stage has 4", [](Dispatch& d) { d.slots.pop_back(); });
-    refuse(" of apply_rain: 5 slots, the stage has 4", [](Dispatch& d) { d.slots.emplace_back(); });
+    refuse(" of apply_rain: 4 slots, the stage has 5", [](Dispatch& d) { d.slots.pop_back(); });
+    refuse(" of apply_rain: 6 slots, the stage has 5", [](Dispatch& d) { d.slots.emplace_back(); });
     refuse(" of apply_rain, water_height: the buffer is null", [](Dispatch& d) { d.slots[1] = {}; });
     refuse(" of apply_rain, water_height: no buffer has the handle " + std::to_string(gone.id),
            [&](Dispatch& d) { d.slots[1] = gone; });

@@ -69,7 +69,7 @@ Result<compute::Dispatch> rain_dispatch(compute::Device& device, compute::Buffer
     return compute::Dispatch{*pipeline,
                              stage,
                              EFFECT_WATER | EFFECT_RAIN,
-                             {terrain, water, ledger, {}},
+                             {terrain, water, ledger, {}, {}},
                              compute::extent_range(compute::Extent::strips, small_params()),
                              "rain"};
 }

@@ -22,7 +22,7 @@ template <class Real> const Field<Real>* cell_field(const Solver<Real>& s, const
         {"stress_xx", &s.sxx},           {"stress_xy", &s.sxy},
         {"stress_yy", &s.syy},           {"cohesive_share", &s.cohesive_share},
         {"roughness", &s.roughness},     {"mixed_diffused", &s.mixed},
-        {"wedge_depth", &s.wedge_depth},
+        {"wedge_depth", &s.wedge_depth}, {"rain_share", &s.rain_share},
     };
     const auto found = fields.find(base);
     return found == fields.end() ? nullptr : found->second;

@@ -256,6 +256,11 @@ void add_rim(Scene& scene) {
     if ((scene.effects & EFFECT_RAIN) == 0) return;
     scene.settings.rain = constant(3e-3);
     scene.settings.evaporation = constant(1e-3);
+    if ((scene.effects & EFFECT_RAIN_MAP) == 0) return;
+    const auto& grid = scene.settings.grid;
+    scene.settings.rain_map.clear();
+    for (int j = 0; j < grid.ny; ++j)
+        for (int i = 0; i < grid.nx; ++i) scene.settings.rain_map.push_back(0.03125F * static_cast<float>((i * 7 + j * 5) % 61));
 }
 
 } // namespace

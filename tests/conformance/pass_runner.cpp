@@ -1,4 +1,5 @@
 #include "tests/conformance/pass_runner.hpp"
+#include "engine/settings/data/rain_map.hpp"
 #include "engine/step/plan/source_shapes.hpp"
 #include "engine/step/plan/world_params.hpp"
 #include "engine/step/run/field_store.hpp"
@@ -76,6 +77,10 @@ Status PassRunner::open() {
     if (plan_.find("roughness") != nullptr) {
         const auto values = with_ghosts(layout(), scene_.settings.roughness, true);
         if (auto status = device_.write(buffer("roughness"), 0, std::as_bytes(std::span(values))); !status) return status;
+    }
+    if (plan_.find("rain_share") != nullptr) {
+        const auto values = with_ghosts(layout(), rain_shares(scene_.settings), true);
+        if (auto status = device_.write(buffer("rain_share"), 0, std::as_bytes(std::span(values))); !status) return status;
     }
     if (plan_.find("source_shapes") == nullptr) return ok_status();
     const auto shapes = source_shapes(scene_.settings);

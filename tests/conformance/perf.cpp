@@ -17,7 +17,7 @@ namespace {
 using compute::Device;
 using compute::ProgramBuilder;
 
-constexpr std::uint32_t ALL = (all_effects & ~(EFFECT_BED_SHEAR | EFFECT_ROUGHNESS)) |
+constexpr std::uint32_t ALL = (all_effects & ~(EFFECT_BED_SHEAR | EFFECT_ROUGHNESS | EFFECT_RAIN_MAP)) |
                               EFFECT_SHOCK_VISCOSITY; // without what is off unless a level asks for it
 constexpr std::uint32_t SAND_LAWS = EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION | EFFECT_RETENTION; // ours, the paper has none
 constexpr double wake_up_ms = 700, warm_up_ms = 150; // busy ahead of the first row, and of each

@@ -99,8 +99,17 @@ void count_sources(const StageRun& run, int i, int j, Counts& counts) {
     }
 }
 
+// Under a map what a cell's share of all rain so far, cut to whole quanta, has grown by.
+double rain_on(const StageRun& run, int i, int j) {
+    if ((run.scene.effects & EFFECT_RAIN_MAP) == 0) return wide(run.pilot.input.rain);
+    const double share = wide(run.before("rain_share", i, j)) / 65536, most = wide(run.pilot.input.mapped_rain.x),
+                 before = wide(run.pilot.input.mapped_rain.y), quantum = wide(run.params.quantum);
+    if (quantum == 0) return share * most;
+    return (std::floor(share * (before + most / quantum)) - std::floor(share * before)) * quantum;
+}
+
 void count_rain(const StageRun& run, int i, int j, Counts& counts) {
-    const double rain = wide(run.pilot.input.rain), evaporation = wide(run.pilot.input.evaporation);
+    const double rain = rain_on(run, i, j), evaporation = wide(run.pilot.input.evaporation);
     const double water = wide(run.before("water_height", i, j)), sand = wide(run.before("sand_height", i, j));
     const bool fits = wide(run.before("terrain", i, j)) + water + sand + rain <= wide(run.params.largest_height);
     counts[fits ? LEDGER_WATER_IN : LEDGER_REFUSED].add(rain, run.params);

@@ -21,6 +21,7 @@ template <class Real>
 constexpr Step<Real> steps[] = {
     {"apply_sources", &Solver<Real>::apply_sources, EFFECT_SOURCES},
     {"apply_rain", &Solver<Real>::apply_rain, EFFECT_RAIN},
+    {"dilute_water_velocity", &Solver<Real>::dilute_water_velocity, EFFECT_RAIN_MAP, EFFECT_PUBLISHED},
     {"open_sides", &Solver<Real>::update_open_sides, EFFECT_OPEN_SIDES | EFFECT_WATER},
     {"split_water", &Solver<Real>::split_water, 0},
     {"diffuse_mixed_velocity", &Solver<Real>::diffuse_mixed_velocity, EFFECT_PUBLISHED | EFFECT_DIFFUSION},

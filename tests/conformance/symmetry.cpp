@@ -60,6 +60,7 @@ Scene image_of(const Scene& scene, Symmetry symmetry) {
     for (auto member : {&InitialFields::terrain, &InitialFields::sand, &InitialFields::water})
         image.fields.*member = image_of(scene.fields.*member, grid, symmetry, 1);
     s.roughness = image_of(scene.settings.roughness, grid, symmetry, 1);
+    s.rain_map = image_of(scene.settings.rain_map, grid, symmetry, 1);
     const auto& f = scene.fields;
     image_vector(f.velocity_x, f.velocity_y, grid, symmetry, image.fields.velocity_x, image.fields.velocity_y);
     image_vector(f.sand_velocity_x, f.sand_velocity_y, grid, symmetry, image.fields.sand_velocity_x,

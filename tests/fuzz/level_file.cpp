@@ -96,7 +96,11 @@ Json edit_of(const Edit& edit, double dt) {
 // By their names in a level.
 std::vector<std::pair<std::string, const std::vector<float>*>> maps_of(const Case& c) {
     const auto& f = c.scene.fields;
-    return {{"terrain", &f.terrain}, {"sand", &f.sand}, {"water", &f.water}, {"roughness", &c.scene.settings.roughness}};
+    return {{"terrain", &f.terrain},
+            {"sand", &f.sand},
+            {"water", &f.water},
+            {"roughness", &c.scene.settings.roughness},
+            {"rain_map", &c.scene.settings.rain_map}};
 }
 
 Json level_of(const Case& c) {

@@ -273,6 +273,11 @@ Case make_case(std::uint64_t seed) {
             for (auto& [time, value] : most->samples) value = std::fabs(value);
         }
     }
+    if (!s.rain.samples.empty() && random.chance(0.5)) {
+        double most = 1e-30;
+        for (const auto& [time, rate] : s.rain.samples) most = std::max(most, rate);
+        s.rain_map = drawn(s.grid, relief(random, s.grid, std::min(random.log(1e-3, 90), 0.9 / most)));
+    }
     return c;
 }
 

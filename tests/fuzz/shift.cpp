@@ -43,6 +43,7 @@ Case placed(const Case& c, Place at) {
     for (auto* field : {&to.sand, &to.water, &to.velocity_x, &to.velocity_y, &to.sand_velocity_x, &to.sand_velocity_y})
         if (!field->empty()) put(*field, 0);
     if (!s.roughness.empty()) put(s.roughness, 0);
+    if (!s.rain_map.empty()) put(s.rain_map, 0);
     const auto moved = [&](double metres, int cells) { return (std::round(metres / small.dx * 256) / 256 + cells) * small.dx; };
     for (Edit& edit : result.commands) {
         edit.x0 = moved(edit.x0, at.x);

@@ -38,7 +38,7 @@ bool halve(Case& c, bool along_y, bool high) {
     cells = half;
     auto& f = c.scene.fields;
     for (auto* field : {&f.terrain, &f.sand, &f.water, &f.velocity_x, &f.velocity_y, &f.sand_velocity_x, &f.sand_velocity_y,
-                        &c.scene.settings.roughness})
+                        &c.scene.settings.roughness, &c.scene.settings.rain_map})
         *field = crop(*field, old, along_y ? 0 : first, along_y ? first : 0, grid.nx, grid.ny);
     move(c, along_y ? 0 : first * grid.dx, along_y ? first * grid.dx : 0);
     for (Side& side : c.scene.settings.sides) side.from = 0, side.to = 1e30;
@@ -99,6 +99,7 @@ std::vector<Change> changes() {
     list.push_back([](Case& c) { return clear(c.scene.fields.velocity_x) && clear(c.scene.fields.velocity_y); });
     list.push_back([](Case& c) { return clear(c.scene.fields.sand_velocity_x) && clear(c.scene.fields.sand_velocity_y); });
     list.push_back([](Case& c) { return clear(c.scene.settings.roughness); });
+    list.push_back([](Case& c) { return clear(c.scene.settings.rain_map); });
     list.push_back([](Case& c) { return flatten(c.scene.fields.sand); });
     list.push_back([](Case& c) { return flatten(c.scene.fields.water); });
     list.push_back([](Case& c) { return flatten(c.scene.fields.terrain); });
@@ -111,8 +112,8 @@ std::vector<Change> changes() {
             });
     list.push_back([](Case& c) { return reset(c.scene.settings.method.name, Method().name); });
     // Whole effects: what is forced off needs what depends on it off as well.
-    for (const char* name : {"roughness", "retention", "internal_friction", "slope_normal", "bed_shear", "bed_friction",
-                             "cohesion", "elastoplastic", "diffusion", "drag", "mixture"})
+    for (const char* name : {"rain_map", "roughness", "retention", "internal_friction", "slope_normal", "bed_shear",
+                             "bed_friction", "cohesion", "elastoplastic", "diffusion", "drag", "mixture"})
         list.push_back([name](Case& c) {
             for (const auto& [known, force] : c.scene.settings.effects)
                 if (known == name) return false;

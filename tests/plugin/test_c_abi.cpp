@@ -90,6 +90,50 @@ TEST_CASE("roughness from arrays is that of a level, kept through a snapshot, an
     for (const wadi_world_id id : {smooth, drawn, given, later}) wadi_destroy_world(id);
 }
 
+TEST_CASE("a rain map from arrays is that of a level, and refused out of range or where it would rain too much") {
+    std::vector<float> terrain, water, times(16 * 12, 0.0F);
+    for (std::size_t n = 0; n < times.size(); ++n) times[n] = n % 16 < 8 ? 2.5F : 0.5F;
+    auto arrays = pond(terrain, water);
+    std::string text = POND, drawn = POND;
+    text.insert(text.size() - 1, R"(, "rain": 0.01)");
+    drawn.insert(drawn.size() - 1, R"(, "rain": 0.01, "rain_map": [{"shape": "plane", "times": 0.5},
+        {"shape": "box", "from": [0, 0], "to": [4, 6], "times": 2}])");
+    const auto hash_of = [&](const std::string& settings, const float* map) {
+        arrays.settings_json = settings.c_str();
+        arrays.rain_map = map;
+        const auto options = cpu_device();
+        wadi_world_id id{};
+        REQUIRE_MESSAGE(wadi_create_world_from_arrays(&arrays, &options, &id) == WADI_OK, std::string(wadi_get_last_error()));
+        uint64_t hash = 0;
+        REQUIRE(wadi_world_step(id, 30) == WADI_OK);
+        REQUIRE(wadi_world_get_hash(id, &hash) == WADI_OK);
+        wadi_destroy_world(id);
+        return hash;
+    };
+    const uint64_t by_level = hash_of(drawn, nullptr);
+    CHECK(hash_of(text, times.data()) == by_level);
+    CHECK(hash_of(text, nullptr) != by_level);
+    arrays.settings_json = text.c_str();
+    arrays.rain_map = times.data();
+    for (const auto& [wrong, says] : {std::pair{-1.0F, "rain_map"}, {101.0F, "0 ... 100 in cell (1, 1)"}, {100.0F, ""}}) {
+        times[17] = wrong;
+        const auto options = cpu_device();
+        wadi_world_id id{};
+        const bool fine = std::string(says).empty();
+        CHECK((wadi_create_world_from_arrays(&arrays, &options, &id) == WADI_OK) == fine);
+        if (!fine)
+            CHECK_MESSAGE(std::string(wadi_get_last_error()).find(says) != std::string::npos, std::string(wadi_get_last_error()));
+        wadi_destroy_world(id);
+    }
+    text = POND;
+    text.insert(text.size() - 1, R"(, "rain": 0.1)"); // 100 times
+    arrays.settings_json = text.c_str();
+    const auto options = cpu_device();
+    wadi_world_id id{};
+    CHECK(wadi_create_world_from_arrays(&arrays, &options, &id) == WADI_ERROR_BAD_ARGUMENT);
+    CHECK(std::string(wadi_get_last_error()).find("above 1 m/s") != std::string::npos);
+}
+
 TEST_CASE("a world from arrays steps, reads back and keeps its ledger") {
     const Pond world;
     CHECK(wadi_get_abi_version() == WADI_ABI_VERSION);

@@ -79,6 +79,13 @@ auto limit_counts(const wadi_world_stats& s) {
                       s.sand_faces,    s.clamped_water_faces, s.capped_water_faces, s.limited_water_cells};
 }
 
+/// Which guards hold each cell.
+std::vector<int> held_cells(const AbiWorld& world) {
+    std::vector<float> values(96 * 20);
+    REQUIRE(wadi_world_read_field(world.id, WADI_FIELD_LIMITS, values.data(), values.size()) == WADI_OK);
+    return {values.begin(), values.end()};
+}
+
 void run_chute(const AbiWorld& world, double seconds, double dt) {
     REQUIRE(wadi_world_step(world.id, static_cast<uint32_t>(seconds / dt + 0.5)) == WADI_OK);
 }
@@ -169,6 +176,49 @@ TEST_CASE("looking for limits changes no bit, and counts are the same mirrored a
     }
 }
 
+TEST_CASE("the map of limits shows where: on the chute and not in the pool, mirrored, by regions, the same on every backend") {
+    const double dt = 0.05;
+    const auto world = chute(dt, nullptr), mirrored = chute(dt, nullptr, {"cpu", true});
+    for (const auto* each : {&world, &mirrored}) run_chute(*each, 7, dt);
+    const auto held = held_cells(world), other_way = held_cells(mirrored);
+    const auto stats = limit_stats(world);
+    std::uint64_t fast = 0, faces = 0;
+    for (int j = 0; j < 20; ++j)
+        for (int i = 0; i < 96; ++i) {
+            const auto of = [&](int column, int row) { return held[static_cast<std::size_t>(row * 96 + column)]; };
+            CHECK(of(i, j) == other_way[static_cast<std::size_t>(j * 96 + 95 - i)]);
+            CHECK(of(i, j) < WADI_LIMIT_SAND_SPEED); // there is none
+            if ((of(i, j) & WADI_LIMIT_WATER_SPEED) == 0) continue;
+            CHECK(i > 8);
+            CHECK(i < 90);
+            ++fast;
+            // A face at the clamp is one of both its cells.
+            faces += i + 1 < 96 && (of(i + 1, j) & WADI_LIMIT_WATER_SPEED) != 0 ? 1u : 0u;
+            faces += j + 1 < 20 && (of(i, j + 1) & WADI_LIMIT_WATER_SPEED) != 0 ? 1u : 0u;
+        }
+    CHECK(fast > 100);
+    CHECK(faces >= stats.clamped_water_faces);
+    CHECK(4 * stats.clamped_water_faces >= fast);
+    const wadi_region part = {30, 5, 50, 7};
+    std::vector<float> values(50 * 7);
+    REQUIRE(wadi_world_read_region(world.id, WADI_FIELD_LIMITS, &part, values.data(), values.size()) == WADI_OK);
+    for (int j = 0; j < 7; ++j)
+        for (int i = 0; i < 50; ++i)
+            CHECK(static_cast<int>(values[static_cast<std::size_t>(j * 50 + i)]) ==
+                  held[static_cast<std::size_t>((5 + j) * 96 + 30 + i)]);
+    CHECK(limit_counts(limit_stats(world)) == limit_counts(stats)); // a map spoils no count
+    for (const auto& backend : abi_backends()) {
+        CAPTURE(backend);
+        const auto other = chute(dt, nullptr, {backend});
+        run_chute(other, 7, dt);
+        CHECK(held_cells(other) == held);
+    }
+    const auto slower = chute(dt / 8, nullptr);
+    run_chute(slower, 7, dt / 8);
+    const auto free_cells = held_cells(slower);
+    CHECK(std::count_if(free_cells.begin(), free_cells.end(), [](int of) { return (of & WADI_LIMIT_WATER_SPEED) != 0; }) == 0);
+}
+
 TEST_CASE("deep water on too long a step is told to be slow, and how high columns stand") {
     const char* settings = R"({ "format_version": 1, "name": "deep pond", "grid": { "nx": 16, "ny": 8, "dx": 0.5 }, "dt": 0.1,
         "water": [ { "shape": "plane", "height": 40 } ], "method": { "largest_height": 64 } })";
@@ -191,4 +241,7 @@ TEST_CASE("deep water on too long a step is told to be slow, and how high column
     CHECK(heard.with(gravity_capped)->find("232 of 232 wet faces (100 %)") != std::string::npos);
     CHECK(heard.with(gravity_capped)->find("around (4, 2) m") != std::string::npos);
     CHECK(heard.with("largest_height") == nullptr);
+    std::vector<float> held(16 * 8);
+    REQUIRE(wadi_world_read_field(id, WADI_FIELD_LIMITS, held.data(), held.size()) == WADI_OK);
+    CHECK(std::count(held.begin(), held.end(), static_cast<float>(WADI_LIMIT_WATER_GRAVITY)) == 16 * 8);
 }

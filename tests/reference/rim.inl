@@ -87,13 +87,29 @@ template <class Real> void Solver<Real>::apply_sources() {
 
 template <class Real> void Solver<Real>::apply_rain() {
     if (!has(EFFECT_RAIN)) return;
-    const Real gained = static_cast<Real>(quanta(rain_total_, sample(settings.rain, time()) * settings.dt));
+    const double Q = static_cast<double>(P.quantum);
+    const double before = Q > 0 ? std::floor(rain_total_ / Q) : 0;
+    const Real gained = static_cast<Real>(quanta(rain_total_, sample(settings.rain, time()) * rain_peak * settings.dt));
     const Real lost = static_cast<Real>(quanta(evaporation_total_, sample(settings.evaporation, time()) * settings.dt));
     rained = gained;
     for (std::size_t c = 0; c < cells(); ++c) {
-        add_depth(water, c, gained, water_added);
+        const double share = has(EFFECT_RAIN_MAP) ? static_cast<double>(rain_share[c]) / 65536 : 1;
+        const double after = Q > 0 ? before + static_cast<double>(gained) / Q : 0;
+        const Real fallen = Q > 0 ? static_cast<Real>((std::floor(share * after) - std::floor(share * before)) * Q)
+                                  : static_cast<Real>(share * static_cast<double>(gained));
+        add_depth(water, c, fallen, water_added);
         add_depth(water, c, -lost, water_added);
     }
+}
+
+template <class Real> void Solver<Real>::dilute_water_velocity() {
+    if (!has(EFFECT_RAIN_MAP) || has(EFFECT_PUBLISHED)) return;
+    split_water();
+    for_inner_faces([&](const Axis& ax, int a, int b) {
+        const std::size_t L = ax.cell(a - 1, b), R = ax.cell(a, b);
+        const Real depth = mean(pure[L], pure[R]), rain = rained * mean(rain_share[L], rain_share[R]) / Real(65536);
+        if (depth > Real(0)) pure_velocity.along(ax)[ax.face(a, b)] *= Real(1) - std::min(rain / depth, Real(1));
+    });
 }
 
 /// Depth of a face outside which the free surface stands at `level`, over sand as high as in cell N.

@@ -137,6 +137,13 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
     if (has(EFFECT_ROUGHNESS))
         std::transform(world.roughness.begin(), world.roughness.end(), roughness.begin(),
                        [](float n) { return static_cast<Real>(n); });
+    rain_share.assign(nx * ny, Real(65536));
+    if (has(EFFECT_RAIN_MAP) && !world.rain_map.empty()) {
+        rain_peak = static_cast<double>(*std::max_element(world.rain_map.begin(), world.rain_map.end()));
+        for (std::size_t c = 0; c < nx * ny; ++c)
+            rain_share[c] =
+                static_cast<Real>(rain_peak > 0 ? std::round(static_cast<double>(world.rain_map[c]) / rain_peak * 65536) : 0);
+    }
     source_totals_.assign(world.sources.size(), 0.0);
 }
 
@@ -271,6 +278,7 @@ template <class Real> template <class Other> void Solver<Real>::copy_from(const 
 template <class Real> void Solver<Real>::step() {
     apply_sources();
     apply_rain();
+    dilute_water_velocity();
     split_water();
     has(EFFECT_PUBLISHED) ? step_published() : step_robust();
     ++step_index;

@@ -72,6 +72,7 @@ template <class Real> class Solver {
     // Stages, in the order in which step() calls them.
     void apply_sources();
     void apply_rain();
+    void dilute_water_velocity();
     void update_open_sides();                    // 2.9, water
     void start_water_velocity();                 // 2.16, in step 0 -> pure_velocity
     void split_water();                          // mixed = min(W, P), pure = W - mixed
@@ -156,7 +157,9 @@ template <class Real> class Solver {
     Faces<Real> friction_limit, withheld_push;    // 2.18: N, k_sand g_f (K - C r) d (1 - r^ f) [m/s]
     Faces<Real> bend_gain, bed_lift;              // 2.3: of bends: what they add to us [m/s], g_b [m/s2]
     Field<Real> roughness;                        // of each cell beyond P.manning [s/m^(1/3)]
-    Real rained{};                                // depth of rain in this step [m]
+    Real rained{};                                // depth of rain in this step [m], under a map where it rains most
+    double rain_peak = 1;                         // how many times settings.rain that is
+    Field<Real> rain_share;                       // of it on each cell, in 1/65536
     Faces<Real> ghost_water;                      // depth outside the open sides [m], on boundary faces
     struct SideMemory {                           // 2.9, state of an outer face
         Real stream{};                            // waves: the stream's velocity outward [m/s]

@@ -209,7 +209,7 @@ template <class Real> void Solver<Real>::integrate_water_velocity() {
     advect(EFFECT_SECOND_ORDER_WATER, pure_predicted, pure_flux, centered_velocity, P.k, pure_velocity);
     for_inner_faces([&](const Axis& ax, int a, int b) { // 2.9: rain brings no velocity
         const Real depth = mean(pure_predicted[ax.cell(a - 1, b)], pure_predicted[ax.cell(a, b)]);
-        if (depth > Real(0)) pure_velocity.along(ax)[ax.face(a, b)] *= Real(1) - std::min(rained / depth, Real(1));
+        if (depth > Real(0) && !has(EFFECT_RAIN_MAP)) pure_velocity.along(ax)[ax.face(a, b)] *= Real(1) - std::min(rained / depth, Real(1));
     });
     damp_shocks(before);
     if (has(EFFECT_MIXTURE)) {

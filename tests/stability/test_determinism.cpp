@@ -125,6 +125,7 @@ TEST_CASE("saved, stepped on, restored and stepped again: the same bits, on ever
     auto scene = mixed_scene(48, 40);
     scene.settings.sources = {{SourceShape::disc, SourceMaterial::water, {4, 3}, 1, {}, {{{0, 0.333}}}, false, {}}};
     scene.settings.rain = {{{0, 1.7e-5}}};
+    for (int n = 0; n < 48 * 40; ++n) scene.settings.rain_map.push_back(0.125F * static_cast<float>(n % 97));
     const auto expected = run(scene, 45);
     for (const auto& backend : available_backends()) {
         CAPTURE(backend);

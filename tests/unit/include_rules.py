@@ -41,7 +41,7 @@ RULES = {
     "samples": ["wadi/"],
 }
 # What shaders/ says to the host; engine and backends are built on it.
-FOR_THE_HOST = ["shaders/params.hpp", "shaders/stage_table.hpp"]
+FOR_THE_HOST = ["shaders/params.hpp", "shaders/stage_table.hpp", "shaders/physics/limit_marks.glsl"]
 # What a folder of samples/ or tests/ may use of the others; nobody else uses either. Samples never use tests.
 FOR_ALL_TESTS = ("tests/support", "tests/reference")
 LAB = "tests/lab"  # uses all, and is used by nothing

@@ -56,6 +56,7 @@ TEST_CASE("random worlds draw what levels have beside their settings: kinds of s
         if (!s.rain.samples.empty()) drawn.insert("rain");
         if (!s.evaporation.samples.empty()) drawn.insert("evaporation");
         if (!s.roughness.empty()) drawn.insert("roughness");
+        if (!s.rain_map.empty()) drawn.insert("rain map");
         if (!c.scene.fields.sand_velocity_x.empty()) drawn.insert("velocities");
         for (const Edit& edit : c.commands) drawn.insert("edit " + std::to_string(static_cast<int>(edit.kind)));
         drawn.insert("method " + s.method.name);
@@ -78,6 +79,7 @@ TEST_CASE("random worlds draw what levels have beside their settings: kinds of s
                              "rain",
                              "evaporation",
                              "roughness",
+                             "rain map",
                              "velocities",
                              "method robust",
                              "method published"})

@@ -47,6 +47,10 @@ TEST_CASE("level digest: roughness counts, cell by cell") {
     other.roughness = {0.02F, 0.01F};
     CHECK(level_digest(some) != level_digest(none));
     CHECK(level_digest(some) != level_digest(other));
+    Settings rained_on = none;
+    rained_on.rain_map = some.roughness;
+    CHECK(level_digest(rained_on) != level_digest(none));
+    CHECK(level_digest(rained_on) != level_digest(some));
 }
 
 TEST_CASE("level digest: every row that the digest covers changes it, no other does") {

@@ -148,6 +148,9 @@ TEST_CASE("level errors: layers") {
     refuses(R"("velocities": [{"of": "water", "shape": "plane"}])", "velocities[0].velocity: missing");
     refuses(R"("velocities": [{"of": "water", "shape": "plane", "velocity": [1, 1e5]}])",
             "velocities[0].velocity[1]: 100000 is outside");
+    refuses(R"("rain_map": [{"shape": "plane"}])", "rain_map[0].times: missing");
+    refuses(R"("rain_map": [{"shape": "plane", "times": 101}])", "rain_map[0].times: 101 is outside 0 ... 100");
+    refuses(R"("rain_map": [{"shape": "plane", "manning": 0.1}])", "rain_map[0].manning: unknown key");
     refuses(R"("roughness": [{"shape": "plane"}])", "roughness[0].manning: missing");
     refuses(R"("roughness": [{"shape": "plane", "manning": 2}])", "roughness[0].manning: 2 is outside 0 ... 1");
     refuses(R"("roughness": [{"shape": "plane", "height": 0.1, "manning": 0.1}])", "roughness[0].height: unknown key");

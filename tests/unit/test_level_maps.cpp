@@ -1,5 +1,6 @@
 // engine/level: maps of every kind, velocities and roughness by shapes and maps, levels from a terrain map alone.
 #include "engine/level/level.hpp"
+#include "engine/settings/data/rain_map.hpp"
 #include "tests/unit/level_text.hpp"
 #include "tests/unit/map_files.hpp"
 #include <algorithm>
@@ -48,6 +49,31 @@ TEST_CASE("level: roughness by shapes and maps, added to that of the material an
     CHECK_MESSAGE(says(refused(R"("offset": 0.5)"), "roughness[0]: manning: 1.5 is outside 0 ... 1 in cell (1, "),
                   refused(R"("offset": 0.5)"));
     CHECK_MESSAGE(says(refused(R"("offset": -0.25)"), "roughness[0]: manning: -0.2"), refused(R"("offset": -0.25)"));
+}
+
+TEST_CASE("level: a rain map by shapes and maps, none where nothing is drawn, within what may rain") {
+    const Level level = must(parse(R"("rain": 0.01, "rain_map": [{"shape": "plane", "times": 0.5},
+        {"shape": "box", "from": [0, 0], "to": [5, 8], "times": 2}])"));
+    CHECK(at(level, level.settings.rain_map, 8, 4) == doctest::Approx(0.5));
+    CHECK(at(level, level.settings.rain_map, 2, 2) == doctest::Approx(2.5));
+    CHECK(rain_peak(level.settings) == doctest::Approx(2.5));
+    const Level part = must(parse(R"("rain": 0.01, "rain_map": [{"shape": "box", "from": [0, 0], "to": [5, 8], "times": 2}])"));
+    CHECK(at(part, part.settings.rain_map, 8, 4) == 0);
+    CHECK(must(parse(R"("rain": 0.01)")).settings.rain_map.empty());
+    CHECK(rain_peak(must(parse(R"("rain": 0.01)")).settings) == 1);
+    const Level off =
+        must(parse(R"("rain": 0.01, "effects": {"rain_map": "off"}, "rain_map": [{"shape": "plane", "times": 3}])"));
+    CHECK(rain_peak(off.settings) == 1);
+    const Folder folder;
+    folder.write("mm.npy", map_files::npy(map_files::dictionary("<f4", "(2, 2)"), std::vector<float>{36, 0, 3.6f, 18}));
+    const auto text =
+        level_text::level(R"("rain": 1, "rain_map": [{"file": "mm.npy", "scale": 2.5e-7}])", R"({"nx": 2, "ny": 2, "dx": 1})");
+    const auto mapped = must(parse_level(text, folder.path(), {})).settings;
+    CHECK(rain_peak(mapped) == doctest::Approx(9e-6));
+    CHECK(*std::max_element(mapped.rain_map.begin(), mapped.rain_map.end()) == doctest::Approx(9e-6));
+    const auto refused = parse(R"("rain": 0.5, "rain_map": [{"shape": "plane", "times": 3}])");
+    REQUIRE(!refused);
+    CHECK_MESSAGE(says(refused.status().message, "rain_map: 3 times rain, 0.5 m/s, is above 1 m/s"), refused.status().message);
 }
 
 TEST_CASE("level: velocities from maps, each of one component") {

@@ -103,6 +103,10 @@ def test_views(viewer):
         assert share(north_west, above_lowest) == 0 # dry rock
         assert (share(south_west, above_lowest) > 0.9) == (view == "active") # water
         assert share(east, above_lowest) > 0.05 # two heaps of sand
+    held = viewer.picture("limits", "dam_break", "--variant", "paper", "--backend", "cpu", "--camera", "top", "--size", "120x120", "--grid", "96x96", "--start", 1, "--view", "limits")
+    fronts, rock = share(held, lambda r, g, b: r > 120 and g < 110 and b < 100), share(part(held, 0.1, 0.1, 0.3, 0.3), above_lowest)
+    print(f"view limits: {fronts:.3f} of the picture at the speed limit, {rock:.3f} of dry rock")
+    assert 0.01 < fronts < 0.5 and rock == 0
     plain = viewer.picture("plain", "dam_break", "--backend", "cpu", "--camera", "top", "--size", "120x120", "--grid", "96x96", "--start", 2)
     arrows = viewer.picture("arrows", "dam_break", "--backend", "cpu", "--camera", "top", "--size", "120x120", "--grid", "96x96", "--start", 2, "--arrows")
     changed = sum(1 for p, q in zip(pixels(plain), pixels(arrows)) if p != q)

@@ -72,6 +72,7 @@ inline constexpr int GRID_MOST = 16384;
 inline constexpr double DX_LEAST = 1e-4, DX_MOST = 1e4; // [m]
 inline constexpr double DT_LEAST = 1e-7, DT_MOST = 100; // [s]
 inline constexpr double RAIN_MOST = 1;                  // rain and evaporation [m/s]
+inline constexpr double RAIN_TIMES_MOST = 100;          // of rain by a map
 inline constexpr double RATE_MOST = 1e4;                // of a source [m/s]
 inline constexpr double MANNING_MOST = 1;               // n of a material, of a cell's roughness [s/m^(1/3)]
 inline constexpr double SPEED_MOST = 1e4;               // set by a source or as an initial velocity [m/s]

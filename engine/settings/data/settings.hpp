@@ -150,6 +150,8 @@ struct Settings {
     std::vector<std::pair<std::string, Force>> effects; // names of shaders/effect_rows.hpp
     /// What each cell adds to material.manning, 0 ... 1 s/m^(1/3), in the order of InitialFields; empty = nothing.
     std::vector<float> roughness;
+    /// How many times `rain` falls on each cell, 0 ... RAIN_TIMES_MOST, in the order of InitialFields; empty = once everywhere.
+    std::vector<float> rain_map;
     /// Tiles in which nothing changes any more are left out of a step. How a world is run, not what it is: every bit stays, also
     /// in snapshots and between worlds that have it and that do not.
     int active_tiles = tiles_where_cheap; // side [cells]; 0 = off; the two words above: the world chooses while it runs

@@ -1,5 +1,6 @@
 #include "engine/settings/rules/checks.hpp"
 #include "engine/settings/data/method_presets.hpp"
+#include "engine/settings/data/rain_map.hpp"
 #include "engine/settings/data/setting_table.hpp"
 #include "engine/settings/rules/effects.hpp"
 #include "engine/settings/rules/messages.hpp"
@@ -257,6 +258,12 @@ Status validate(const InitialFields& fields, const Settings& settings) {
     for (const auto& [name, field] : velocities)
         if (Status status = check_field(name, *field, grid, -SPEED_MOST, SPEED_MOST, ""); !status) return status;
     if (Status status = check_field("roughness", settings.roughness, grid, 0, MANNING_MOST, ""); !status) return status;
+    if (Status status = check_field("rain_map", settings.rain_map, grid, 0, RAIN_TIMES_MOST, ""); !status) return status;
+    double most_rain = 0;
+    for (const auto& [time, rate] : settings.rain.samples) most_rain = std::max(most_rain, rate);
+    if (const double times = rain_peak(settings); most_rain * times > RAIN_MOST)
+        return refuse("rain_map: " + number_text(times) + " times rain, " + number_text(most_rain) + " m/s, is above " +
+                      number_text(RAIN_MOST) + " m/s");
 
     const std::size_t cells = static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny);
     const auto column = [&](std::size_t cell) {

@@ -109,6 +109,11 @@ constexpr Effect effects[] = {
      [](const Settings& s, Content) -> Why {
          return {!s.roughness.empty(), s.roughness.empty() ? "the level has none" : "the level has roughness"};
      }},
+    {row(EFFECT_RAIN_MAP), "the level has a rain map and it rains",
+     [](const Settings& s, Content) -> Why {
+         if (s.rain_map.empty()) return {false, "the level has none"};
+         return {ever_above_zero(s.rain), ever_above_zero(s.rain) ? "the level has a rain map" : "it never rains"};
+     }},
 };
 
 constexpr Choice choices[] = {

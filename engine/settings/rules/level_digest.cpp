@@ -55,6 +55,10 @@ std::uint64_t level_digest(const Settings& s) {
             add(value);
     }
     if (!s.roughness.empty()) sum.add(std::as_bytes(std::span(s.roughness)));
+    if (!s.rain_map.empty()) {
+        sum.add(std::as_bytes(std::span("rain_map"))); // the same numbers as roughness are another level
+        sum.add(std::as_bytes(std::span(s.rain_map)));
+    }
     return sum.value();
 }
 

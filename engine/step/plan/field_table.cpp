@@ -36,6 +36,7 @@ constexpr FieldRow rows[] = {
     {"side_memory", rim, none, in_hash, no_host, "", "", EFFECT_WATER | EFFECT_OPEN_SIDES,
      "what waves and outflows have learnt of a stream (NUMERICS 2.9)"},
     {"roughness", fixed, cell, no_hash, no_host, "", "s/m^(1/3)", EFFECT_ROUGHNESS, "Manning's n beyond that of the material"},
+    {"rain_share", fixed, cell, no_hash, no_host, "", "1/65536", EFFECT_RAIN_MAP, "how much falls of the rain where it rains most"},
     {"water_scale", scratch, cell, no_hash, no_host, "", "1", EFFECT_WATER, "outflow limiter of pure water"},
     {"mixed_scale", scratch, cell, no_hash, no_host, "", "1", EFFECT_MIXTURE, "outflow limiter of mixed water"},
     {"sand_scale", scratch, cell, no_hash, no_host, "", "1", EFFECT_SAND, "outflow limiter of sand"},
@@ -106,6 +107,7 @@ constexpr FieldRow rows[] = {
     {"water_depth", published, cell, no_hash, 3, "hw", "m", always, "pure water above the sand, W - min(W, P)"},
     {"free_surface", published, cell, no_hash, 4, "surface", "m", always, "H + max(D, hs): what a viewer sees"},
     {"surface_saturation", published, cell, no_hash, 5, "phi", "1", always, "D/(D + hs) where there is sand, else 0"},
+    {"limits", published, cell, no_hash, 15, "limits", "1", always, "guards that hold the cell in the next step, as bits"},
 };
 // clang-format on
 

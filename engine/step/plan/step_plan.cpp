@@ -48,6 +48,7 @@ void plan_water_motion(PlanBuilder& b) {
 void plan_inflow(PlanBuilder b) {
     if (b.has(EFFECT_SOURCES)) b.run("apply_sources");
     if (b.has(EFFECT_RAIN)) b.run("apply_rain");
+    if (b.has(EFFECT_RAIN_MAP) && !b.has(EFFECT_PUBLISHED)) b.run("dilute_water_velocity");
     if (b.has(EFFECT_PUBLISHED)) plan_published_diffusion(b);
     if (b.has(EFFECT_WATER | EFFECT_OPEN_SIDES)) b.run("open_sides");
 }

@@ -51,7 +51,7 @@ void ActiveTiles::wake_edits(const StepInput& input) {
 
 void ActiveTiles::wake_inputs(const StepInput& input) {
     if (size_ == 0) return;
-    if (input.rain > 0 || input.evaporation > 0) wake_all();
+    if (input.rain > 0 || input.mapped_rain.x > 0 || input.evaporation > 0) wake_all();
     wake_sources(input);
     wake_sides(input);
     before_ = input;

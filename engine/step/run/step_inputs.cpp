@@ -1,4 +1,5 @@
 #include "engine/step/run/step_inputs.hpp"
+#include "engine/settings/data/rain_map.hpp"
 #include "engine/settings/data/setting_table.hpp"
 #include "engine/step/plan/source_shapes.hpp"
 #include "engine/step/plan/world_params.hpp"
@@ -36,8 +37,8 @@ double covered_area(const vec4& shape, bool disc, const Grid& grid) {
 } // namespace
 
 StepInputs::StepInputs(const Settings& settings)
-    : settings_(settings), quantum_(height_quantum(settings.method)), areas_(settings.sources.size()),
-      totals_(settings.sources.size() + 6) {
+    : settings_(settings), quantum_(height_quantum(settings.method)), rain_is_mapped_(rain_is_mapped(settings)),
+      rain_peak_(rain_peak(settings)), areas_(settings.sources.size()), totals_(settings.sources.size() + 6) {
     const auto shapes = source_shapes(settings);
     for (std::size_t n = 0; n < areas_.size(); ++n)
         if (!settings.sources[n].discharge.samples.empty())
@@ -121,7 +122,12 @@ StepInput StepInputs::substep(std::uint64_t substep) {
     const double time = static_cast<double>(substep) * settings_.water_dt();
     input.phase = settings_.method.published() ? 0.0F : rounding_phase(substep); // the paper says nothing of rounding
     const std::size_t sources = settings_.sources.size();
-    input.rain = advance(totals_[sources], settings_.rain.at(time));
+    const double before = totals_[sources].quanta;
+    const float rain = advance(totals_[sources], settings_.rain.at(time) * rain_peak_);
+    if (rain_is_mapped_)
+        input.mapped_rain = {rain, static_cast<float>(std::fmod(before, 65536)), 0, 0}; // part_of() of rain.glsl
+    else
+        input.rain = rain;
     input.evaporation = advance(totals_[sources + 1], settings_.evaporation.at(time));
     for (std::size_t n = 0; n < sources; ++n) input.source[n] = source_input(n, time);
     set_sides(input, time);

@@ -43,6 +43,8 @@ class StepInputs {
 
     const Settings settings_;
     const double quantum_;
+    const bool rain_is_mapped_;
+    const double rain_peak_;
     std::vector<double> areas_; // covered by each source with a discharge [m2]
     Totals totals_, before_;    // before the last next()
 };

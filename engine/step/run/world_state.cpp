@@ -1,4 +1,5 @@
 #include "engine/step/run/world_state.hpp"
+#include "engine/settings/data/rain_map.hpp"
 #include "engine/settings/rules/level_digest.hpp"
 #include "engine/step/plan/world_params.hpp"
 #include <new>
@@ -80,6 +81,10 @@ Status WorldState::set_effects(const EffectChoice& effects) {
     if (auto status = fields_.set_plan(plan); !status) return status;
     if (plan.find("roughness") != nullptr) {
         if (auto status = fields_.write("roughness", 0, with_ghosts(layout_, settings_.roughness, true)); !status) return status;
+    }
+    if (plan.find("rain_share") != nullptr) {
+        if (auto status = fields_.write("rain_share", 0, with_ghosts(layout_, rain_shares(settings_), true)); !status)
+            return status;
     }
     plan_ = std::move(plan);
     other_plan_ = std::move(other);

@@ -169,7 +169,25 @@ namespace Wadi
         StretchXX = 12,
         StretchXY = 13,
         StretchYY = 14,
-        Count = 15,
+        /// <summary>which guards hold the cell back in the next step: a sum of wadi_limit bits, 0 = none</summary>
+        Limits = 15,
+        Count = 16,
+    }
+
+    /// <summary>
+    /// Bits of WADI_FIELD_LIMITS, of a cell or any of its four faces. wadi_world_stats counts the same, by faces.
+    /// </summary>
+    public enum Limit
+    {
+        /// <summary>water, pure or in sand, at the velocity clamp</summary>
+        WaterSpeed = 1,
+        /// <summary>gravity of water capped: waves are slower there</summary>
+        WaterGravity = 2,
+        /// <summary>more water would leave than there is</summary>
+        WaterOutflow = 4,
+        SandSpeed = 8,
+        SandGravity = 16,
+        SandOutflow = 32,
     }
 
     public enum BodyShape

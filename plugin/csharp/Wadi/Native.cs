@@ -221,8 +221,8 @@ namespace Wadi
             step);
 
         /// <summary>
-        /// Short name used by tools: "H", "hs", "W", "hw", "surface", "phi", "uw", "vw", "us", "vs", "um", "vm", "Vxx", "Vxy", "Vyy";
-        /// NULL if unknown.
+        /// Short name used by tools: "H", "hs", "W", "hw", "surface", "phi", "uw", "vw", "us", "vs", "um", "vm", "Vxx", "Vxy", "Vyy",
+        /// "limits"; NULL if unknown.
         /// </summary>
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         public static extern byte* wadi_field_name(Field field);

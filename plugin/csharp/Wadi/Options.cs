@@ -101,6 +101,8 @@ namespace Wadi
         public float[] VelocityX, VelocityY;
         /// <summary>What cells add to material.manning, 0 ... 1 [s/m^(1/3)].</summary>
         public float[] Roughness;
+        /// <summary>How many times the settings' rain falls on each cell, 0 ... 100; null = once everywhere.</summary>
+        public float[] RainMap;
 
         IntPtr Pin(CallMemory memory, float[] values, string name)
         {
@@ -121,6 +123,7 @@ namespace Wadi
             raw.VelocityX = Pin(memory, VelocityX, "VelocityX");
             raw.VelocityY = Pin(memory, VelocityY, "VelocityY");
             raw.Roughness = Pin(memory, Roughness, "Roughness");
+            raw.RainMap = Pin(memory, RainMap, "RainMap");
             return raw;
         }
     }

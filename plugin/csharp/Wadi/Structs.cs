@@ -199,8 +199,8 @@ namespace Wadi
     }
 
     /// <summary>
-    /// A world from arrays: settings as the text of a level file without its "terrain", "sand", "water", "velocities" and "roughness"
-    /// entries, which may name no files, and fields of nx * ny floats. NULL = zero everywhere.
+    /// A world from arrays: settings as the text of a level file without its "terrain", "sand", "water", "velocities", "roughness"
+    /// and "rain_map" entries, which may name no files, and fields of nx * ny floats. NULL = zero everywhere.
     /// </summary>
     [StructLayout(LayoutKind.Sequential)]
     public struct RawWorldArrays
@@ -223,6 +223,8 @@ namespace Wadi
         public IntPtr VelocityY;
         /// <summary>what cells add to material.manning, 0 ... 1 [s/m^(1/3)]</summary>
         public IntPtr Roughness;
+        /// <summary>how many times the settings' "rain" falls on each cell, 0 ... 100; NULL = once everywhere</summary>
+        public IntPtr RainMap;
         /// <summary>A struct with the size that the library asks for and the header's defaults; texts stay null.</summary>
         public static unsafe RawWorldArrays Default
         {

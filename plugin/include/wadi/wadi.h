@@ -282,8 +282,8 @@ WADI_API wadi_result wadi_get_level_cost(const char* path, const wadi_level_over
 WADI_API wadi_result wadi_get_level_text_cost(const char* json, wadi_read_file_callback read_file, void* user,
                                               const wadi_level_overrides* overrides, wadi_cost* cost);
 
-/** A world from arrays: settings as the text of a level file without its "terrain", "sand", "water", "velocities"
- *  and "roughness" entries, which may name no files, and fields of nx * ny floats. NULL = zero everywhere. */
+/** A world from arrays: settings as the text of a level file without its "terrain", "sand", "water", "velocities",
+ *  "roughness" and "rain_map" entries, which may name no files, and fields of nx * ny floats. NULL = zero everywhere. */
 typedef struct wadi_world_arrays {
     uint32_t struct_size;
     const char* settings_json; /* must not be NULL */
@@ -294,6 +294,7 @@ typedef struct wadi_world_arrays {
     const float* velocity_x;   /* water, at cell centres [m/s] */
     const float* velocity_y;
     const float* roughness;    /* what cells add to material.manning, 0 ... 1 [s/m^(1/3)] */
+    const float* rain_map;     /* how many times the settings' "rain" falls on each cell, 0 ... 100; NULL = once everywhere */
 } wadi_world_arrays;
 static inline wadi_world_arrays wadi_default_world_arrays(void) {
     WADI_ZERO_STRUCT(wadi_world_arrays);
@@ -529,10 +530,20 @@ typedef enum wadi_field WADI_ENUM {
     WADI_FIELD_STRETCH_XX = 12,      /* left stretch V - I of the sand */
     WADI_FIELD_STRETCH_XY = 13,
     WADI_FIELD_STRETCH_YY = 14,
-    WADI_FIELD_COUNT = 15
+    WADI_FIELD_LIMITS = 15,          /* which guards hold the cell back in the next step: a sum of wadi_limit bits, 0 = none */
+    WADI_FIELD_COUNT = 16
 } wadi_field;
-/** Short name used by tools: "H", "hs", "W", "hw", "surface", "phi", "uw", "vw", "us", "vs", "um", "vm", "Vxx", "Vxy", "Vyy"; NULL if
- *  unknown. */
+/** Bits of WADI_FIELD_LIMITS, of a cell or any of its four faces. wadi_world_stats counts the same, by faces. */
+typedef enum wadi_limit WADI_ENUM {
+    WADI_LIMIT_WATER_SPEED = 1,   /* water, pure or in sand, at the velocity clamp */
+    WADI_LIMIT_WATER_GRAVITY = 2, /* gravity of water capped: waves are slower there */
+    WADI_LIMIT_WATER_OUTFLOW = 4, /* more water would leave than there is */
+    WADI_LIMIT_SAND_SPEED = 8,
+    WADI_LIMIT_SAND_GRAVITY = 16,
+    WADI_LIMIT_SAND_OUTFLOW = 32
+} wadi_limit;
+/** Short name used by tools: "H", "hs", "W", "hw", "surface", "phi", "uw", "vw", "us", "vs", "um", "vm", "Vxx", "Vxy", "Vyy", "limits";
+ *  NULL if unknown. */
 WADI_API const char* wadi_field_name(wadi_field field);
 
 /** Reads a field, count = nx * ny floats.

@@ -23,6 +23,64 @@ TEST_CASE("a discharge arrives on time to one quantum a face however small it is
     CHECK(std::abs(total(cells_of(*world, "water_height")) - 400 * 5e-6) <= 400 * height_quantum(scene.settings.method));
 }
 
+TEST_CASE("rain by a map: every cell has its share of all that fell, to the quantum, however small the rate, on every backend") {
+    // Without gravity nothing flows. The last rate brings more than 65536 quanta a step where it rains most.
+    for (const double rate : {1.3e-6, 7e-3, 0.07}) {
+        CAPTURE(rate);
+        auto scene = flat_scene(20, 12, 1, 0.1);
+        scene.settings.gravity = 0;
+        scene.settings.method.largest_height = rate > 0.05 ? 8 : 64;
+        scene.settings.rain = {{{0, rate}}};
+        for (int n = 0; n < 20 * 12; ++n) scene.settings.rain_map.push_back(static_cast<float>((n * 7) % 240) / 24);
+        const float peak = 239.0F / 24;
+        const int steps = rate > 0.05 ? 80 : 300;
+        on_every_backend(scene, [&](World& world) {
+            step(world, steps);
+            const auto water = cells_of(world, "water_height");
+            const double quantum = height_quantum(world.settings().method);
+            const double most = std::floor(steps * 0.1 * rate * static_cast<double>(peak) / quantum + 1e-6);
+            double worst = 0;
+            for (int n = 0; n < 20 * 12; ++n) {
+                const double share =
+                    std::round(static_cast<double>(scene.settings.rain_map[static_cast<std::size_t>(n)] / peak) * 65536) / 65536;
+                const double due = std::floor(share * most) * quantum;
+                worst = std::max(worst, std::abs(static_cast<double>(water.at(n % 20, n / 20)) - due));
+            }
+            MESSAGE("rain " << rate << ": " << most << " quanta where it rains most, off by " << worst / quantum);
+            CHECK(most > (rate > 0.05 ? 65536 * steps : 0));
+            CHECK(worst <= quantum * 1.001); // the running total is a sum of as many products
+            const auto stats = stats_of(world);
+            CHECK(stats.water_quanta == stats.water_initial + stats.ledger.water_in - stats.ledger.water_out);
+        });
+        auto uniform = scene;
+        uniform.settings.effects.emplace_back("rain_map", Force::off);
+        auto world = make_world(uniform);
+        step(*world, steps);
+        const auto water = cells_of(*world, "water_height");
+        CHECK(water.at(0, 0) == water.at(13, 7)); // the control
+        CHECK(water.at(0, 0) > 0);
+    }
+}
+
+TEST_CASE("rain by a map brings no momentum: a stream under it slows as one under even rain") {
+    const auto stream = [](int kind) {
+        auto scene = flat_scene(200, 3, 1, 0.02);
+        scene.fill(scene.fields.water, [](double, double) { return 1; });
+        scene.fill(scene.fields.velocity_x, [](double, double) { return 1; });
+        if (kind > 0) scene.settings.rain = {{{0, 0.02}}};
+        if (kind > 1) scene.settings.rain_map.assign(200 * 3, 1.0F);
+        auto world = make_world(scene);
+        step(*world, 500); // 10 s: nothing from the ends has come to the middle
+        return static_cast<double>(cells_of(*world, "water_velocity_x").at(100, 1));
+    };
+    const double dry = stream(0), even = stream(1), mapped = stream(2);
+    MESSAGE("velocity after 10 s: " << dry << " without rain, " << even << " under even rain, " << mapped
+                                    << " under a map of it");
+    CHECK(dry == doctest::Approx(1).epsilon(1e-4));
+    CHECK(even == doctest::Approx(1 / 1.2).epsilon(2e-3));
+    CHECK(std::abs(mapped - even) < 5e-4);
+}
+
 TEST_CASE("a source with a level fills its cells up to it, keeps them there, and the books have every quantum") {
     const auto pool = [](bool drain, double rate) {
         auto scene = flat_scene(24, 16, 0.5, 0.01);
