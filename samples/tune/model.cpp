@@ -5,7 +5,7 @@
 namespace tune {
 namespace {
 
-// Twice the cells leave 0.47 to 0.77 of the error (tests/lab/report/sweep at tag ablation-2026-11). Points say more than this
+// Twice the cells leave 0.47 to 0.77 of the error (tests/lab/report/sweep at commit 5d34f0a). Points say more than this
 // where they fit, but they scatter, and an order from noise would be carried on to other sizes.
 constexpr double USUAL_ORDER = 0.8, ORDER_SPREAD = 0.4, POINT_SPREAD = 0.06;
 // Two runs err in part alike: seen as vectors, the cosine of the angle between their errors. 1 is Richardson's extrapolation,

@@ -11,9 +11,11 @@ typedef unsigned int uint;
 #ifdef WADI_STAGE_CALLS
 #define HELPER
 #define FN [[maybe_unused]] static
+#define LEAF [[maybe_unused]] static inline __attribute__((always_inline)) // less code than a call of it
 #else
 #define HELPER inline __attribute__((always_inline))
 #define FN static HELPER
+#define LEAF FN
 #endif
 #define REF(T) T&
 #include "../effects.h"
@@ -91,17 +93,22 @@ FN float wsqrt(float x) {
     return x > 0.0f ? s : x;
 }
 #else
-FN float wdiv(float a, float b) { return a / b; }
-FN float wsqrt(float x) { return __builtin_sqrtf(x); }
-FN float lean_quotient(float a, float b) { return a / b; }
-FN float lean_reciprocal(float b) { return lean_quotient(1.0f, b); }
-FN float lean_root(float x) { return __builtin_sqrtf(x); }
+LEAF float wdiv(float a, float b) { return a / b; }
+LEAF float wsqrt(float x) { return __builtin_sqrtf(x); }
+LEAF float lean_quotient(float a, float b) { return a / b; }
+LEAF float lean_reciprocal(float b) { return lean_quotient(1.0f, b); }
+LEAF float lean_root(float x) { return __builtin_sqrtf(x); }
 #endif
-FN float wabs(float x) { return __builtin_fabsf(x); }
-FN float wtrunc(float x) { return __builtin_truncf(x); }
-FN float wfloor(float x) { return __builtin_floorf(x); }
-FN int float_bits(float x) { int r; __builtin_memcpy(&r, &x, 4); return r; }
-FN float bits_float(int x) { float r; __builtin_memcpy(&r, &x, 4); return r; }
+#ifdef WADI_STAGE_CALLS
+#define HAS_MIN_MAX // as in scalar.glsl
+LEAF float wmin(float a, float b) { return b < a ? b : a; }
+LEAF float wmax(float a, float b) { return a < b ? b : a; }
+#endif
+LEAF float wabs(float x) { return __builtin_fabsf(x); }
+LEAF float wtrunc(float x) { return __builtin_truncf(x); }
+LEAF float wfloor(float x) { return __builtin_floorf(x); }
+LEAF int float_bits(float x) { int r; __builtin_memcpy(&r, &x, 4); return r; }
+LEAF float bits_float(int x) { float r; __builtin_memcpy(&r, &x, 4); return r; }
 // Without short circuits: a branch inside a stage would stop the loop from vectorising.
-FN bool both(bool a, bool b) { return static_cast<bool>(static_cast<int>(a) & static_cast<int>(b)); }
-FN bool either(bool a, bool b) { return static_cast<bool>(static_cast<int>(a) | static_cast<int>(b)); }
+LEAF bool both(bool a, bool b) { return static_cast<bool>(static_cast<int>(a) & static_cast<int>(b)); }
+LEAF bool either(bool a, bool b) { return static_cast<bool>(static_cast<int>(a) | static_cast<int>(b)); }
