@@ -1,12 +1,19 @@
 #!/usr/bin/env python3
-"""Writes from wadi.h and wadi_cuda.h what bindings and hosts without a linker want: wadi_api.json (types, fields, enums, functions, texts) and
-wadi_loader.h (the library opened at run time). Usage: write_api.py [--check]; --check changes nothing and exits with 1 where a file is old."""
+"""Writes from the headers what bindings and hosts without a linker want: wadi_api.json (types, fields, enums, functions, texts) and wadi_loader.h
+(the library opened at run time; without the calls of wadi_vulkan.h, which not every build has).
+Usage: write_api.py [--check]; --check changes nothing and exits with 1 where a file is old."""
 import json
 import pathlib
 import re
 import sys
 
 folder = pathlib.Path(__file__).resolve().parent
+HEADERS = ["wadi.h", *sorted(p.name for p in folder.glob("include/wadi/*.h") if p.name not in ("wadi.h", "wadi_loader.h"))]
+LOADED = ("wadi.h", "wadi_cuda.h")  # whose calls every build has
+# What the types of vulkan_core.h are on 64-bit systems, for bindings that know no Vulkan.
+FOREIGN = {
+    **dict.fromkeys(("VkInstance", "VkPhysicalDevice", "VkDevice", "VkQueue", "VkCommandBuffer", "PFN_vkGetInstanceProcAddr"), "void*"),
+    **dict.fromkeys(("VkSemaphore", "VkImage"), "uint64_t"), **dict.fromkeys(("VkFormat", "VkImageLayout"), "int32_t"), "VkBool32": "uint32_t"}
 
 
 def plain(comment):
@@ -53,7 +60,7 @@ def read(header):
         for text, body, name in re.findall(comment + r"typedef enum \w+(?: WADI_ENUM)? \{(.*?)\} (\w+);", header, re.DOTALL)
     ]
     defaults = {
-        name: {field: value.strip('"') if value.startswith('"') else float(value.split()[-1].rstrip("f")) for field, value in re.findall(r"value\.([\w\[\]]+) = ([^;]+);", body)}
+        name: {field: value.strip('"') if value.startswith(('"', "VK_")) else float(value.split()[-1].rstrip("f")) for field, value in re.findall(r"value\.([\w\[\]]+) = ([^;]+);", body)}
         for name, body in re.findall(r"^static inline (\w+) wadi_default_\w+\(void\) \{(.*?)^\}", header, re.MULTILINE | re.DOTALL)
     }
     api["structs"] = [
@@ -75,7 +82,7 @@ def read(header):
 def loader(api):
     """A table of all functions, filled from an opened library."""
     lines = []
-    for function in api["functions"]:
+    for function in (f for f in api["functions"] if f.get("header", "wadi.h") in LOADED):
         given = ", ".join(a["type"].removesuffix("*") + f" {a['name']}[{a['count']}]" if "count" in a else f"{a['type']} {a['name']}" for a in function["arguments"])
         lines.append(f"    X({function['returns']}, {function['name'].removeprefix('wadi_')}, ({given or 'void'}))")
     return f'''/* Written by plugin/write_api.py from wadi.h and wadi_cuda.h. For hosts that open the library at run time and run on without it; C99.
@@ -126,9 +133,23 @@ const char* wadi_load_functions(wadi_functions* functions, wadi_find_function fi
 '''
 
 
+def read_all(texts):
+    """What all headers declare; what is not of wadi.h names its header, and `foreign` the types that are none of ours."""
+    api = read("".join(texts.values()))
+    kinds = set()
+    for entry in (*api["functions"], *api["structs"]):
+        header = next(name for name, text in texts.items() if re.search(rf"^WADI_API[^;(]*\b{entry['name']}\(|^}} {entry['name']};", text, re.MULTILINE))
+        if header != "wadi.h":
+            entry["header"] = header
+        kinds |= {value["type"].removeprefix("const ").rstrip("*") for value in (*entry.get("arguments", ()), *entry.get("fields", ()))}
+    api["foreign"] = {kind: FOREIGN[kind] for kind in sorted(kinds) if kind.startswith(("Vk", "PFN_vk"))}
+    return api
+
+
 def main():
-    header = "".join((folder / f"include/wadi/{name}").read_text(encoding="utf-8") for name in ("wadi.h", "wadi_cuda.h"))
-    api = read(header)
+    texts = {name: (folder / f"include/wadi/{name}").read_text(encoding="utf-8") for name in HEADERS}
+    header = "".join(texts.values())
+    api = read_all(texts)
     declared = set(re.findall(r"^WADI_API[^;(]*?(wadi_\w+)\(", header, re.MULTILINE))
     if declared != {f["name"] for f in api["functions"]}:
         sys.exit(f"functions that were not read: {declared ^ {f['name'] for f in api['functions']}}")

@@ -12,6 +12,7 @@ packages_of[import]="${packages_of[demo]} libtiff-dev libtinyexr-dev" # TIFFs an
 # To run all tests: the viewer in a window, validation layers, the C# binding, arrays in Python.
 packages_of[tests]="${packages_of[viewer]} libtiff-dev libtinyexr-dev doctest-dev python3-numpy pkg-config vulkan-validationlayers xvfb twm xdotool mono-mcs mono-runtime"
 packages_of[contributing]="clang-format-14 pre-commit" # beside the tests: CONTRIBUTING.md
+packages_of[docs]="mkdocs mkdocs-material python3-pymdownx doxygen nodejs libjs-katex fonts-katex" # the site: plugin/docs
 # Lanes of tests/platforms, beside the tests.
 packages_of[windows]="g++-mingw-w64-x86-64-posix wine64"
 packages_of[aarch64]="g++-aarch64-linux-gnu qemu-user"
@@ -22,7 +23,7 @@ packages_of[swiftshader]="chromium-common"
 packages=()
 for purpose in "$@"; do
     if [[ -z $purpose || -z ${packages_of[$purpose]:-} ]]; then
-        echo "install_packages.sh: no purpose \"$purpose\"; the purposes are: demo viewer import tests contributing windows aarch64 wasm swiftshader" >&2
+        echo "install_packages.sh: no purpose \"$purpose\"; the purposes are: demo viewer import tests contributing docs windows aarch64 wasm swiftshader" >&2
         exit 2
     fi
     # shellcheck disable=SC2206 # words

@@ -41,7 +41,8 @@ def comment(text, indent=""):
 
 class Binding:
     def __init__(self, api):
-        self.api = api
+        # The calls of wadi_vulkan.h take handles that native code makes: they have no binding.
+        self.api = api = api | {part: [entry for entry in api[part] if entry.get("header") != "wadi_vulkan.h"] for part in ("functions", "structs")}
         self.callbacks = {c["name"] for c in api["callbacks"]}
         self.enums = {e["name"] for e in api["enums"]}
         self.structs = {s["name"] for s in api["structs"]}

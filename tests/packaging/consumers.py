@@ -4,6 +4,7 @@
 Usage: consumers.py SOURCE_DIR BUILD_DIR"""
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
@@ -32,6 +33,29 @@ def check_host(program, **options):
     expect("hash" in text, f"{program} prints the state's hash; it printed {text}")
 
 
+def dead_links(folder):
+    """Links of the pages in a folder that lead to nothing there."""
+    pages = sorted(folder.rglob("*.md"))
+    found = []
+    for page in pages:
+        for target in re.findall(r"\]\(([^()\s]+)\)", page.read_text(encoding="utf-8")):
+            name = target.partition("#")[0]
+            if name and not re.match(r"[a-z]+:", name) and not (page.parent / name).exists():
+                found.append(f"{page.relative_to(folder)}: {target}")
+    return len(pages), found
+
+
+def check_pages(folder):
+    number, dead = dead_links(folder)
+    expect(number > 10 and not dead, f"{number} installed pages have no dead links: {dead}")
+    page = next(folder.rglob("NOTICE.md")).parent / "README.md"
+    expect(page.read_text(encoding="utf-8").startswith("# The plugin\n"), f"{page} is the page it was")
+    planted = folder / "planted.md"  # a control
+    planted.write_text("[gone](gone.md) [there](planted.md)", encoding="utf-8")
+    expect(dead_links(folder)[1] == ["planted.md: gone.md"], "a dead link is found")
+    planted.unlink()
+
+
 def check_installed(prefix):
     for path in prefix.rglob("*"):
         if path.suffix in (".cmake", ".pc"):
@@ -43,6 +67,7 @@ def check_installed(prefix):
     needed = {line.split("[")[1].rstrip("]\n") for line in dynamic.splitlines() if "(NEEDED)" in line}
     allowed = ("libstdc++.", "libm.", "libgcc_s.", "libc.", "ld-linux", "libpthread.", "libdl.", "librt.")
     expect(all(name.startswith(allowed) for name in needed), f"only system libraries are needed, not {needed}")
+    check_pages(prefix / "share")
     return library.parent
 
 
@@ -88,6 +113,7 @@ def check_zip(folder):
     expect(headers <= inner, f"every header is in the zip: {headers - inner} is not")
     archive.extractall(folder / "engine")
     plugin = folder / "engine" / tops.pop() / "plugin"
+    check_pages(plugin)
     library = next((plugin / "lib").iterdir())
     run("cc", "-std=c99", host, "-o", folder / "zipped", "-I", plugin / "include", library)
     environment = dict(os.environ, LD_LIBRARY_PATH=str(library.parent))

@@ -37,7 +37,7 @@ def table(name, printed):
         lines = lines[: lines.index("")]
     elif part:
         lines = lines[:2] + [row for row in lines[2:] if of_object(row, part)]
-    return "\n".join(["```", *lines, "```"] if kind == "stages" else lines) + "\n"
+    return "\n".join(["```text", *lines, "```"] if kind == "stages" else lines) + "\n"
 
 
 def compare(path, text, printed):
