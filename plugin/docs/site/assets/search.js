@@ -2,9 +2,7 @@
 var __search = {
     index: new Promise(function (found) {
         window.wadi_search_index = found;
-        document.addEventListener("focusin", function load(event) {
-            if (!event.target.matches("[data-md-component=search-query]")) return;
-            document.removeEventListener("focusin", load);
+        window.addEventListener("load", function () {
             var script = document.createElement("script");
             script.src = JSON.parse(document.getElementById("__config").textContent).base + "/search/search_index.js";
             document.head.appendChild(script);
@@ -24,7 +22,7 @@ if (location.protocol === "file:") {
                 if (event.source !== this.inside) return;
                 if (event.data === "wadi: ready") {
                     this.waiting = null;
-                    waiting.forEach((data) => this.inside.postMessage(data, "*"));
+                    waiting.forEach((data) => this.postMessage(data));
                 } else this.dispatchEvent(new MessageEvent("message", { data: event.data }));
             });
             this.inside.document.open();
@@ -35,7 +33,7 @@ if (location.protocol === "file:") {
         }
         postMessage(data) {
             if (this.waiting) this.waiting.push(data);
-            else this.inside.postMessage(data, "*");
+            else window.postMessage.call(this.inside, data, "*"); // the frame's own leads out of it
         }
     };
 }
