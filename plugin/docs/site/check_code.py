@@ -199,7 +199,7 @@ def check(root, work, library, said):
                 found += [f"{name}:{line + 1 + number}: {what}" for number, what in shell(text, repository)]
             elif language == "json":
                 try:
-                    json.loads(text)
+                    json.loads(text if text.lstrip().startswith(("{", "[")) else f"{{{text}}}")  # some keys of an object
                 except ValueError as error:
                     breach = str(error)
             elif language not in LEFT:
