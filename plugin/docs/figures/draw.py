@@ -10,8 +10,8 @@ INK, GROUND, SAND, WET, WATER, FAINT, WARM = "#263238", "#8d8378", "#e6cf9a", "#
 
 
 class Figure:
-    def __init__(self, width, height):
-        self.size, self.parts = (width, height), []
+    def __init__(self, width, height, top=0):
+        self.size, self.top, self.parts = (width, height), top, []
 
     def shape(self, points, fill, stroke="none", width=1.5, dash=None, closed=True):
         way = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
@@ -46,7 +46,7 @@ class Figure:
     def svg(self, title):
         w, h = self.size
         body = "\n".join(self.parts)
-        return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {w} {h}" width="{w}" height="{h}" font-family="Helvetica, Arial, sans-serif" role="img">\n'
+        return (f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 {self.top} {w} {h}" width="{w}" height="{h}" font-family="Helvetica, Arial, sans-serif" role="img">\n'
                 f"<title>{title}</title>\n{body}\n</svg>\n")
 
 
@@ -56,7 +56,7 @@ def smooth(t):
 
 
 def layers():
-    f = Figure(720, 340)
+    f = Figure(720, 300, top=40)
     xs = [10 * n for n in range(73)]
     ground = [295 - 45 * smooth((x - 300) / 400) for x in xs]
     sand = [g - 18 - 165 * smooth((x - 180) / 170) * smooth((700 - x) / 260) for x, g in zip(xs, ground)]

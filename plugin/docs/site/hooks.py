@@ -219,7 +219,7 @@ def placed(tex, display):
 
 # Names in the prose of FORMULAS that have an index: h_m, sigma_xy.
 INDEXED = re.compile(rf"(?<![\w`/.])(?:[A-Za-z]{{1,2}}|{'|'.join(equations.GREEK)})_[A-Za-z0-9]{{1,3}}(?:(?<=_[a-z]),[A-Z])?'?(?![\w/]|\.\w)")
-WIDE = 60  # characters; a longer formula has a line of its own
+WIDE = 45  # characters; a longer formula has a line of its own
 
 
 def with_formulas(page, text):
