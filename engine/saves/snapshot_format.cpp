@@ -20,12 +20,24 @@ int material_key(std::uint32_t version, int number) {
     return number < numbers - of_lists ? number : number + keys - numbers;
 }
 
-std::size_t fixed_bytes(std::uint32_t version) { return material_at + 8 * material_numbers(version); }
+constexpr std::uint32_t without_sources = 6; // the newest version
+
+std::size_t fixed_bytes(std::uint32_t version) {
+    return material_at + 8 * (material_numbers(version) + (version > without_sources ? 1 : 0));
+}
+
+std::uint64_t bytes_of_sources(const SnapshotHeader& header) {
+    std::uint64_t bytes = 0;
+    if (header.sources)
+        for (const auto& source : *header.sources) bytes += source_bytes(source);
+    return bytes;
+}
 
 } // namespace
 
 std::uint64_t SnapshotHeader::begin_of(std::size_t field) const {
-    std::uint64_t at = fixed_bytes(version) + total_bytes * totals.inputs.size() + field_bytes * fields.size();
+    std::uint64_t at =
+        fixed_bytes(version) + bytes_of_sources(*this) + total_bytes * totals.inputs.size() + field_bytes * fields.size();
     for (std::size_t n = 0; n < field; ++n) at += fields[n].bytes;
     return at;
 }
@@ -44,6 +56,9 @@ void write_header(const SnapshotHeader& header, std::span<std::byte> to) {
     put(to, at, header.totals.sand_initial);
     put(to, at, header.totals.water_initial);
     for (int key = 0; key < static_cast<int>(material_keys().size()); ++key) put(to, at, material_value(header.material, key));
+    put(to, at, std::uint64_t{header.sources ? 1 + header.sources->size() : 0});
+    if (header.sources)
+        for (const auto& source : *header.sources) put_source(to, at, source);
     for (const auto& total : header.totals.inputs) {
         put(to, at, total.metres);
         put(to, at, total.quanta);
@@ -76,6 +91,16 @@ Result<SnapshotHeader> read_header(std::span<const std::byte> snapshot) {
     for (int n = 0; n < static_cast<int>(material_numbers(header.version)); ++n, at += 8)
         set_material_value(header.material, material_key(header.version, n), get<double>(snapshot, at));
     if (auto status = validate(header.material); !status) return broken(status.message);
+    if (header.version > without_sources) {
+        const auto sources = get<std::uint64_t>(snapshot, at);
+        at += 8;
+        if (sources > 0) header.sources.emplace();
+        for (std::uint64_t n = 1; n < sources; ++n) {
+            auto source = get_source(snapshot, at);
+            if (!source) return broken("source " + std::to_string(n - 1) + " passes its end, or is none");
+            header.sources->push_back(std::move(*source));
+        }
+    }
     if (at + totals * total_bytes + fields * field_bytes > bytes) return broken("its lists pass its end");
     for (std::uint64_t n = 0; n < totals; ++n, at += total_bytes)
         header.totals.inputs.push_back({get<double>(snapshot, at), get<double>(snapshot, at + 8)});
