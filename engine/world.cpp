@@ -7,7 +7,7 @@ namespace wadi {
 
 World::World(const Settings& settings, std::unique_ptr<compute::Device> device, compute::GroupSize group)
     : state_(settings, std::move(device), group) {
-    stepper_.set_hooks({.before_step = [this] { return edits_.before_step(); },
+    stepper_.set_hooks({.before_step = [this] { return before_step(); },
                         .after_step = [this] { return after_step(); },
                         .undisturbed = [this](std::uint64_t most) { return undisturbed(most); },
                         .finished_early = [this] { frames_.finished_early(); },
@@ -56,6 +56,11 @@ Status World::set_update_settings(const UpdateSettings& settings) {
     return status;
 }
 
+Status World::before_step() {
+    auto status = sources_.before_step();
+    return status ? edits_.before_step() : status;
+}
+
 Status World::after_step() {
     auto status = roll_back_.after_step();
     limits_.after_step();
@@ -64,7 +69,8 @@ Status World::after_step() {
 }
 
 std::uint64_t World::undisturbed(std::uint64_t most) const {
-    return checking_.undisturbed(commands_.undisturbed(roll_back_.undisturbed(limits_.undisturbed(edits_.undisturbed(most)))));
+    most = sources_.undisturbed(edits_.undisturbed(most));
+    return checking_.undisturbed(commands_.undisturbed(roll_back_.undisturbed(limits_.undisturbed(most))));
 }
 
 Status World::jumped() {

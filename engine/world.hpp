@@ -61,6 +61,7 @@ class World {
   private:
     World(const Settings& settings, std::unique_ptr<compute::Device> device, compute::GroupSize group);
     /// Stepper::Hooks.
+    Status before_step();
     Status after_step();
     std::uint64_t undisturbed(std::uint64_t most) const;
     Status jumped();
@@ -79,7 +80,8 @@ class World {
     Edits edits_{state_, stepper_};
     Queries queries_{state_, stepper_};
     ValueWrites values_{state_, stepper_};
-    CommandLog commands_{state_, stepper_, edits_, values_};
+    SourceChanges sources_{state_, stepper_};
+    CommandLog commands_{state_, stepper_, edits_, values_, sources_};
 };
 
 /// The plan as text: effects and reasons, passes, buffers, bytes per cell.

@@ -4,13 +4,15 @@
 //     40  u64      number of commands
 //     48  per stamp: i32[2] pixels along x and y, f32 values
 //      .  per command: u32 kind, u32 layer, u64 step, then
-//         edit:   u32 kind, capsule, stamp, 0; f64 x0, y0, x1, y1, radius, softness, amount, strength, velocity x, y
+//         edit:   u32 kind, capsule, stamp, player; f64 x0, y0, x1, y1, radius, softness, amount, strength, velocity x, y
 //         region: i32 i0, j0, nx, ny; f32 values
+//         source: u32 index, player; then source_format.hpp
 //         material: u32 number, 0; f64 value. The number is the index in material_keys(), but from `list_numbers` on it counts
 //         the keys of lists (saturation), which come last there: a key that is new moves no number. Version 2 had the index among
 //         its 23 keys.
 #include "engine/edits/command_log.hpp"
 #include "engine/saves/sealed_bytes.hpp"
+#include "engine/saves/source_format.hpp"
 #include "engine/settings/rules/material_keys.hpp"
 
 namespace wadi {
@@ -21,7 +23,7 @@ constexpr char magic[] = "WADICMDS";
 constexpr std::uint32_t version = 3, oldest_version = 2;
 constexpr int list_keys = 3, list_numbers = 0x10000;
 constexpr std::size_t stamps_at = 12, lists_at = 48;
-enum class Kind : std::uint32_t { edit, region, trim, material };
+enum class Kind : std::uint32_t { edit, region, trim, material, source };
 
 constexpr double Edit::*numbers[] = {&Edit::x0,       &Edit::y0,     &Edit::x1,       &Edit::y1,         &Edit::radius,
                                      &Edit::softness, &Edit::amount, &Edit::strength, &Edit::velocity_x, &Edit::velocity_y};
@@ -36,6 +38,11 @@ class Writer {
     void floats(std::span<const float> values) {
         const auto raw = std::as_bytes(values);
         bytes.insert(bytes.end(), raw.begin(), raw.end());
+    }
+    void add(const Source& source) {
+        std::size_t at = bytes.size();
+        bytes.resize(at + static_cast<std::size_t>(source_bytes(source)));
+        put_source(bytes, at, source);
     }
     std::vector<std::byte> bytes;
 };
@@ -56,6 +63,11 @@ class Reader {
         std::memcpy(values.data(), bytes_.data() + at_, values.size() * sizeof(float));
         at_ += values.size() * sizeof(float);
         return values;
+    }
+    Source source() {
+        auto found = whole_ ? get_source(bytes_, at_) : std::nullopt;
+        whole_ = found.has_value();
+        return found.value_or(Source{});
     }
     bool whole() const { return whole_; }
     bool at_end() const { return at_ == bytes_.size(); }
@@ -81,7 +93,7 @@ void write(Writer& to, const Edit& edit) {
     to.add(static_cast<std::uint32_t>(edit.kind));
     to.add(std::uint32_t{edit.capsule});
     to.add(edit.stamp);
-    to.add(std::uint32_t{0});
+    to.add(edit.player);
     for (const auto number : numbers) to.add(edit.*number);
 }
 
@@ -104,6 +116,13 @@ void write(Writer& to, const MaterialChange& change) {
     to.add(change.value);
 }
 
+void write(Writer& to, const SourceChange& change) {
+    write(to, Kind::source, EditLayer::terrain, change.step);
+    to.add(change.index);
+    to.add(change.player);
+    to.add(change.source);
+}
+
 Edit read_edit(Reader& from, EditLayer layer, std::uint64_t step) {
     Edit edit;
     edit.layer = layer;
@@ -111,7 +130,7 @@ Edit read_edit(Reader& from, EditLayer layer, std::uint64_t step) {
     edit.kind = static_cast<EditKind>(from.next<std::uint32_t>() % 3);
     edit.capsule = from.next<std::uint32_t>() != 0;
     edit.stamp = from.next<std::uint32_t>();
-    from.next<std::uint32_t>();
+    edit.player = from.next<std::uint32_t>();
     for (const auto number : numbers) edit.*number = from.next<double>();
     return edit;
 }
@@ -134,6 +153,15 @@ MaterialChange read_material(Reader& from, std::uint32_t of_version, std::uint64
                          : static_cast<int>(number % static_cast<std::uint32_t>(scalars));
     from.next<std::uint32_t>();
     change.value = from.next<double>();
+    return change;
+}
+
+SourceChange read_source(Reader& from, std::uint64_t step) {
+    SourceChange change;
+    change.step = step;
+    change.index = from.next<std::uint32_t>();
+    change.player = from.next<std::uint32_t>();
+    change.source = from.source();
     return change;
 }
 
@@ -183,8 +211,14 @@ Result<CommandList> read_commands(std::span<const std::byte> bytes) {
             list.commands.emplace_back(read_region(from, layer, step));
         } else if (kind == Kind::material) {
             list.commands.emplace_back(read_material(from, sealed_version(bytes), step));
-        } else {
+        } else if (kind == Kind::source) {
+            list.commands.emplace_back(read_source(from, step));
+        } else if (kind == Kind::trim) {
             list.commands.emplace_back(Trim{step});
+        } else if (from.whole()) {
+            return error(Code::bad_file, "command log: it has a command of kind " +
+                                             std::to_string(static_cast<std::uint32_t>(kind)) +
+                                             ", which this library does not know");
         }
     }
     if (!from.whole() || !from.at_end()) return error(Code::bad_file, "command log: its lists do not end where it does");

@@ -3,6 +3,7 @@
 #include "engine/settings/rules/messages.hpp"
 #include "engine/step/run/prestress.hpp"
 #include <algorithm>
+#include <cstring>
 
 namespace wadi {
 
@@ -10,7 +11,17 @@ std::uint64_t step_of(const Command& command) {
     return std::visit([](const auto& c) { return c.step; }, command);
 }
 
+std::uint32_t player_of(const Command& command) {
+    if (const auto* edit = std::get_if<Edit>(&command)) return edit->player;
+    const auto* source = std::get_if<SourceChange>(&command);
+    return source != nullptr ? source->player : 0;
+}
+
 namespace {
+
+bool same_image(const Stamp& a, const Stamp& b) {
+    return a.nx == b.nx && a.ny == b.ny && std::memcmp(a.values.data(), b.values.data(), a.values.size() * sizeof(float)) == 0;
+}
 
 void count(std::map<std::uint64_t, CommandCounts>& counts, const Command& command) {
     CommandCounts& of_step = counts[step_of(command)];
@@ -70,6 +81,24 @@ Status CommandLog::edit(std::span<const Edit> edits) {
     return ok_status();
 }
 
+Status CommandLog::set_source(SourceChange change) {
+    constexpr const char* function = "wadi_world_set_source";
+    if (change.step == 0) change.step = edits_.next_step();
+    if (auto status = check_step(function, change.step); !status) return status;
+    if (auto status = sources_.check(function, change); !status) return status;
+    if (auto status = check_room(function, change.step, false, 1); !status) return status;
+    note(change);
+    sources_.schedule(std::move(change));
+    return ok_status();
+}
+
+Status CommandLog::check_step(const char* function, std::uint64_t step) const {
+    if (step >= edits_.next_step()) return ok_status();
+    return error(Code::bad_argument, std::string(function) + ": source.step: " + std::to_string(step) +
+                                         " has been simulated or is under way; the next one is " +
+                                         std::to_string(edits_.next_step()) + ", or 0");
+}
+
 Status CommandLog::write_region(EditLayer layer, const Region& region, std::span<const float> values) {
     auto status = stepper_.finish_step();
     if (status) status = check_room("write_region", state_.steps, false, 1);
@@ -120,6 +149,22 @@ void CommandLog::remember(bool on) {
 
 std::vector<std::byte> CommandLog::bytes() const { return write_commands(state_.level(), edits_.stamps(), remembered_); }
 
+std::vector<std::byte> CommandLog::bytes(std::uint64_t since, std::optional<std::uint32_t> player) const {
+    std::vector<Command> commands;
+    std::vector<Stamp> stamps;
+    std::map<std::uint32_t, std::uint32_t> number_of; // in this log, by that of the world
+    for (const Command& command : remembered_) {
+        if (step_of(command) < since || (player && player_of(command) != *player)) continue;
+        commands.push_back(command);
+        auto* const edit = std::get_if<Edit>(&commands.back());
+        if (edit == nullptr || edit->kind != EditKind::stamp) continue;
+        const auto [found, is_new] = number_of.try_emplace(edit->stamp, static_cast<std::uint32_t>(stamps.size() + 1));
+        if (is_new) stamps.push_back(edits_.stamps()[edit->stamp - 1]);
+        edit->stamp = found->second;
+    }
+    return write_commands(state_.level(), stamps, commands);
+}
+
 Status CommandLog::check(const CommandList& list) const {
     if (list.level != state_.level())
         return error(Code::bad_argument, "play_commands: the log is of a level with other settings");
@@ -136,8 +181,15 @@ Status CommandLog::check(const CommandList& list) const {
     for (const auto& [step, of_step] : counts)
         if (of_step.edits > LOG_EDITS_MOST || of_step.others > LOG_COMMANDS_MOST)
             return error(Code::bad_argument, "play_commands: " + too_many_text(step, of_step.edits > LOG_EDITS_MOST));
-    for (const auto& [step, of_step] : counts)
+    std::map<std::uint64_t, std::uint32_t> sources; // remembered at once, as edits are; the others when they run
+    for (const auto& command : list.commands)
+        if (std::holds_alternative<SourceChange>(command)) ++sources[step_of(command)];
+    for (const auto& [step, of_step] : counts) {
         if (auto status = check_room("play_commands", step, true, of_step.edits); !status) return status;
+        const auto found = sources.find(step);
+        if (auto status = check_room("play_commands", step, false, found == sources.end() ? 0 : found->second); !status)
+            return status;
+    }
     // A log lists its commands as they came, edits of later steps among them; they run by step.
     std::stable_sort(by_step.begin(), by_step.end(),
                      [](const Command* a, const Command* b) { return step_of(*a) < step_of(*b); });
@@ -155,6 +207,8 @@ Status CommandLog::check(const CommandList& list) const {
             if (auto status = check_values(*write, state_.settings().method.largest_height); !status) return status;
             if (auto status = check_allowed(settings, content_written(*write)); !status)
                 return error(Code::bad_argument, "play_commands: " + status.message);
+        } else if (const auto* source = std::get_if<SourceChange>(&command)) {
+            if (auto status = sources_.check("play_commands", *source); !status) return status;
         } else if (const auto* change = std::get_if<MaterialChange>(&command)) {
             if (auto status = check_material_change("play_commands", settings, change->key, change->value); !status)
                 return status;
@@ -187,21 +241,35 @@ Status CommandLog::play(std::span<const std::byte> bytes) {
     auto list = read_commands(bytes);
     if (!list) return list.status();
     if (auto status = check(*list); !status) return status;
-    const auto stamps = static_cast<std::uint32_t>(edits_.stamps().size()); // the log's come behind the world's own
-    for (const auto& stamp : list->stamps) {
-        if (auto made = edits_.create_stamp(stamp.nx, stamp.ny, stamp.values); !made) return made.status();
-    }
+    const auto stamps = take_stamps(list->stamps);
+    if (!stamps) return stamps.status();
     for (const auto& command : list->commands) {
         if (const auto* found = std::get_if<Edit>(&command)) {
             Edit edit = *found;
-            if (edit.kind == EditKind::stamp) edit.stamp += stamps;
+            if (edit.kind == EditKind::stamp) edit.stamp = (*stamps)[edit.stamp - 1];
             note(edit);
             edits_.schedule(edit);
+        } else if (const auto* source = std::get_if<SourceChange>(&command)) {
+            note(*source);
+            sources_.schedule(*source);
         } else {
             played_.emplace(step_of(command), command);
         }
     }
     return stepper_.parts_done() == 0 ? at_boundary() : ok_status();
+}
+
+Result<std::vector<std::uint32_t>> CommandLog::take_stamps(std::span<const Stamp> stamps) {
+    std::vector<std::uint32_t> numbers;
+    for (const Stamp& stamp : stamps) {
+        const auto& own = edits_.stamps();
+        const auto like = std::find_if(own.begin(), own.end(), [&](const Stamp& each) { return same_image(each, stamp); });
+        auto number = like != own.end() ? Result<std::uint32_t>(static_cast<std::uint32_t>(like - own.begin()) + 1)
+                                        : edits_.create_stamp(stamp.nx, stamp.ny, stamp.values);
+        if (!number) return number.status();
+        numbers.push_back(*number);
+    }
+    return numbers;
 }
 
 Status CommandLog::run(const Command& command) {
@@ -221,6 +289,7 @@ Status CommandLog::at_boundary() {
 
 void CommandLog::went_to(std::uint64_t step) {
     edits_.forget();
+    sources_.forget();
     played_.clear();
     std::erase_if(remembered_, [&](const Command& command) { return step_of(command) >= step; });
     counts_.erase(counts_.lower_bound(step), counts_.end());

@@ -17,7 +17,7 @@ Status Edits::check(const char* function, std::span<const Edit> edits, std::span
     return ok_status();
 }
 
-void Edits::schedule(const Edit& edit) { waiting_.emplace(edit.step, edit); }
+void Edits::schedule(const Edit& edit) { waiting_.emplace(TurnOfPlayer{edit.step, edit.player}, edit); }
 
 Result<std::uint32_t> Edits::create_stamp(int nx, int ny, std::span<const float> values) {
     if (auto status = check_stamp("create_stamp", nx, ny, values); !status) return status;
@@ -64,7 +64,7 @@ Status Edits::before_step() {
         append_scripted_edits(state_.settings(), state_.steps, due_);
         scripted_from_ = state_.steps + 1;
     }
-    const auto later = waiting_.upper_bound(state_.steps);
+    const auto later = waiting_.upper_bound(last_of(state_.steps));
     std::for_each(waiting_.begin(), later, [&](const auto& edit) { due_.push_back(edit.second); });
     waiting_.erase(waiting_.begin(), later);
     if (due_.empty()) return ok_status();
@@ -74,8 +74,8 @@ Status Edits::before_step() {
 }
 
 std::uint64_t Edits::undisturbed(std::uint64_t most) const {
-    const auto later = waiting_.upper_bound(state_.steps);
-    if (later != waiting_.end()) most = std::min(most, later->first - state_.steps);
+    const auto later = waiting_.upper_bound(last_of(state_.steps));
+    if (later != waiting_.end()) most = std::min(most, later->first.step - state_.steps);
     std::vector<Edit> scripted;
     for (std::uint64_t n = 1; n < most; ++n) {
         append_scripted_edits(state_.settings(), state_.steps + n, scripted);

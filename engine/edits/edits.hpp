@@ -1,5 +1,6 @@
 // Edits of a running world: brushes, stamps and bodies that push. They wait for their step and run on the device ahead of it.
 #pragma once
+#include "engine/edits/turn_of_player.hpp"
 #include "engine/settings/rules/edit_checks.hpp"
 #include "engine/step/run/state_program.hpp"
 #include "engine/step/run/stepper.hpp"
@@ -22,7 +23,7 @@ class Edits {
     std::uint64_t next_step() const { return state_.steps + (stepper_.parts_done() > 0 ? 1 : 0); }
     /// ok, or bad_argument that names `function`, the edit and its field.
     Status check(const char* function, std::span<const Edit> edits, std::span<const Stamp> stamps) const;
-    /// Queues a checked edit, with its step set, behind those of the same step.
+    /// Queues a checked edit, with its step set, behind those of the same step and player.
     void schedule(const Edit& edit);
     /// The world went to another step: drops what waits; the level's own edits are due again from there on.
     void forget();
@@ -45,9 +46,9 @@ class Edits {
 
     WorldState& state_;
     Stepper& stepper_;
-    std::multimap<std::uint64_t, Edit> waiting_; // by step; equal steps in the order of the calls
-    std::vector<Edit> due_;                      // taken for the next step and not submitted yet
-    std::uint64_t scripted_from_ = 0;            // the first step for which the level's own edits were not taken
+    std::multimap<TurnOfPlayer, Edit> waiting_; // equal ones in the order of the calls
+    std::vector<Edit> due_;                     // taken for the next step and not submitted yet
+    std::uint64_t scripted_from_ = 0;           // the first step for which the level's own edits were not taken
     std::vector<Stamp> stamps_;
     compute::Buffer images_;
     std::uint64_t pages_ = 0, pages_used_ = 0;

@@ -214,7 +214,7 @@ Status trim(WorldState& state, Stepper& stepper) {
         add("water_side_ledger", *water_sides, LEDGER_WATER_IN, LEDGER_WATER_OUT);
         return count_in_ledger(state, changes);
     };
-    return stepper.change(state.settings().material, {*sand, *water}, keep);
+    return stepper.change(state.settings().live(), {*sand, *water}, keep);
 }
 
 } // namespace wadi

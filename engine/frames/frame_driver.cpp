@@ -1,4 +1,5 @@
 #include "engine/frames/frame_driver.hpp"
+#include "engine/settings/rules/messages.hpp"
 #include <algorithm>
 
 namespace wadi {
@@ -80,29 +81,37 @@ Status FrameDriver::take_run() {
     return status;
 }
 
-// Once for each world: a host that does not look at what it drops simulates less than it thinks.
-void FrameDriver::tell_of_dropped_time(const Frame& frame) const {
-    if (!state_.log) return;
+// From a whole step on, since less may be a rounding of the host's, and again at ten times as much: a host that does not look at
+// what it drops simulates less than it thinks.
+void FrameDriver::tell_of_dropped_time(const Frame& frame) {
+    const double seconds = static_cast<double>(dropped_total_) * 1e-9;
+    if (!state_.log || seconds < std::max(tell_at_, state_.settings().dt)) return;
+    tell_at_ = 10 * seconds;
     const bool most = frame.steps >= settings_.max_steps_per_update;
-    state_.log(
+    const double share = 100 * seconds / (static_cast<double>(given_total_) * 1e-9);
+    state_.tell(
         1,
-        "an update dropped " + std::to_string(static_cast<double>(frame.dropped) * 1e-9) + " s of the host's time, because " +
+        "updates have dropped " + at_most(seconds) + " s of the host's time so far, " + at_most(share) +
+            " % of it; now because " +
             (most ? "it was more than max_steps_per_update (" + std::to_string(settings_.max_steps_per_update) + ") water steps"
                   : "the device had max_steps_in_flight (" + std::to_string(settings_.max_steps_in_flight) +
                         ") unfinished water steps or a full queue") +
             "; " +
-            (most
-                 ? "update more often or raise it"
-                 : "a host without frame pacing sets max_steps_in_flight to 0, which waits for the device in place of dropping") +
-            ". This is said once; wadi_frame counts what is dropped");
+            (most ? "update more often or raise it"
+                  : "a host without frame pacing sets max_steps_in_flight to 0, which waits for the device in place of "
+                    "dropping") +
+            ". This is said again at ten times as much; wadi_frame counts what is dropped");
 }
 
 Status FrameDriver::take_steps(std::uint64_t nanoseconds, Frame& frame) {
     if (!state_.lost()) return state_.lost();
     frame = {};
     frame.dropped = clock_.add(nanoseconds);
+    const std::uint64_t before = given_total_;
+    given_total_ = add(given_total_, nanoseconds);
     auto status = take_due(frame);
     if (!status) take_back(nanoseconds);
+    if (!status) given_total_ = before;
     return status;
 }
 
@@ -124,8 +133,8 @@ Status FrameDriver::take_due(Frame& frame) {
         clock_.take();
     }
     frame.dropped = add(frame.dropped, clock_.drop());
-    if (frame.dropped > 0 && dropped_total_ == 0) tell_of_dropped_time(frame);
     dropped_total_ = add(dropped_total_, frame.dropped);
+    if (frame.dropped > 0) tell_of_dropped_time(frame);
     frame.dropped_total = dropped_total_;
     frame.total_steps = state_.steps;
     frame.time = static_cast<double>(state_.steps) * state_.settings().dt;

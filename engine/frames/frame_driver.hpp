@@ -53,14 +53,15 @@ class FrameDriver {
     /// Whether so many steps are due at once, and the device may have them, that they go to it as one run.
     bool run_is_due(std::uint32_t taken);
     Status take_run();
-    void tell_of_dropped_time(const Frame& frame) const;
+    void tell_of_dropped_time(const Frame& frame);
 
     WorldState& state_;
     Stepper& stepper_;
     UpdateSettings settings_;
     StepClock clock_;
-    bool ahead_ = false; // the next step of the clock is done already
-    std::uint64_t dropped_total_ = 0;
+    bool ahead_ = false;                                // the next step of the clock is done already
+    std::uint64_t dropped_total_ = 0, given_total_ = 0; // of the host's time [ns]
+    double tell_at_ = 0;                                // once so much is dropped [s]; 0: never told
     // Tickets of whole steps that may be unfinished: places used in turn from oldest_ to newest_, both counting up.
     std::array<compute::Ticket, most_steps_in_flight> tickets_{};
     std::uint64_t oldest_ = 0, newest_ = 0;

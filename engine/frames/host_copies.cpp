@@ -43,6 +43,7 @@ Status HostCopies::set(const std::vector<Item>& items) {
         std::swap(programs_, fresh);
         items_ = items;
         slots_ = {};
+        given_ = nullptr;
         for (std::size_t n = 0; n < slots; ++n) {
             for (const auto& item : items_) slots_[n].copy.contents[item.name] = state_.device().mapped(buffers_[label(item, n)]);
         }
@@ -84,13 +85,20 @@ Result<bool> HostCopies::copy(std::size_t set, std::uint64_t step) {
     return true;
 }
 
+Status HostCopies::wait() {
+    for (const auto& slot : slots_) {
+        if (!filled(slot) || finished(slot)) continue;
+        if (auto status = state_.device().wait(slot.ticket); !status) return status;
+    }
+    return ok_status();
+}
+
 Result<const HostCopies::Copy*> HostCopies::newest() {
     if (!state_.lost()) return state_.lost();
-    const auto given = std::find_if(slots_.begin(), slots_.end(), [&](const Slot& slot) { return slot.handed_out == update_; });
-    Slot* slot = given != slots_.end() ? &*given : newest_finished();
-    if (slot == nullptr) return error(Code::not_ready, "no published outputs have reached the host yet; ask again later");
-    slot->handed_out = update_;
-    return const_cast<const Copy*>(&slot->copy);
+    if (given_ == nullptr) given_ = newest_finished();
+    if (given_ == nullptr) return error(Code::not_ready, "no published outputs have reached the host yet; ask again later");
+    given_->handed_out = update_;
+    return const_cast<const Copy*>(&given_->copy);
 }
 
 } // namespace wadi

@@ -31,15 +31,23 @@ class HostCopies {
     /// changed).
     Status set(const std::vector<Item>& items);
     /// To be called as each update begins: copies handed out before the one before are free again.
-    void begin_update() { ++update_; }
+    void begin_update() {
+        ++update_;
+        give_anew();
+    }
+    /// newest() may give another copy than it gave since the last update, whose memory stays all the same.
+    void give_anew() { given_ = nullptr; }
     /// Submits a copy of an output set that was submitted before. False: not now, the device is behind and no memory is free.
     Result<bool> copy(std::size_t set, std::uint64_t step);
-    /// The newest finished copy, the same for all calls between two updates; its memory stays until the second next update.
-    /// Errors: not_ready (none yet).
+    /// Waits for all copies.
+    Status wait();
+    /// The newest finished copy, the same for all calls until an update or give_anew(); its memory stays until the second next
+    /// update. Errors: not_ready (none yet).
     Result<const Copy*> newest();
 
   private:
-    // One with the device, the newest finished, and those handed out in this update and in the last one.
+    // One with the device, the newest finished, and those handed out in this update and in the last one. Where a host waited, the
+    // newest finished was handed out, too, and none is with the device.
     static constexpr std::size_t slots = 4;
     struct Slot {
         Copy copy;
@@ -62,6 +70,7 @@ class HostCopies {
     std::array<Slot, slots> slots_{};
     Programs programs_{};
     std::uint64_t update_ = 1;
+    Slot* given_ = nullptr; // what newest() gives
 };
 
 } // namespace wadi

@@ -204,6 +204,22 @@ Status Outputs::publish(bool between_steps, double interpolation) {
     return interpolate(interpolation);
 }
 
+Status Outputs::wait() {
+    if (!state_.lost()) return state_.lost();
+    if (fields_of(asked_) == 0)
+        return error(Code::bad_argument,
+                     "no output was asked for; ask with wadi_world_set_outputs or wadi_world_set_host_outputs");
+    if (published_ == 0) return error(Code::not_ready, "nothing was published yet; it is after the next update");
+    copies_.give_anew();
+    if (auto status = state_.device().wait(sets_[current()].ticket); !status) return status; // frees the copies before it
+    if (!copied_) {
+        auto copied = copies_.copy(current(), published_step());
+        if (!copied) return copied.status();
+        copied_ = *copied; // all copies of before are done: one has room
+    }
+    return copies_.wait();
+}
+
 // Two publishes may be several steps apart: the factor between them is that of the moment the host shows.
 Status Outputs::interpolate(double interpolation) {
     if (interpolated() == 0 || published_ == 0 || !state_.device().finished(interpolations_[0])) return ok_status();

@@ -68,6 +68,10 @@ class Outputs {
     /// the host's time is from the last step but one to the last. Submits nothing where nothing is asked for.
     Status publish(bool between_steps, double interpolation);
 
+    /// Waits until the newest publish is done and its copies are in host memory: host_view() and tiles() then give it.
+    /// Errors: bad_argument (nothing was asked for), not_ready (nothing was published yet), device_lost.
+    Status wait();
+
     bool published() const { return published_ > 0; }
     /// Of the current set.
     std::uint64_t published_step() const { return sets_[current()].step; }

@@ -84,14 +84,50 @@ class TextSurvey : public nlohmann::json_sax<Json> {
     std::string key_of_root_;
 };
 
+/// Texts in single quotes become such in double ones, byte for byte: places in messages stay.
+Result<std::string> double_quoted(std::string text) {
+    char within = 0; // a quote, '/' or '*' of a comment
+    for (std::size_t n = 0; n < text.size(); ++n) {
+        const char c = text[n], next = n + 1 < text.size() ? text[n + 1] : '\0';
+        if (within == '/') {
+            if (c == '\n') within = 0;
+        } else if (within == '*') {
+            if (c == '*' && next == '/') within = 0, ++n;
+        } else if (within != 0) {
+            if (c == '"' && within == '\'')
+                return error(Code::bad_file, position_text(text, n + 1) +
+                                                 ": a text in single quotes holds a double quote; write \\\" or put "
+                                                 "the text into double quotes");
+            if (c == '\\') ++n;
+            if (c != within) continue;
+            text[n] = '"';
+            within = 0;
+        } else if (c == '/' && (next == '/' || next == '*')) {
+            within = next;
+            ++n;
+        } else if (c == '"' || c == '\'') {
+            within = c;
+            text[n] = '"';
+        }
+    }
+    return text;
+}
+
 void refuse(Status& status, std::string message) {
     if (status) status = error(Code::bad_file, std::move(message));
 }
 
 } // namespace
 
-Result<Json> parse_json(const std::string& text) {
+Result<Json> parse_json(const std::string& given) {
     constexpr bool strict = true, comments = true, throws = true;
+    std::string replaced;
+    if (given.find('\'') != std::string::npos) {
+        auto quoted = double_quoted(given);
+        if (!quoted) return quoted.status();
+        replaced = std::move(*quoted);
+    }
+    const std::string& text = replaced.empty() ? given : replaced;
     TextSurvey survey(text);
     if (!Json::sax_parse(text, &survey, Json::input_format_t::json, strict, comments)) return survey.status();
     return Json::parse(text, nullptr, throws, comments);

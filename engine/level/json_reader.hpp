@@ -12,9 +12,9 @@ namespace wadi {
 
 using Json = nlohmann::json;
 
-/// Parses JSON with // and /* */ comments. Errors give line and column; a key given twice is an error, and so are more than 32
-/// lists and objects within each other.
-Result<Json> parse_json(const std::string& text);
+/// Parses JSON with // and /* */ comments and with texts in double or single quotes. Errors give line and column; a key given
+/// twice is an error, and so are more than 32 lists and objects within each other.
+Result<Json> parse_json(const std::string& given);
 
 /// A value as a message shows it: at most 40 characters.
 std::string json_text(const Json& value);

@@ -88,8 +88,8 @@ Result<std::uint64_t> RollBack::go_back(std::uint64_t step) {
         return error(Code::bad_argument, "roll_back: no step up to " + std::to_string(step) + " is kept" +
                                              (kept.empty() ? "" : "; the oldest is " + std::to_string(kept.front())));
     }
-    if (newest->material != state_.settings().material) {
-        if (auto status = stepper_.set_material(newest->material); !status) return status;
+    if (newest->live != state_.settings().live()) {
+        if (auto status = stepper_.change(newest->live, state_.content); !status) return status;
         if (auto status = fit(); !status) return status; // effects may have changed with it
     }
     if (auto ticket = newest->restore->submit(); !ticket) return ticket.status();
@@ -108,7 +108,7 @@ Status RollBack::keep() {
     if (auto ticket = earlier.keep->submit(); !ticket) return ticket.status();
     earlier.totals = stepper_.totals();
     earlier.effects = state_.plan().effects;
-    earlier.material = state_.settings().material;
+    earlier.live = state_.settings().live();
     earlier.kept = true;
     return ok_status();
 }

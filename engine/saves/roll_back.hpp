@@ -17,8 +17,8 @@ class RollBack {
     /// Steps that can be gone back to, oldest first.
     std::vector<std::uint64_t> steps() const;
     /// Goes to the newest kept step <= `step`, which it returns, and forgets the later ones, as it does edits and commands that
-    /// wait. Parts of a step are given up. Waits only where the material was another then. Errors: bad_argument (nothing so old
-    /// is kept), those of Stepper::set_material().
+    /// wait. Parts of a step are given up. Waits only where material or sources were others then. Errors: bad_argument (nothing
+    /// so old is kept), those of Stepper::change().
     Result<std::uint64_t> go_back(std::uint64_t step);
     /// Keeps the state if its step is due.
     Status after_step();
@@ -32,7 +32,7 @@ class RollBack {
         explicit Earlier(WorldDevice& device) : copies(device) {}
         bool kept = false;
         std::uint32_t effects = 0;
-        Material material;
+        LiveSettings live;
         HostTotals totals;
         NamedBuffers copies; // of the kept fields
         std::unique_ptr<StateProgram> keep, restore;

@@ -1,5 +1,6 @@
 #include "engine/saves/snapshots.hpp"
 #include "engine/saves/snapshot_checks.hpp"
+#include "engine/settings/rules/checks.hpp"
 #include "engine/step/plan/world_params.hpp"
 #include <algorithm>
 #include <cstring>
@@ -25,8 +26,16 @@ Content operator|(Content a, Content b) { return {a.sand || b.sand, a.water || b
 } // namespace
 
 SnapshotHeader Snapshots::header() const {
-    return {state_.layout().nx,         state_.layout().ny, state_.plan().effects, state_.level(),
-            state_.settings().material, stepper_.totals(),  state_.fields().kept()};
+    SnapshotHeader header;
+    header.nx = state_.layout().nx;
+    header.ny = state_.layout().ny;
+    header.effects = state_.plan().effects;
+    header.level = state_.level();
+    header.material = state_.settings().material;
+    if (state_.settings().sources != state_.level_sources()) header.sources = state_.settings().sources;
+    header.totals = stepper_.totals();
+    header.fields = state_.fields().kept();
+    return header;
 }
 
 std::uint64_t Snapshots::most_bytes() const {
@@ -34,7 +43,11 @@ std::uint64_t Snapshots::most_bytes() const {
     for (const auto& row : field_table()) fields.push_back({std::string(row.name), row.role});
     auto largest = header();
     largest.fields = state_.fields().kept(fields);
-    return largest.bytes();
+    return largest.bytes() + MAX_SOURCES * (SOURCE_BYTES_MOST + sizeof(StepInputs::Total));
+}
+
+LiveSettings Snapshots::live_of(const SnapshotHeader& header) const {
+    return {header.material, header.sources.value_or(state_.level_sources())};
 }
 
 Status Snapshots::save(std::span<std::byte> to) {
@@ -68,7 +81,13 @@ Status Snapshots::check(const SnapshotHeader& header) const {
         return error(Code::bad_argument, "load: the snapshot is of a level with other settings (dt, material, method, sides or "
                                          "sources)");
     Settings settings = state_.settings();
-    settings.material = header.material;
+    settings.set_live(live_of(header));
+    if (settings.sources.size() > MAX_SOURCES)
+        return error(Code::bad_file, "snapshot: " + std::to_string(settings.sources.size()) + " sources are more than " +
+                                         std::to_string(MAX_SOURCES));
+    for (std::size_t n = 0; header.sources && n < settings.sources.size(); ++n)
+        if (auto status = check_source(settings, settings.sources[n], "snapshot: sources[" + std::to_string(n) + "]"); !status)
+            return error(Code::bad_file, status.message);
     auto effects = effects_required(settings, content_under(header.effects) | state_.content);
     if (!effects) return effects.status();
     if (const auto lacking = header.effects & ~(effects->mask | state_.plan().effects); lacking != 0) {
@@ -83,7 +102,7 @@ Status Snapshots::check(const SnapshotHeader& header) const {
                                              " bytes is not one of this world");
         }
     }
-    if (header.totals.inputs.size() != stepper_.totals().inputs.size())
+    if (header.totals.inputs.size() != StepInputs(settings).totals().size())
         return error(Code::bad_file, "snapshot: it has " + std::to_string(header.totals.inputs.size()) + " running totals");
     return ok_status();
 }
@@ -121,7 +140,7 @@ Status Snapshots::write_fields(const SnapshotHeader& header, std::span<const std
 // What the world must be able to hold: no more than now where the snapshot's material asks for all of its effects.
 Content Snapshots::content_for(const SnapshotHeader& header) const {
     Settings settings = state_.settings();
-    settings.material = header.material;
+    settings.set_live(live_of(header));
     const auto now = effects_required(settings, state_.content);
     return now && (header.effects & ~now->mask) == 0 ? state_.content : content_under(header.effects) | state_.content;
 }
@@ -135,7 +154,7 @@ Status Snapshots::load(std::span<const std::byte> from) {
     const std::string unbooked = unbooked_text(drift_of(*header, from, state_.settings()), state_.settings().method);
     const std::string no_roll_back = "load: no memory to keep the state for roll-back";
     const auto write = [&] { return write_fields(*header, from); };
-    if (auto status = stepper_.change(header->material, content_for(*header), write); !status) return status;
+    if (auto status = stepper_.change(live_of(*header), content_for(*header), write); !status) return status;
     if (auto status = stepper_.go_to(header->totals); !status) return status;
     if (!unbooked.empty()) state_.tell(1, unbooked);
     keep_for_roll_back(no_roll_back);
@@ -147,7 +166,7 @@ Result<Cost> Snapshots::cost(std::span<const std::byte> from) const {
     if (!header) return header.status();
     if (auto status = check(*header); !status) return status;
     Settings settings = state_.settings();
-    settings.material = header->material;
+    settings.set_live(live_of(*header));
     auto effects = effects_required(settings, content_for(*header));
     if (!effects) return effects.status();
     constexpr std::uint64_t always = 1 << 20;

@@ -47,6 +47,8 @@ class Snapshots {
     enum class Waits { none, step, device, worker }; // what the save in flight waits for
 
     SnapshotHeader header() const;
+    /// What a world has that takes the snapshot.
+    LiveSettings live_of(const SnapshotHeader& header) const;
     Status check(const SnapshotHeader& header) const;
     Status write_fields(const SnapshotHeader& header, std::span<const std::byte> from);
     Content content_for(const SnapshotHeader& header) const;

@@ -117,9 +117,9 @@ class Binding:
         if kind == "wadi_bool":
             return f"{pad}int {own};\n{note}{pad}public bool {name} {{ get {{ return {own} != 0; }} set {{ {own} = value ? 1 : 0; }} }}\n"
         if "count" in field:
-            if kind != "float" or field["count"] > len(AXES):
+            if kind not in ("float", "double") or field["count"] > len(AXES):
                 sys.exit(f"write_csharp.py: no way to write {field['name']}[{field['count']}] of {kind}")
-            return note + pad + "public float " + ", ".join(name + AXES[n] for n in range(field["count"])) + ";\n"
+            return note + pad + f"public {kind} " + ", ".join(name + AXES[n] for n in range(field["count"])) + ";\n"
         return f"{note}{pad}public {'IntPtr' if self.is_pointer(kind) else self.type(kind)} {name};\n"
 
     def default(self, struct):

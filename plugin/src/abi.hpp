@@ -33,6 +33,11 @@ inline Status named(const char* function, Status status) {
     return status;
 }
 
+/// A player that logs cannot hold.
+inline std::string player_text(std::uint64_t player) {
+    return "player: " + std::to_string(player) + " is outside 0 ... " + std::to_string(UINT32_MAX);
+}
+
 inline wadi_result bad_argument(const std::string& message) { return report(error(Code::bad_argument, message)); }
 
 #if defined(__GLIBCXX__)

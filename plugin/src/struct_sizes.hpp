@@ -31,6 +31,7 @@ WADI_FIRST_BYTES(wadi_body, samples)
 WADI_FIRST_BYTES(wadi_edit, stamp)
 WADI_FIRST_BYTES(wadi_device_values, row_pitch)
 WADI_FIRST_BYTES(wadi_cost, commands_per_step)
+WADI_FIRST_BYTES(wadi_source, player)
 
 /// Far above any struct's: a larger struct_size is memory that nobody has set.
 inline constexpr std::size_t most_struct_bytes = 4096;

@@ -23,6 +23,7 @@ Result<Edit> to_edit(const wadi_edit* edits, uint32_t index) {
         return refuse("kind: " + std::to_string(e.kind) + " is no wadi_edit_kind (0 ... 2)");
     if (e.layer < WADI_LAYER_TERRAIN || e.layer > WADI_LAYER_WATER)
         return refuse("layer: " + std::to_string(e.layer) + " is no wadi_layer (0 ... 2)");
+    if (e.player > UINT32_MAX) return refuse(player_text(e.player));
     Edit edit;
     edit.kind = static_cast<EditKind>(e.kind);
     edit.layer = static_cast<EditLayer>(e.layer);
@@ -39,6 +40,7 @@ Result<Edit> to_edit(const wadi_edit* edits, uint32_t index) {
     edit.velocity_x = e.velocity_x;
     edit.velocity_y = e.velocity_y;
     edit.stamp = e.stamp;
+    edit.player = static_cast<std::uint32_t>(e.player);
     return edit;
 }
 
@@ -69,6 +71,17 @@ Result<ValueSource> source_of(const wadi_device_values& values, const Region& re
     if (pitch % 4 != 0 || pitch < row || pitch > std::uint64_t{1} << 40)
         return refuse("row_pitch: " + std::to_string(pitch) + " is no multiple of 4 from " + std::to_string(row) + " to 2^40");
     return ValueSource{static_cast<compute::NativeBuffer::Kind>(kind), values.handle, values.offset, pitch};
+}
+
+wadi_result give_log(const char* function, const std::vector<std::byte>& bytes, void* data, size_t& size) {
+    const size_t room = size;
+    size = bytes.size();
+    if (data == nullptr) return report(ok_status());
+    if (room < bytes.size())
+        return bad_argument(std::string(function) + ": size is " + std::to_string(room) + ", the log needs " +
+                            std::to_string(bytes.size()) + " bytes");
+    std::memcpy(data, bytes.data(), bytes.size());
+    return report(ok_status());
 }
 
 } // namespace
@@ -184,16 +197,18 @@ wadi_result wadi_world_set_command_log(wadi_world_id id, int32_t on) {
 wadi_result wadi_world_get_commands(wadi_world_id id, void* data, size_t* size) {
     return with_world(__func__, id, [&](HostedWorld& hosted) {
         if (size == nullptr) return bad_argument("wadi_world_get_commands: size is NULL");
-        const auto bytes = hosted.world->commands().bytes();
-        const size_t room = *size;
-        *size = bytes.size();
-        if (data == nullptr) return report(ok_status());
-        if (room < bytes.size()) {
-            return bad_argument("wadi_world_get_commands: size is " + std::to_string(room) + ", the log needs " +
-                                std::to_string(bytes.size()) + " bytes");
-        }
-        std::memcpy(data, bytes.data(), bytes.size());
-        return report(ok_status());
+        return give_log("wadi_world_get_commands", hosted.world->commands().bytes(), data, *size);
+    });
+}
+
+wadi_result wadi_world_get_commands_since(wadi_world_id id, uint64_t step, uint64_t player, void* data, size_t* size) {
+    constexpr const char* function = "wadi_world_get_commands_since";
+    return with_world(function, id, [&](HostedWorld& hosted) {
+        if (size == nullptr) return bad_argument(std::string(function) + ": size is NULL");
+        const bool every = player == WADI_EVERY_PLAYER;
+        if (!every && player > UINT32_MAX) return bad_argument(std::string(function) + ": " + player_text(player));
+        const auto of = every ? std::nullopt : std::optional(static_cast<std::uint32_t>(player));
+        return give_log(function, hosted.world->commands().bytes(step, of), data, *size);
     });
 }
 

@@ -37,6 +37,7 @@ wadi_result wadi_world_get_info(wadi_world_id id, wadi_world_info* info) {
         copy_text(own.device_name, capabilities.name + " (" + capabilities.driver + ")");
         own.exact_float = capabilities.exact_float ? 1 : 0;
         own.warning_count = static_cast<uint32_t>(hosted.warnings.size());
+        own.source_count = hosted.world->settings().sources.size();
         own.origin_x = hosted.origin[0];
         own.origin_y = hosted.origin[1];
         give(info, own);

@@ -60,6 +60,11 @@ wadi_result wadi_world_get_view(wadi_world_id id, wadi_output output, wadi_outpu
     });
 }
 
+wadi_result wadi_world_wait_for_outputs(wadi_world_id id) {
+    constexpr const char* function = "wadi_world_wait_for_outputs";
+    return with_world(function, id, [&](HostedWorld& hosted) { return report(named(function, hosted.world->outputs().wait())); });
+}
+
 wadi_result wadi_world_get_host_output(wadi_world_id id, wadi_output output, const float** data, uint64_t* row_pitch,
                                        uint64_t* step) {
     constexpr const char* function = "wadi_world_get_host_output";

@@ -18,11 +18,12 @@ struct HostedWorld {
     std::string name;
     double duration = 0;
     std::vector<std::string> warnings;
-    std::array<double, 2> origin{}; // Level::origin
-    int threads = 0;                // of the host's work in its calls, ThreadLimit
-    std::optional<Cost> most;       // wadi_device_options.most
-    std::vector<Edit> edits;        // of the last wadi_world_edit: its room is used again
-    bool spoiled = false;           // the host's memory ran out in the middle of a call: what that left undone is not known
+    std::array<double, 2> origin{};                    // Level::origin
+    int threads = 0;                                   // of the host's work in its calls, ThreadLimit
+    std::optional<Cost> most;                          // wadi_device_options.most
+    std::vector<Edit> edits;                           // of the last wadi_world_edit: its room is used again
+    std::array<std::vector<wadi_sample>, 3> samples{}; // of the last wadi_world_get_source: rate, discharge, level
+    bool spoiled = false; // the host's memory ran out in the middle of a call: what that left undone is not known
 };
 
 enum class Entry { entered, unknown, busy };

@@ -157,6 +157,101 @@ TEST_CASE("a log that was played is remembered as if it had been called") {
     CHECK(third.hash() == first.hash());
 }
 
+TEST_CASE("edits of one step act by rising player, whoever was queued first, on every backend") {
+    auto dig = brush(WADI_LAYER_SAND, 6, 5, -1.5), heap = brush(WADI_LAYER_SAND, 6, 5, 0.5);
+    dig.step = heap.step = 3;
+    const auto run = [&](const char* backend, bool dig_first) {
+        const Site world(backend);
+        world.edit(dig_first ? dig : heap);
+        world.edit(dig_first ? heap : dig);
+        world.step(6);
+        return world.hash();
+    };
+    CHECK(run("cpu", true) != run("cpu", false)); // control: without players the order of the calls decides
+    dig.player = 2;
+    heap.player = 1;
+    const auto hash = run("cpu", false);
+    for (const auto& backend : wadi::test::abi_backends()) {
+        CAPTURE(backend);
+        CHECK(run(backend.c_str(), true) == hash);
+        CHECK(run(backend.c_str(), false) == hash);
+    }
+    dig.player = 0; // now it comes first
+    CHECK(run("cpu", false) != hash);
+    CHECK(run("cpu", false) == run("cpu", true));
+    // Edits of one player keep the order of the calls, also those of a log.
+    const Site first, again;
+    REQUIRE(wadi_world_set_command_log(first.id, 1) == WADI_OK);
+    for (auto e : {heap, dig, heap, dig}) {
+        e.player = 4294967295;
+        first.edit(e);
+    }
+    const auto log = first.commands();
+    REQUIRE(wadi_world_play_commands(again.id, log.data(), log.size()) == WADI_OK);
+    first.step(6);
+    again.step(6);
+    CHECK(first.hash() == again.hash());
+    heap.player = uint64_t{1} << 32;
+    CHECK(wadi_world_edit(first.id, &heap, 1) == WADI_ERROR_BAD_ARGUMENT);
+    CHECK(last_error().find("player: 4294967296 is outside 0 ... 4294967295") != std::string::npos);
+}
+
+TEST_CASE("commands since a step are those of later ones and of the player asked for, with the stamps that they use") {
+    const auto since = [](const Site& world, uint64_t step, uint64_t player) {
+        size_t size = 0;
+        REQUIRE(wadi_world_get_commands_since(world.id, step, player, nullptr, &size) == WADI_OK);
+        std::vector<unsigned char> bytes(size);
+        REQUIRE(wadi_world_get_commands_since(world.id, step, player, bytes.data(), &size) == WADI_OK);
+        return bytes;
+    };
+    const Site first, second;
+    for (const Site* each : {&first, &second}) REQUIRE(wadi_world_set_command_log(each->id, 1) == WADI_OK);
+    std::vector<float> large(4096, 0.5F);
+    uint32_t unused = 0, stamp = 0;
+    REQUIRE(wadi_world_create_stamp(first.id, 64, 64, large.data(), &unused) == WADI_OK);
+    const float image[2] = {0.5F, 0.25F};
+    REQUIRE(wadi_world_create_stamp(first.id, 2, 1, image, &stamp) == WADI_OK);
+    const auto queue = [&](const Site& world, uint64_t player, uint64_t step) {
+        auto e = brush(WADI_LAYER_SAND, 4 + static_cast<double>(player), 5, 0.3);
+        e.player = player;
+        e.step = step;
+        if (player == 1) {
+            e.kind = WADI_EDIT_STAMP;
+            e.x1 = e.x0 + 2;
+            e.y1 = e.y0 + 2;
+            e.stamp = stamp;
+        }
+        world.edit(e);
+    };
+    for (uint64_t turn = 1; turn <= 4; ++turn) { // two players, turns of 5 steps
+        queue(first, 1, 5 * turn);
+        queue(second, 2, 5 * turn);
+        const auto of_first = since(first, 5 * turn, 1), of_second = since(second, 5 * turn, 2);
+        CHECK(of_first.size() < 500); // not the large stamp
+        REQUIRE_MESSAGE(wadi_world_play_commands(first.id, of_second.data(), of_second.size()) == WADI_OK, last_error());
+        REQUIRE_MESSAGE(wadi_world_play_commands(second.id, of_first.data(), of_first.size()) == WADI_OK, last_error());
+        first.step(5);
+        second.step(5);
+    }
+    first.step(1);
+    second.step(1);
+    CHECK(first.hash() == second.hash());
+    CHECK(first.stats().sand_in > 2);
+    uint32_t next = 0; // four logs with one stamp made one
+    REQUIRE(wadi_world_create_stamp(second.id, 2, 1, image, &next) == WADI_OK);
+    CHECK(next == 2);
+    CHECK(since(first, 0, WADI_EVERY_PLAYER).size() < first.commands().size());
+    CHECK(since(first, 0, 1).size() < since(first, 0, WADI_EVERY_PLAYER).size());
+    CHECK(since(first, 16, WADI_EVERY_PLAYER).size() < since(first, 15, WADI_EVERY_PLAYER).size());
+    CHECK(since(first, 21, WADI_EVERY_PLAYER).size() == since(first, 0, 3).size()); // none
+    size_t size = 10;
+    std::vector<unsigned char> small(10);
+    CHECK(wadi_world_get_commands_since(first.id, 0, 1, small.data(), &size) == WADI_ERROR_BAD_ARGUMENT);
+    CHECK(size == since(first, 0, 1).size());
+    CHECK(wadi_world_get_commands_since(first.id, 0, uint64_t{1} << 32, nullptr, &size) == WADI_ERROR_BAD_ARGUMENT);
+    CHECK(wadi_world_get_commands_since(first.id, 0, 1, nullptr, nullptr) == WADI_ERROR_BAD_ARGUMENT);
+}
+
 TEST_CASE("going back drops what waits and what the log has of later steps") {
     const Site world;
     REQUIRE(wadi_world_set_command_log(world.id, 1) == WADI_OK);

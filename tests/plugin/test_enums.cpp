@@ -78,6 +78,16 @@ TEST_CASE("choices: each number that wadi.h lists is taken, no other") {
          }},
         {"edit.kind", "wadi_edit_kind", [&](int number) { return edit(number, WADI_LAYER_SAND); }},
         {"edit.layer", "wadi_layer", [&](int number) { return edit(WADI_EDIT_BRUSH, number); }},
+        {"source.shape", "wadi_source_shape",
+         [&](int number) {
+             auto source = wadi_default_source();
+             const wadi_sample rate{0, 0};
+             source.shape = static_cast<wadi_source_shape>(number);
+             source.to[0] = source.to[1] = 1;
+             source.rate = &rate;
+             source.rate_count = 1;
+             return wadi_world_set_source(world.id, 0, &source);
+         }},
         {"body.shape", "wadi_body_shape",
          [&](int number) {
              auto body = wadi_default_body();

@@ -23,7 +23,10 @@ struct Kept {
     double friction; // which a host had changed
 };
 // One row for each version since that of the first release.
-const Kept snapshots[] = {{4, 5135146086101446750u, 0.61}, {5, 5135146086101446750u, 0.61}, {6, 5135146086101446750u, 0.61}};
+const Kept snapshots[] = {{4, 5135146086101446750u, 0.61},
+                          {5, 5135146086101446750u, 0.61},
+                          {6, 5135146086101446750u, 0.61},
+                          {7, 3470966608497948279u, 0.61}};
 const uint32_t logs[] = {2, 3};
 constexpr uint64_t steps = 12;
 
@@ -46,7 +49,13 @@ AbiWorld kept_world(const std::string& backend) {
     return AbiWorld(id);
 }
 
-/// Every kind of command, for step 3 or later.
+uint64_t sources_of(const AbiWorld& world) {
+    auto info = wadi_default_world_info();
+    REQUIRE(wadi_world_get_info(world.id, &info) == WADI_OK);
+    return info.source_count;
+}
+
+/// Every kind of command but sources, for step 3 or later.
 void command(const AbiWorld& world) {
     const float image[] = {0.0F, 0.1F, 0.2F, 0.1F};
     uint32_t stamp = 0;
@@ -72,6 +81,15 @@ void command(const AbiWorld& world) {
     const float depths[] = {0.1F, 0.2F, 0.3F, 0.4F};
     REQUIRE(wadi_world_write_region(world.id, WADI_FIELD_SAND_DEPTH, &region, depths, 4) == WADI_OK);
     REQUIRE(wadi_world_trim(world.id) == WADI_OK);
+}
+
+/// A source more than the level has, from step 9 on; snapshots hold it since version 7.
+void add_source(const AbiWorld& world) {
+    auto tap = wadi_default_source();
+    const wadi_sample rate[] = {{0, 0.5}, {100, 0.25}};
+    tap.center[0] = 3, tap.center[1] = 2, tap.rate = rate, tap.rate_count = 2, tap.step = 9;
+    REQUIRE_MESSAGE(wadi_world_set_source(world.id, static_cast<uint32_t>(sources_of(world)), &tap) == WADI_OK,
+                    std::string(wadi_get_last_error()));
 }
 
 Bytes log_of(const AbiWorld& world) {
@@ -105,7 +123,11 @@ TEST_CASE("kept saves: those that this build writes are among them") {
     REQUIRE(wadi_world_set_command_log(world.id, 1) == WADI_OK);
     command(world);
     step(world, steps - 3);
-    const Bytes snapshot = saved(world), log = log_of(world);
+    const auto with_source = kept_world("cpu");
+    command(with_source);
+    add_source(with_source);
+    step(with_source, steps - 3);
+    const Bytes snapshot = saved(with_source), log = log_of(world);
     const uint32_t snapshot_version = version_of(snapshot), log_version = version_of(log);
     if (std::getenv("WADI_KEEP_SAVES") != nullptr) {
         const auto keep = [](const std::string& name, const Bytes& bytes) {
@@ -116,7 +138,7 @@ TEST_CASE("kept saves: those that this build writes are among them") {
         };
         keep(snapshot_name(snapshot_version), snapshot);
         keep(log_name(log_version), log);
-        MESSAGE("{" << snapshot_version << ", " << hash_of(world) << "u, " << friction_of(world) << "}");
+        MESSAGE("{" << snapshot_version << ", " << hash_of(with_source) << "u, " << friction_of(world) << "}");
     }
     CHECK_MESSAGE(std::end(snapshots)[-1].version == snapshot_version, "a snapshot of this version is kept, and has a row");
     CHECK_MESSAGE(std::end(logs)[-1] == log_version, "so has a command log");
@@ -134,6 +156,7 @@ TEST_CASE("kept saves: snapshots of each version load and are the state that the
             CHECK(hash_of(world) == kept.hash);
             CHECK(steps_of(world) == steps);
             CHECK(friction_of(world) == kept.friction);
+            CHECK(sources_of(world) == sources_of(kept_world("cpu")) + (kept.version >= 7 ? 1 : 0));
             auto stats = wadi_default_world_stats();
             REQUIRE(wadi_world_get_stats(world.id, &stats) == WADI_OK);
             CHECK(stats.sand_drift_quanta == 0); // its books came along

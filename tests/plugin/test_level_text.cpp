@@ -132,6 +132,40 @@ TEST_CASE("files outside a level's folder are asked for only where the host allo
     wadi_destroy_world(id);
 }
 
+TEST_CASE("texts of a level may stand in single quotes, and messages name the same places") {
+    const auto make = [](const std::string& text) {
+        const auto options = cpu_device();
+        wadi_world_id id{};
+        const auto result = wadi_create_world_from_level_text(text.c_str(), nullptr, nullptr, nullptr, &options, &id);
+        return std::pair(result, id);
+    };
+    const std::string in_double = R"({ "format_version": 1, "name": "it's", "dt": 0.02, // don't mind
+        "grid": { "nx": 8, "ny": 8, "dx": 0.5 }, /* '" */ "water": [ { "shape": "plane", "height": 1 } ] })";
+    const std::string in_single = R"({ 'format_version': 1, 'name': 'it\u0027s', 'dt': 0.02, // don't mind
+        "grid": { 'nx': 8, 'ny': 8, 'dx': 0.5 }, /* '" */ 'water': [ { 'shape': 'plane', 'height': 1 } ] })";
+    uint64_t hashes[2] = {};
+    for (const auto* text : {&in_double, &in_single}) {
+        const auto [result, id] = make(*text);
+        REQUIRE_MESSAGE(result == WADI_OK, std::string(wadi_get_last_error()));
+        const AbiWorld world(id);
+        auto info = wadi_default_world_info();
+        REQUIRE(wadi_world_get_info(id, &info) == WADI_OK);
+        CHECK(std::string(info.name) == "it's");
+        step(world, 5);
+        hashes[text == &in_single ? 1 : 0] = hash_of(world);
+    }
+    CHECK(hashes[0] == hashes[1]);
+    const auto refused = [&](const char* text, const char* why) {
+        CHECK(make(text).first == WADI_ERROR_BAD_FILE);
+        CHECK_MESSAGE(error_mentions(why), std::string(wadi_get_last_error()));
+    };
+    refused("{ 'name': 'a \"b\"' }", "line 1, column 14: a text in single quotes holds a double quote");
+    refused("{ 'name': 'a\\\"b', 'grid': { 'nx' 8 } }", "line 1, column");
+    refused("{ 'dt': 0.1,\n  'dt': 0.2 }", "\"dt\" is given twice");
+    refused("{ 'name': 'it", "line 1, column");
+    refused("{ 'name\": 1 }", "holds a double quote");
+}
+
 TEST_CASE("level overrides: fused_stages is 1, -1 or 0") {
     auto overrides = wadi_default_level_overrides();
     overrides.nx = overrides.ny = 40;

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <initializer_list>
 #include <map>
+#include <utility>
 
 using namespace plugin_test;
 
@@ -357,6 +358,67 @@ TEST_CASE("host copies arrive without waiting, and stay for two updates") {
     world.update(0);
     REQUIRE(wadi_world_get_host_output(world.id, WADI_OUTPUT_WATER_DEPTH, &data, nullptr, &step) == WADI_OK);
     CHECK(step > 1);
+}
+
+TEST_CASE("a host that waits for outputs gets those of its newest update, and keeps what it was given before") {
+    for (const auto& backend : backends()) {
+        for (const bool spread : {false, true}) {
+            CAPTURE(backend);
+            CAPTURE(spread);
+            const World world(backend, 96, 64);
+            CHECK(wadi_world_wait_for_outputs(world.id) == WADI_ERROR_BAD_ARGUMENT);
+            CHECK(error_mentions("no output was asked for"));
+            REQUIRE(wadi_world_set_outputs(world.id, WADI_OUTPUT_BIT(WADI_OUTPUT_FOAM) | WADI_OUTPUT_TILES_BIT) == WADI_OK);
+            REQUIRE(wadi_world_set_host_outputs(world.id, WADI_OUTPUT_BIT(WADI_OUTPUT_WATER_DEPTH)) == WADI_OK);
+            CHECK(wadi_world_wait_for_outputs(world.id) == WADI_NOT_READY);
+            auto settings = wadi_default_update_settings();
+            settings.max_steps_in_flight = 0;
+            settings.spread = spread ? 1 : 0;
+            REQUIRE(wadi_world_set_update_settings(world.id, &settings) == WADI_OK);
+            struct Given {
+                const float* data;
+                uint64_t pitch;
+                std::vector<float> then;
+            };
+            std::vector<Given> older, newer;
+            int late = 0;
+            for (int n = 0; n < 12; ++n) {
+                const auto frame = world.update(n == 7 ? 0 : 3 * step_time + 123);
+                older = std::exchange(newer, {});
+                for (const auto& given : older) CHECK(dense(world, given.data, given.pitch, 1, 0) == given.then);
+                const auto get = [&] {
+                    Given given{};
+                    uint64_t step = 0;
+                    const auto result =
+                        wadi_world_get_host_output(world.id, WADI_OUTPUT_WATER_DEPTH, &given.data, &given.pitch, &step);
+                    if (result == WADI_NOT_READY) return UINT64_MAX;
+                    REQUIRE(result == WADI_OK);
+                    given.then = dense(world, given.data, given.pitch, 1, 0);
+                    newer.push_back(given);
+                    return step;
+                };
+                if (n % 3 != 1) late += get() != frame.total_steps ? 1 : 0;
+                if (n % 4 == 3) continue; // and sometimes it does not wait
+                REQUIRE_MESSAGE(wadi_world_wait_for_outputs(world.id) == WADI_OK, std::string(wadi_get_last_error()));
+                CHECK(get() == frame.total_steps);
+                CHECK(view(world, WADI_OUTPUT_FOAM, WADI_OUTPUT_CURRENT).finished == 1);
+                uint64_t tiles_step = 0;
+                uint32_t count = 0;
+                REQUIRE(wadi_world_get_tiles(world.id, nullptr, &count, &tiles_step) == WADI_OK);
+                CHECK(tiles_step == frame.total_steps);
+                if (!spread) CHECK(newer.back().then == world.read(WADI_FIELD_WATER_DEPTH));
+                for (const auto& given : older) CHECK(dense(world, given.data, given.pitch, 1, 0) == given.then);
+            }
+            CHECK(late > 0);                                  // control: without waiting it is an older one
+            REQUIRE(wadi_world_step(world.id, 2) == WADI_OK); // beside the clock: published by an update
+            const auto frame = world.update(0);
+            REQUIRE(wadi_world_wait_for_outputs(world.id) == WADI_OK);
+            uint64_t step = 0;
+            const float* data = nullptr;
+            REQUIRE(wadi_world_get_host_output(world.id, WADI_OUTPUT_WATER_DEPTH, &data, nullptr, &step) == WADI_OK);
+            CHECK(step == frame.total_steps);
+        }
+    }
 }
 
 TEST_CASE("what is not asked for costs nothing, and nothing published changes the state") {

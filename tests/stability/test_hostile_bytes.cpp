@@ -88,7 +88,9 @@ TEST_CASE("a snapshot with contents that no world reaches is refused, whatever i
     refuses(place("stretch_xy"), infinite, "snapshot: stretch_xy: inf is outside");
     refuses(56, std::uint64_t{1} << 60, "steps are more than a world takes");
     refuses(64, std::int64_t{-5}, "its books begin with -5 quanta");
-    const std::size_t totals = 80 + 8 * material_keys().size();
+    const std::size_t totals = 80 + 8 * material_keys().size() + 8;
+    refuses(totals - 8, std::uint64_t{2}, "source 0 passes its end, or is none");
+    refuses(totals - 8, ~std::uint64_t{0}, "source 0 passes its end, or is none");
     refuses(totals, std::numeric_limits<double>::quiet_NaN(), "a running total of nan m");
     refuses(totals + 8, 1e6, "is not its 1e+06 quanta");
 }
@@ -166,6 +168,16 @@ TEST_CASE("a command log is refused for what its commands bring, not found out s
     };
     says(played({RegionWrite{3, EditLayer::water, {1, 1, 1, 1}, {none}}}), "a height of a region: nan is outside 0 ... 16");
     says(played({RegionWrite{3, EditLayer::sand, {1, 1, 1, 1}, {-1.0F}}}), "a height of a region: -1 is outside 0 ... 16");
+    Source tap;
+    tap.radius = 1;
+    tap.center = {2, 2};
+    tap.rate.samples = {{0, static_cast<double>(none)}};
+    says(played({SourceChange{3, 0, 0, tap}}), "play_commands: source.rate: nan is outside");
+    tap.rate.samples = {{0, 0.1}};
+    says(played({SourceChange{3, 0, 32, tap}}), "play_commands: index: 32 is outside 0 ... 31");
+    says(played({SourceChange{3, 0, 4000000000U, tap}}), "play_commands: index: 4e+09 is outside 0 ... 31");
+    says(played(std::vector<Command>(LOG_COMMANDS_MOST + 1, SourceChange{3, 0, 0, tap})),
+         "more than 256 commands but edits of step 3");
     const int key = find_material_key("friction");
     std::vector<Command> many(LOG_COMMANDS_MOST + 1, MaterialChange{3, key, 0.4});
     says(played(many), "more than 256 commands but edits of step 3 are more than a log may hold");

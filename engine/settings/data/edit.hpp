@@ -19,6 +19,7 @@ struct Edit {
     double amount = 0; // [m]; of a stamp: metres per unit of the image
     double strength = 0, velocity_x = 0, velocity_y = 0;
     std::uint32_t stamp = 0;
+    std::uint32_t player = 0; // edits of one step act by rising player, then in the order of the calls
 };
 
 /// A brush or push that a level asks for. It acts ahead of the step nearest to each of its times: `time`, and with `every`

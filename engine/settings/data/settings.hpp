@@ -87,6 +87,7 @@ struct Method {
 struct TimeSeries {
     std::vector<std::pair<double, double>> samples; // (time [s], value), times increasing
     double at(double time) const;
+    friend bool operator==(const TimeSeries&, const TimeSeries&) = default;
 };
 
 enum class SideKind : std::uint8_t { wall, discharge, level, outflow, brink, waves };
@@ -123,6 +124,14 @@ struct Source {
     TimeSeries discharge = {};               // volume per time, shared by the cells that it covers [m3/s]
     TimeSeries level = {}; // surface that a source of water holds in each cell [m]; rate or discharge is then the most it brings
     bool drain = false;    // with a level: takes away what stands above, too
+    friend bool operator==(const Source&, const Source&) = default;
+};
+
+/// What of its settings may change while a world runs.
+struct LiveSettings {
+    Material material;
+    std::vector<Source> sources;
+    friend bool operator==(const LiveSettings&, const LiveSettings&) = default;
 };
 
 /// What the level wants of one effect: derived from content, or forced.
@@ -160,6 +169,11 @@ struct Settings {
     /// Of active tiles [cells]; 0 = there are none.
     /// What the water's passes take for dt: the time step over method.water_substeps [s].
     double water_dt() const { return dt / method.water_substeps; }
+    LiveSettings live() const { return {material, sources}; }
+    void set_live(const LiveSettings& live) {
+        material = live.material;
+        sources = live.sources;
+    }
     int tile_side() const {
         return active_tiles == tiles_where_they_gain || active_tiles == tiles_where_cheap ? chosen_tile_side : active_tiles;
     }

@@ -144,9 +144,29 @@ Status check_side(const Settings& settings, std::size_t index) {
     return check_series(path + ".value", side.value, -most, most, HEIGHT_LIMIT);
 }
 
-Status check_source(const Settings& settings, std::size_t index) {
-    const Source& source = settings.sources[index];
-    const std::string path = "sources[" + std::to_string(index) + "]";
+/// "name: ... in cell (i, j)" for the first value outside least ... most; `limit` names where `most` comes from.
+Status check_field(const char* name, const std::vector<float>& field, const Grid& grid, double least, double most,
+                   const char* limit) {
+    const std::size_t cells = static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny);
+    if (!field.empty() && field.size() != cells)
+        return refuse(std::string(name) + ": " + std::to_string(field.size()) + " values for a grid of " +
+                      std::to_string(grid.nx) + " x " + std::to_string(grid.ny));
+    const std::size_t wrong = first_cell(field.size(), [&](std::size_t cell) {
+        const double value = static_cast<double>(field[cell]);
+        return !(value >= least && value <= most);
+    });
+    if (wrong < field.size()) {
+        const double value = static_cast<double>(field[wrong]);
+        const auto width = static_cast<std::size_t>(grid.nx);
+        return refuse(outside_text(name, value, least, most) + (std::fabs(value) > most ? limit : "") + " in cell (" +
+                      std::to_string(wrong % width) + ", " + std::to_string(wrong / width) + ")");
+    }
+    return ok_status();
+}
+
+} // namespace
+
+Status check_source(const Settings& settings, const Source& source, const std::string& path) {
     const double lengths[2] = {settings.grid.nx * settings.grid.dx, settings.grid.ny * settings.grid.dx};
     const bool box = source.shape == SourceShape::box;
     const double reach = source.shape == SourceShape::disc ? source.radius : 0;
@@ -191,28 +211,6 @@ Status check_source(const Settings& settings, std::size_t index) {
     return ok_status();
 }
 
-/// "name: ... in cell (i, j)" for the first value outside least ... most; `limit` names where `most` comes from.
-Status check_field(const char* name, const std::vector<float>& field, const Grid& grid, double least, double most,
-                   const char* limit) {
-    const std::size_t cells = static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny);
-    if (!field.empty() && field.size() != cells)
-        return refuse(std::string(name) + ": " + std::to_string(field.size()) + " values for a grid of " +
-                      std::to_string(grid.nx) + " x " + std::to_string(grid.ny));
-    const std::size_t wrong = first_cell(field.size(), [&](std::size_t cell) {
-        const double value = static_cast<double>(field[cell]);
-        return !(value >= least && value <= most);
-    });
-    if (wrong < field.size()) {
-        const double value = static_cast<double>(field[wrong]);
-        const auto width = static_cast<std::size_t>(grid.nx);
-        return refuse(outside_text(name, value, least, most) + (std::fabs(value) > most ? limit : "") + " in cell (" +
-                      std::to_string(wrong % width) + ", " + std::to_string(wrong / width) + ")");
-    }
-    return ok_status();
-}
-
-} // namespace
-
 Status validate(const Material& material) {
     Settings settings;
     settings.material = material;
@@ -229,7 +227,8 @@ Status validate(const Settings& settings) {
     if (settings.sources.size() > MAX_SOURCES)
         return refuse("sources: " + std::to_string(settings.sources.size()) + " are more than " + std::to_string(MAX_SOURCES));
     for (std::size_t n = 0; n < settings.sources.size(); ++n)
-        if (Status status = check_source(settings, n); !status) return status;
+        if (Status status = check_source(settings, settings.sources[n], "sources[" + std::to_string(n) + "]"); !status)
+            return status;
     if (Status status = check_series("rain", settings.rain, 0, RAIN_MOST); !status) return status;
     if (Status status = check_series("evaporation", settings.evaporation, 0, RAIN_MOST); !status) return status;
     if (settings.edits.size() > EDITS_MOST)

@@ -13,8 +13,8 @@ bool ever_above_zero(const TimeSeries& series) {
 
 bool source_adds(const Settings& s, SourceMaterial material) {
     return std::any_of(s.sources.begin(), s.sources.end(), [&](const Source& source) {
-        return source.material == material &&
-               (ever_above_zero(source.rate) || ever_above_zero(source.discharge) || !source.level.samples.empty());
+        const Content added = content_of(source);
+        return material == SourceMaterial::sand ? added.sand : added.water;
     });
 }
 
@@ -147,6 +147,11 @@ static_assert(rule_for_each(effects, effect_rows), "each row of effect_rows has 
 static_assert(rule_for_each(choices, choice_rows), "each row of choice_rows has a rule of its own here, in their order");
 
 } // namespace
+
+Content content_of(const Source& source) {
+    const bool adds = ever_above_zero(source.rate) || ever_above_zero(source.discharge) || !source.level.samples.empty();
+    return {adds && source.material == SourceMaterial::sand, adds && source.material == SourceMaterial::water};
+}
 
 std::span<const Effect> effect_table() { return effects; }
 

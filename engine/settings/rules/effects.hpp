@@ -17,6 +17,8 @@ struct Content {
     friend bool operator==(Content, Content) = default;
 };
 Content content_of(const InitialFields& fields);
+/// What a source may ever add.
+Content content_of(const Source& source);
 
 /// Whether an effect is on by itself, all that it needs being on, and why or why not.
 struct Why {

@@ -1,6 +1,7 @@
 #include "engine/step/plan/source_shapes.hpp"
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 namespace wadi {
 
@@ -113,6 +114,12 @@ std::vector<vec4> source_shapes(const Settings& settings) {
         shapes[at + 1] = {static_cast<float>(pieces.first[n]), 0, 0, 0};
     }
     return shapes;
+}
+
+bool same_source_shapes(const Settings& a, const Settings& b) {
+    if (a.sources.size() != b.sources.size()) return false;
+    const auto of_a = source_shapes(a), of_b = source_shapes(b); // boxes, their pieces and rows follow from the shapes
+    return std::memcmp(of_a.data(), of_b.data(), of_a.size() * sizeof(vec4)) == 0;
 }
 
 } // namespace wadi

@@ -24,5 +24,7 @@ SourcePieces source_pieces(const Settings& settings);
 /// Two vec4 per source, MAX_SOURCES of them: its shape; kind, material, box and 1 if it holds a level. Then two per box: i0, j0,
 /// i1, j1; its first piece.
 std::vector<vec4> source_shapes(const Settings& settings);
+/// Whether the sources of both lie in the same places, whatever they bring.
+bool same_source_shapes(const Settings& a, const Settings& b);
 
 } // namespace wadi

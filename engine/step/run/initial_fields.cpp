@@ -1,6 +1,5 @@
 #include "engine/step/run/initial_fields.hpp"
 #include "engine/settings/data/quanta.hpp"
-#include "engine/step/plan/source_shapes.hpp"
 #include "engine/step/plan/world_params.hpp"
 #include "engine/threads/bands.hpp"
 #include <numeric>
@@ -62,9 +61,7 @@ Status upload(WorldState& state, const InitialFields& fields) {
             if (auto status = state.fields().write_rows(layer + "_velocity_" + (along_x ? "x" : "y"), fill); !status)
                 return status;
         }
-    const auto shapes = state.fields().buffer("source_shapes");
-    if (shapes.id == 0) return ok_status();
-    return state.device().write(shapes, 0, std::as_bytes(std::span<const vec4>(source_shapes(state.settings()))));
+    return state.write_source_shapes();
 }
 
 } // namespace wadi

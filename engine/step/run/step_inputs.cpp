@@ -45,6 +45,13 @@ StepInputs::StepInputs(const Settings& settings)
             areas_[n] = covered_area(shapes[2 * n], settings.sources[n].shape == SourceShape::disc, settings.grid);
 }
 
+void StepInputs::carry_over(const StepInputs& before) {
+    const std::size_t sources = std::min(settings_.sources.size(), before.settings_.sources.size());
+    std::copy_n(before.totals_.begin(), sources, totals_.begin());
+    std::copy(before.totals_.begin() + static_cast<std::ptrdiff_t>(before.settings_.sources.size()), before.totals_.end(),
+              totals_.begin() + static_cast<std::ptrdiff_t>(settings_.sources.size()));
+}
+
 double StepInputs::rate_of(std::size_t n, double time) const {
     const auto& source = settings_.sources[n];
     if (source.discharge.samples.empty()) return source.rate.at(time);

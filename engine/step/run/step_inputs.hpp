@@ -31,6 +31,8 @@ class StepInputs {
     void undo() { totals_ = before_; }
     const Totals& totals() const { return totals_; }
     void set_totals(const Totals& totals) { totals_ = totals; }
+    /// Goes on from the totals of inputs that may have other sources.
+    void carry_over(const StepInputs& before);
 
   private:
     /// Of a water substep, counted from the world's beginning; all but the number of its step.
@@ -41,10 +43,10 @@ class StepInputs {
     vec4 source_input(std::size_t n, double time);
     void set_sides(StepInput& input, double time);
 
-    const Settings settings_;
-    const double quantum_;
-    const bool rain_is_mapped_;
-    const double rain_peak_;
+    Settings settings_;
+    double quantum_;
+    bool rain_is_mapped_;
+    double rain_peak_;
     std::vector<double> areas_; // covered by each source with a discharge [m2]
     Totals totals_, before_;    // before the last next()
 };

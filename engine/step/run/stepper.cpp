@@ -1,4 +1,5 @@
 #include "engine/step/run/stepper.hpp"
+#include "engine/step/plan/source_shapes.hpp"
 #include "engine/step/run/plan_change.hpp"
 #include "engine/step/run/step_number.hpp"
 
@@ -17,15 +18,20 @@ Status Stepper::record() {
     return status;
 }
 
-Status Stepper::change(const Material& material, Content content, const std::function<Status()>& then) {
+Status Stepper::change(const LiveSettings& live, Content content, const std::function<Status()>& then) {
     Settings settings = state_.settings();
-    settings.material = material;
+    settings.set_live(live);
     auto choice = effects_required(settings, content);
     if (!choice) return choice.status();
-    const bool same_mask = choice->mask == state_.effects().mask;
-    if (same_mask && material == state_.settings().material) {
+    const bool same_mask = choice->mask == state_.effects().mask, same_places = same_source_shapes(settings, state_.settings());
+    LiveSettings taken = live;
+    StepInputs inputs(settings);
+    inputs.carry_over(inputs_);
+    if (same_mask && same_places && live.material == state_.settings().material) {
         auto status = then ? then() : ok_status();
         if (!status) return status;
+        state_.set_live(std::move(taken));
+        inputs_ = std::move(inputs);
         state_.set_reasons(std::move(*choice));
         state_.content = content;
         return status;
@@ -34,13 +40,16 @@ Status Stepper::change(const Material& material, Content content, const std::fun
     if (auto status = timings_.collect(); !status) return status; // of the passes until now
     {
         PlanChange changing(state_, programs_);
-        state_.set_material(material);
+        state_.set_live(std::move(taken));
+        if (same_mask) state_.derive();
         auto status = same_mask ? ok_status() : state_.set_effects(*choice);
         if (status) status = record_programs(changing.had_parts());
         if (status && then) status = then();
+        if (status && !same_places) status = state_.write_source_shapes();
         if (!status) return status;
         changing.settle();
     }
+    inputs_ = std::move(inputs);
     state_.content = content;
     state_.set_reasons(std::move(*choice));
     timings_.forget();

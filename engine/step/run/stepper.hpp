@@ -40,14 +40,14 @@ class Stepper {
     /// Of the newest submission; null before the first.
     compute::Ticket ticket() const { return ticket_; }
 
-    /// Other numbers for sand and water from the next step on, and effects for what the world holds from now on; between two
-    /// steps only. Where that changes the mask, buffers are allocated and freed and everything is recorded anew, the state kept
-    /// to the bit; no pipeline is built where it does not. `then` runs under the new plan; nothing that it leaves undone can
-    /// fail. Errors: out_of_memory, not_ready (inside a recording), those of `then`. An error or an exception leaves all as it
-    /// was.
-    Status change(const Material& material, Content content, const std::function<Status()>& then = {});
-    Status set_content(Content content) { return change(state_.settings().material, content); }
-    Status set_material(const Material& material) { return change(material, state_.content); }
+    /// Other numbers for sand, water and sources from the next step on, and effects for what the world holds from now on; between
+    /// two steps only. Where that changes the mask, buffers are allocated and freed and everything is recorded anew, the state
+    /// kept to the bit; no pipeline is built where it does not; where only what sources bring changes, nothing is recorded. A
+    /// source in another place waits for the device. `then` runs under the new plan; nothing that it leaves undone can fail.
+    /// Errors: out_of_memory, not_ready (inside a recording), those of `then`. An error or an exception leaves all as it was.
+    Status change(const LiveSettings& live, Content content, const std::function<Status()>& then = {});
+    Status set_content(Content content) { return change(state_.settings().live(), content); }
+    Status set_material(const Material& material) { return change({material, state_.settings().sources}, state_.content); }
 
     /// For tests: with fewer rings of active tiles than the plan's reach calls for, bits must turn out wrong.
     Status set_tile_rings(int rings) {

@@ -1,6 +1,7 @@
 #include "engine/step/run/world_state.hpp"
 #include "engine/settings/data/rain_map.hpp"
 #include "engine/settings/rules/level_digest.hpp"
+#include "engine/step/plan/source_shapes.hpp"
 #include "engine/step/plan/world_params.hpp"
 #include <new>
 #include <utility>
@@ -9,7 +10,7 @@ namespace wadi {
 
 WorldState::WorldState(const Settings& settings, std::unique_ptr<compute::Device> device, compute::GroupSize group)
     : settings_(settings), layout_{settings.grid.nx, settings.grid.ny}, params_(derive_params(settings, 0)),
-      level_(level_digest(settings)), group_(group),
+      level_(level_digest(settings)), level_sources_(settings.sources), group_(group),
       device_(std::move(device), [this](const Status& lost) { tell(0, lost.message); }) {}
 
 void WorldState::tell(int severity, const std::string& text) const {
@@ -94,7 +95,8 @@ Status WorldState::set_effects(const EffectChoice& effects) {
 }
 
 void WorldState::go_back(Replaced&& before) noexcept {
-    settings_.material = before.material;
+    settings_.material = before.live.material;
+    settings_.sources = std::move(before.live.sources);
     params_ = before.params;
     effects_ = std::move(before.effects);
     plan_ = std::move(before.plan);
@@ -102,9 +104,15 @@ void WorldState::go_back(Replaced&& before) noexcept {
     fields_.go_back(std::move(before.fields));
 }
 
-void WorldState::set_material(const Material& material) {
-    settings_.material = material;
-    derive();
+void WorldState::set_live(LiveSettings&& live) noexcept {
+    settings_.material = live.material;
+    settings_.sources = std::move(live.sources);
+}
+
+Status WorldState::write_source_shapes() {
+    const auto shapes = fields_.buffer("source_shapes");
+    if (shapes.id == 0) return ok_status();
+    return device_.write(shapes, 0, std::as_bytes(std::span<const vec4>(source_shapes(settings_))));
 }
 
 void WorldState::derive() {

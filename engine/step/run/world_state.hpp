@@ -28,21 +28,28 @@ class WorldState {
     const WorldParams& params() const { return params_; }
     /// Of the settings that the world was made with: its level.
     std::uint64_t level() const { return level_; }
-    /// Other numbers for sand and water. The step programs must be recorded anew; no other program reads what depends on them.
-    void set_material(const Material& material);
+    /// Other numbers for sand, water and sources. The step programs must be recorded anew where those of sand, water or the
+    /// places of sources are others, and these written (write_source_shapes); no other program reads what depends on them.
+    void set_live(LiveSettings&& live) noexcept;
+    /// What follows from them under the plan in force.
+    void derive();
+    /// The places of the sources, for their stage. Waits for the device.
+    Status write_source_shapes();
+    /// The sources of the level, whatever they are now.
+    const std::vector<Source>& level_sources() const { return level_sources_; }
     /// Other reasons for the same mask.
     void set_reasons(EffectChoice&& effects) noexcept { effects_.reasons = std::move(effects.reasons); }
 
-    /// What set_effects() and set_material() replace.
+    /// What set_effects() and set_live() replace.
     struct Replaced {
-        Material material;
+        LiveSettings live;
         WorldParams params;
         EffectChoice effects;
         StepPlan plan;
         std::optional<StepPlan> other_plan;
         FieldStore::Replaced fields;
     };
-    Replaced now() const { return {settings_.material, params_, effects_, plan_, other_plan_, fields_.now()}; }
+    Replaced now() const { return {settings_.live(), params_, effects_, plan_, other_plan_, fields_.now()}; }
     void go_back(Replaced&& before) noexcept;
     const EffectChoice& effects() const { return effects_; }
     const StepPlan& plan() const { return plan_; }
@@ -92,13 +99,12 @@ class WorldState {
     bool may_choose_tiles() const;
     /// Of a pass of the plan.
     compute::GroupSize group_of(int stage, bool tiles) const;
-    /// Numbers that follow from the plan.
-    void derive();
 
     Settings settings_;
     const FieldLayout layout_;
     WorldParams params_;
     const std::uint64_t level_;
+    const std::vector<Source> level_sources_;
     EffectChoice effects_;
     StepPlan plan_;
     std::optional<StepPlan> other_plan_; // with the other choice of active tiles

@@ -213,6 +213,14 @@ namespace Wadi
         Push = 2,
     }
 
+    public enum SourceShape
+    {
+        Disc = 0,
+        Box = 1,
+        /// <summary>the cell that holds `center`</summary>
+        Point = 2,
+    }
+
     /// <summary>Outputs, one bit each.</summary>
     [Flags]
     public enum OutputMask : uint

@@ -196,10 +196,20 @@ namespace Wadi
         public static extern Result wadi_world_set_host_outputs(WorldId world, OutputMask mask);
 
         /// <summary>
+        /// Waits until what the newest update published is there for all to see: the next wadi_world_get_host_output, _get_tiles and
+        /// _get_dirty_regions give it, and views of the current set are `finished`. For programs that print, film or compute, and for
+        /// tests; a game goes on drawing what has arrived. Steps of wadi_world_step are published by an update, which may be of 0
+        /// nanoseconds. What those calls gave before stays valid as it would have. Waits: the steps. Errors: BAD_ARGUMENT (no output
+        /// was asked for), NOT_READY (no update has published yet).
+        /// </summary>
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        public static extern Result wadi_world_wait_for_outputs(WorldId world);
+
+        /// <summary>
         /// The newest copy that has arrived, usually of the update before. Cell (i, j) begins at byte j * row_pitch + i * bytes of a
-        /// cell; PACKED_HALF has four 16-bit floats there (const uint16_t*). The same for all calls between two updates; valid until
-        /// the second next update or until a mask changes. row_pitch [bytes] and step may be NULL. Errors: BAD_ARGUMENT (no such
-        /// output, not asked for), NOT_READY (none has arrived yet).
+        /// cell; PACKED_HALF has four 16-bit floats there (const uint16_t*). The same for all calls until an update or
+        /// wadi_world_wait_for_outputs; valid until the second next update or until a mask changes. row_pitch [bytes] and step may be
+        /// NULL. Errors: BAD_ARGUMENT (no such output, not asked for), NOT_READY (none has arrived yet).
         /// </summary>
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         public static extern Result wadi_world_get_host_output(WorldId world, Output output, float** data, ulong* rowPitch, ulong* step);
@@ -291,15 +301,16 @@ namespace Wadi
         public static extern Result wadi_buoyancy_force(Body* body, QueryResult* results, uint count, float* force, float* torque);
 
         /// <summary>
-        /// Queues `count` edits. Those of one step act in the order of the calls, ahead of that step; in the middle of a step that
-        /// runs in parts "the next one" is the one after it. Depths change by whole quanta and every quantum is in the ledger; what
-        /// finds no room below method.largest_height is refused and counted (wadi_world_stats.refused); no more is taken than there
-        /// is. Sand and water keep their depth where terrain changes, added sand is unstrained, or in balance with method.prestress.
-        /// An edit that adds a material the world has not held so far promotes it when its step comes: buffers are allocated and
-        /// programs recorded anew, once, and that step may wait for the device. Edits of the level itself act ahead of these and are
-        /// no part of the command log. wadi_world_load and every other way back in time drops the edits that wait: queue those of
-        /// later steps again. Errors: BAD_ARGUMENT, naming edit, field and range, or `effects` when the level forces off what an edit
-        /// adds; none is queued.
+        /// Queues `count` edits. Those of one step act by rising `player`, those of one player in the order of the calls, ahead of
+        /// that step: in lockstep give each player a number, and it does not matter whose edits reach a machine first. In the middle
+        /// of a step that runs in parts "the next one" is the one after it. Depths change by whole quanta and every quantum is in the
+        /// ledger; what finds no room below method.largest_height is refused and counted (wadi_world_stats.refused); no more is taken
+        /// than there is. Sand and water keep their depth where terrain changes, added sand is unstrained, or in balance with
+        /// method.prestress. An edit that adds a material the world has not held so far promotes it when its step comes: buffers are
+        /// allocated and programs recorded anew, once, and that step may wait for the device. Edits of the level itself act ahead of
+        /// these and are no part of the command log. wadi_world_load and every other way back in time drops the edits that wait:
+        /// queue those of later steps again. Errors: BAD_ARGUMENT, naming edit, field and range, or `effects` when the level forces
+        /// off what an edit adds; none is queued.
         /// </summary>
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         public static extern Result wadi_world_edit(WorldId world, Edit* edits, uint count);
@@ -350,6 +361,30 @@ namespace Wadi
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         public static extern Result wadi_world_trim(WorldId world);
 
+        /// <summary>
+        /// Source `index` as it is now, 0 ... wadi_world_info.source_count - 1: those of the level come first, in its order. The
+        /// series stay where they are until the next call of it on this world or wadi_destroy_world. step and player are 0. Errors:
+        /// BAD_ARGUMENT (no such source: the message says how many there are).
+        /// </summary>
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        public static extern Result wadi_world_get_source(WorldId world, uint index, RawSource* source);
+
+        /// <summary>
+        /// Makes source `index`, 0 ... 31, another one: moves it, opens or closes it, or adds one. It waits for its step like an
+        /// edit, with edits' rule of players, and acts ahead of them. To close a tap give it one sample of 0; sources are never taken
+        /// out. Those below `index` that the world lacks come along, closed. Series are copied. What the ledger has of the source
+        /// stays. The command log has it, snapshots and kept steps hold the sources of their moment; like edits, those that wait are
+        /// in none, and every way back in time drops them. Other values of the series cost a look at them. Another place, shape or
+        /// number of sources records the step anew once its own comes: some milliseconds, so move taps seldom, or pour with a brush
+        /// that follows. The first source of a material promotes the world, as an edit does. Waits: nothing; ahead of a step at which
+        /// a source comes to another place wadi_world_step and _update wait for the steps before. Errors: BAD_ARGUMENT, naming the
+        /// field and its range (a shape outside the grid, a rate beside a discharge, times that do not rise, a step that is done,
+        /// `effects` that the level forces off), NOT_SUPPORTED (the command log is on and full for that step); nothing is changed.
+        /// What only shows at its step, OUT_OF_MEMORY or NOT_READY (inside a recording), is an error of wadi_world_step or _update.
+        /// </summary>
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        public static extern Result wadi_world_set_source(WorldId world, uint index, RawSource* source);
+
         /// <summary>Lists the numbers of the material and their present values.</summary>
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         public static extern Result wadi_world_get_material(WorldId world, MaterialInfo* infos, uint* count);
@@ -369,9 +404,9 @@ namespace Wadi
         public static extern Result wadi_world_set_material(WorldId world, byte* name, double value);
 
         /// <summary>
-        /// Saves the state to memory, to the bit: fields, ledgers and running totals, not the level itself nor edits that wait.
-        /// *size: bytes at `data` in, bytes of the snapshot out; data may be NULL to ask the number. Waits: the steps; nothing to ask
-        /// the number. Errors: BAD_ARGUMENT (size too small).
+        /// Saves the state to memory, to the bit: fields, ledgers and running totals, not the level itself nor edits and sources that
+        /// wait. *size: bytes at `data` in, bytes of the snapshot out; data may be NULL to ask the number. Waits: the steps; nothing
+        /// to ask the number. Errors: BAD_ARGUMENT (size too small).
         /// </summary>
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         public static extern Result wadi_world_save(WorldId world, void* data, UIntPtr* size);
@@ -379,11 +414,11 @@ namespace Wadi
         /// <summary>
         /// Goes to a saved state: the world continues as the saved one would have, in every bit, on any backend that passes the
         /// exact-float test. The snapshot must be of a world of the same level settings (grid, dt, material, method, sides, sources,
-        /// rain); its material is taken as it was changed by then; initial fields may differ; effects that only this world has start
-        /// from zero, and the world is promoted to those that only the snapshot has. Edits that wait and steps kept for roll-back are
-        /// forgotten. Waits: the steps. Errors, the world as it was, also where the host's own memory ends: BAD_FILE (no snapshot, a
-        /// newer version, truncated, changed), BAD_ARGUMENT (of another level, or with effects that this world's level forces off),
-        /// OUT_OF_MEMORY.
+        /// rain); its material and sources are taken as they were changed by then; initial fields may differ; effects that only this
+        /// world has start from zero, and the world is promoted to those that only the snapshot has. Edits and sources that wait and
+        /// steps kept for roll-back are forgotten. Waits: the steps. Errors, the world as it was, also where the host's own memory
+        /// ends: BAD_FILE (no snapshot, a newer version, truncated, changed), BAD_ARGUMENT (of another level, or with effects that
+        /// this world's level forces off), OUT_OF_MEMORY.
         /// </summary>
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         public static extern Result wadi_world_load(WorldId world, void* data, UIntPtr size);
@@ -444,18 +479,18 @@ namespace Wadi
         public static extern Result wadi_world_get_rollback_steps(WorldId world, ulong* steps, uint* count);
 
         /// <summary>
-        /// Goes back to the newest kept step &lt;= `step`, written to *reached (may be NULL). Later kept steps and edits that wait
-        /// are forgotten. The world goes on from there as it did the first time, in every bit, given the same input. Steps with an
-        /// effect that the world has lost since are forgotten. Waits: nothing, but the steps where the material was another then.
-        /// Errors: BAD_ARGUMENT (no step that old is kept).
+        /// Goes back to the newest kept step &lt;= `step`, written to *reached (may be NULL). Later kept steps, edits and sources
+        /// that wait are forgotten. The world goes on from there as it did the first time, in every bit, given the same input. Steps
+        /// with an effect that the world has lost since are forgotten. Waits: nothing, but the steps where material or sources were
+        /// others then. Errors: BAD_ARGUMENT (no step that old is kept).
         /// </summary>
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         public static extern Result wadi_world_roll_back(WorldId world, ulong step, ulong* reached);
 
         /// <summary>
-        /// 1 = from now on remember every edit, written region, trim and change of the material with its step, in host memory that
-        /// grows; 0 = stop and drop the log. Off at first. Going back in time drops what was remembered for later steps. While it is
-        /// on wadi_world_write_region_from is refused.
+        /// 1 = from now on remember every edit, source, written region, trim and change of the material with its step, in host memory
+        /// that grows; 0 = stop and drop the log. Off at first. Going back in time drops what was remembered for later steps. While
+        /// it is on wadi_world_write_region_from is refused.
         /// </summary>
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         public static extern Result wadi_world_set_command_log(WorldId world, int on);
@@ -468,11 +503,20 @@ namespace Wadi
         public static extern Result wadi_world_get_commands(WorldId world, void* data, UIntPtr* size);
 
         /// <summary>
-        /// Queues the commands of a log in a world of the same level: a fresh one, or one that stands where logging began. After the
-        /// same number of steps, in frames of any rhythm, both have the same hash, on every backend that passes the exact-float test.
-        /// Waits: room for stamps; the steps where a written region or trim counts at once, as do later steps ahead of which one
-        /// counts. Errors, nothing queued: BAD_FILE (no log, a newer version, truncated, changed), BAD_ARGUMENT (of another level, or
-        /// with commands for steps already done).
+        /// wadi_world_get_commands, of the commands that count ahead of `step` or a later one and are of one player alone, with the
+        /// stamps that they use: what a lockstep game sends each turn, where every player queues for the steps of the turn after
+        /// next. Commands other than edits and sources are of player 0. Played commands are in the log, too: ask for your own player,
+        /// and none goes round twice. Errors: BAD_ARGUMENT (size too small; player above 4294967295 but WADI_EVERY_PLAYER).
+        /// </summary>
+        [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
+        public static extern Result wadi_world_get_commands_since(WorldId world, ulong step, ulong player, void* data, UIntPtr* size);
+
+        /// <summary>
+        /// Queues the commands of a log in a world of the same level: a fresh one, or one that stands where logging began. Stamps
+        /// that the world has are not made again. After the same number of steps, in frames of any rhythm, both have the same hash,
+        /// on every backend that passes the exact-float test. Waits: room for stamps; the steps where a written region or trim counts
+        /// at once, as do later steps ahead of which one counts. Errors, nothing queued: BAD_FILE (no log, a newer version,
+        /// truncated, changed), BAD_ARGUMENT (of another level, or with commands for steps already done).
         /// </summary>
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         public static extern Result wadi_world_play_commands(WorldId world, void* data, UIntPtr size);

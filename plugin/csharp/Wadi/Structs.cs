@@ -206,7 +206,7 @@ namespace Wadi
     public struct RawWorldArrays
     {
         uint structSize;
-        /// <summary>must not be NULL</summary>
+        /// <summary>must not be NULL; texts may stand in single quotes: "{'grid': {'nx': 64, 'ny': 64, 'dx': 0.5}, ...}"</summary>
         public IntPtr SettingsJson;
         /// <summary>of the arrays; must equal the settings' grid</summary>
         public int Nx;
@@ -278,6 +278,8 @@ namespace Wadi
         /// shows; every call counts from the corner [m]
         /// </summary>
         public double OriginY;
+        /// <summary>sources and drains that the world has now: wadi_world_get_source</summary>
+        public ulong SourceCount;
         /// <summary>A struct with the size that the library asks for and the header's defaults.</summary>
         public static unsafe WorldInfo Default
         {
@@ -643,6 +645,8 @@ namespace Wadi
         public double VelocityY;
         /// <summary>stamp: its number, from wadi_world_create_stamp</summary>
         public uint Stamp;
+        /// <summary>0 ... 4294967295: those of one step act by rising player, whoever was queued first; default 0</summary>
+        public ulong Player;
         /// <summary>A struct with the size that the library asks for and the header's defaults.</summary>
         public static unsafe Edit Default
         {
@@ -682,6 +686,72 @@ namespace Wadi
             {
                 var value = new DeviceValues();
                 value.structSize = (uint)sizeof(DeviceValues);
+                return value;
+            }
+        }
+    }
+
+    /// <summary>A value at a time. In a series it is linear between samples and constant outside; one sample is constant.</summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct Sample
+    {
+        /// <summary>simulated, as wadi_world_get_time counts [s]</summary>
+        public double Time;
+        public double Value;
+    }
+
+    /// <summary>
+    /// A source or drain of a world: a tap, a spring, a pump, a conveyor. Numbers as "sources" of level files have them.
+    /// </summary>
+    [StructLayout(LayoutKind.Sequential)]
+    public struct RawSource
+    {
+        uint structSize;
+        public SourceShape Shape;
+        int sand;
+        /// <summary>1 = of sand, 0 = of water</summary>
+        public bool Sand { get { return sand != 0; } set { sand = value ? 1 : 0; } }
+        int drain;
+        /// <summary>1 = with `level`: takes away what stands above, too</summary>
+        public bool Drain { get { return drain != 0; } set { drain = value ? 1 : 0; } }
+        /// <summary>x, y of point and disc [m]</summary>
+        public double CenterX, CenterY;
+        /// <summary>disc [m], above 0</summary>
+        public double Radius;
+        /// <summary>x, y of a box's south-west and north-east corner [m], `to` the greater</summary>
+        public double FromX, FromY;
+        /// <summary>x, y of a box's south-west and north-east corner [m], `to` the greater</summary>
+        public double ToX, ToY;
+        int setVelocity;
+        /// <summary>1 = `velocity` holds</summary>
+        public bool SetVelocity { get { return setVelocity != 0; } set { setVelocity = value ? 1 : 0; } }
+        /// <summary>
+        /// samples, 0 ... 4096; 0 = there is no such series. A source has a rate, a discharge or a level; with a level the other is
+        /// the most that it moves
+        /// </summary>
+        public uint RateCount;
+        public uint DischargeCount;
+        public uint LevelCount;
+        /// <summary>forced on the water inside while something is added [m/s], -1e4 ... 1e4</summary>
+        public double VelocityX, VelocityY;
+        /// <summary>depth per time [m/s], -1e4 ... 1e4; below 0 it takes away; 0 = off</summary>
+        public IntPtr Rate;
+        /// <summary>volume per time [m3/s], -1e9 ... 1e9, shared by the cells inside</summary>
+        public IntPtr Discharge;
+        /// <summary>of water: elevation of the surface that it holds in each cell [m]</summary>
+        public IntPtr Level;
+        /// <summary>wadi_world_set_source: the water step ahead of which it changes; 0 = the next one</summary>
+        public ulong Step;
+        /// <summary>as wadi_edit.player</summary>
+        public ulong Player;
+        /// <summary>A struct with the size that the library asks for and the header's defaults; texts stay null.</summary>
+        public static unsafe RawSource Default
+        {
+            get
+            {
+                var value = new RawSource();
+                value.structSize = (uint)sizeof(RawSource);
+                value.Radius = 1;
                 return value;
             }
         }

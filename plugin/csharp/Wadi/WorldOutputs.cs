@@ -85,6 +85,12 @@ namespace Wadi
             Check(Native.wadi_world_set_host_outputs(Id, mask));
         }
 
+        /// <summary>Waits until the newest update's outputs are in host memory: for programs that print or film.</summary>
+        public void WaitForOutputs()
+        {
+            Check(Native.wadi_world_wait_for_outputs(Id));
+        }
+
         /// <summary>The newest copy that has arrived, usually of the update before; false where none has.</summary>
         public bool TryGetHostOutput(Output output, out HostOutput host)
         {

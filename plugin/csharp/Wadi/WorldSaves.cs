@@ -131,6 +131,16 @@ namespace Wadi
             return data;
         }
 
+        /// <summary>Of the log what counts ahead of `step` or a later one, of one player or of every one: what a lockstep game sends.</summary>
+        public byte[] GetCommandsSince(ulong step, ulong player = ulong.MaxValue)
+        {
+            UIntPtr size;
+            Check(Native.wadi_world_get_commands_since(Id, step, player, null, &size));
+            var data = new byte[(ulong)size];
+            fixed (byte* to = data) Check(Native.wadi_world_get_commands_since(Id, step, player, to, &size));
+            return data;
+        }
+
         /// <summary>Queues the commands of a log in a world of the same level: after the same number of steps the hash is the same.</summary>
         public void PlayCommands(byte[] commands)
         {

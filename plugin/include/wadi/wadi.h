@@ -1,7 +1,7 @@
 /* Wadi: sand, water and wet sand on a height field. The plugin's whole interface, C99, in the order of use:
  *
- *   versions, errors . devices . worlds . steps and frames . outputs . reading . points and bodies . edits . material
- *   saving and going back . command log . looking inside
+ *   versions, errors . devices . worlds . steps and frames . outputs . reading . points and bodies . edits . sources
+ *   material . saving and going back . command log . looking inside
  *
  * Units: metres, seconds, kilograms. Fields are row-major, nx * ny floats, x fastest; row 0 is the south side (y = 0), column 0 the west
  * side (x = 0); z is up. "Elevation" and "surface" are heights above the level's zero, "depth" is how thick a layer is. H is the
@@ -286,7 +286,7 @@ WADI_API wadi_result wadi_get_level_text_cost(const char* json, wadi_read_file_c
  *  "roughness" and "rain_map" entries, which may name no files, and fields of nx * ny floats. NULL = zero everywhere. */
 typedef struct wadi_world_arrays {
     uint32_t struct_size;
-    const char* settings_json; /* must not be NULL */
+    const char* settings_json; /* must not be NULL; texts may stand in single quotes: "{'grid': {'nx': 64, 'ny': 64, 'dx': 0.5}, ...}" */
     int32_t nx, ny;            /* of the arrays; must equal the settings' grid */
     const float* terrain;      /* elevation of the ground [m] */
     const float* sand;         /* depth hs [m] */
@@ -327,6 +327,7 @@ typedef struct wadi_world_info {
     uint32_t warning_count;
     double origin_x, origin_y;    /* of the grid's south-west corner in the coordinates of the map that the level was cut from, 0 where
                                      none was: what a host shows; every call counts from the corner [m] */
+    uint64_t source_count;        /* sources and drains that the world has now: wadi_world_get_source */
 } wadi_world_info;
 static inline wadi_world_info wadi_default_world_info(void) {
     WADI_ZERO_STRUCT(wadi_world_info);
@@ -481,10 +482,17 @@ WADI_API wadi_result wadi_world_get_view(wadi_world_id world, wadi_output output
  *  They need not be in the mask of wadi_world_set_outputs.
  *  Waits and errors: those of wadi_world_set_outputs. */
 WADI_API wadi_result wadi_world_set_host_outputs(wadi_world_id world, wadi_output_mask mask);
+/** Waits until what the newest update published is there for all to see: the next wadi_world_get_host_output, _get_tiles and
+ *  _get_dirty_regions give it, and views of the current set are `finished`. For programs that print, film or compute, and for tests; a
+ *  game goes on drawing what has arrived. Steps of wadi_world_step are published by an update, which may be of 0 nanoseconds. What those
+ *  calls gave before stays valid as it would have.
+ *  Waits: the steps.
+ *  Errors: BAD_ARGUMENT (no output was asked for), NOT_READY (no update has published yet). */
+WADI_API wadi_result wadi_world_wait_for_outputs(wadi_world_id world);
 /** The newest copy that has arrived, usually of the update before.
  *  Cell (i, j) begins at byte j * row_pitch + i * bytes of a cell; PACKED_HALF has four 16-bit floats there (const uint16_t*). The
- *  same for all calls between two updates; valid until the second next update or until a mask changes. row_pitch [bytes] and step may be
- *  NULL.
+ *  same for all calls until an update or wadi_world_wait_for_outputs; valid until the second next update or until a mask changes.
+ *  row_pitch [bytes] and step may be NULL.
  *  Errors: BAD_ARGUMENT (no such output, not asked for), NOT_READY (none has arrived yet). */
 WADI_API wadi_result wadi_world_get_host_output(wadi_world_id world, wadi_output output, const float** data, uint64_t* row_pitch,
                                                 uint64_t* step);
@@ -714,6 +722,7 @@ typedef struct wadi_edit {
     double velocity_x;    /* [m/s], -1e4 ... 1e4, push: the body's velocity */
     double velocity_y;
     uint32_t stamp;       /* stamp: its number, from wadi_world_create_stamp */
+    uint64_t player;      /* 0 ... 4294967295: those of one step act by rising player, whoever was queued first; default 0 */
 } wadi_edit;
 static inline wadi_edit wadi_default_edit(void) {
     WADI_ZERO_STRUCT(wadi_edit);
@@ -724,8 +733,9 @@ static inline wadi_edit wadi_default_edit(void) {
 }
 
 /** Queues `count` edits.
- *  Those of one step act in the order of the calls, ahead of that step; in the middle of a step that runs in parts "the next one" is the
- *  one after it. Depths change by whole quanta and every quantum is in the ledger; what finds no room below method.largest_height is
+ *  Those of one step act by rising `player`, those of one player in the order of the calls, ahead of that step: in lockstep give each
+ *  player a number, and it does not matter whose edits reach a machine first. In the middle of a step that runs in parts "the next one"
+ *  is the one after it. Depths change by whole quanta and every quantum is in the ledger; what finds no room below method.largest_height is
  *  refused and counted (wadi_world_stats.refused); no more is taken than there is. Sand and water keep their depth where terrain changes,
  *  added sand is unstrained, or in balance with method.prestress. An edit that adds a material the world has not held so far promotes it
  *  when its step comes: buffers are allocated and programs recorded anew, once, and that step may wait for the device. Edits of the
@@ -787,6 +797,61 @@ WADI_API wadi_result wadi_world_prepare_effects(wadi_world_id world);
  *  Waits: the steps, and reads the depths. */
 WADI_API wadi_result wadi_world_trim(wadi_world_id world);
 
+/* ---- Sources ---- */
+
+/** A value at a time. In a series it is linear between samples and constant outside; one sample is constant. */
+typedef struct wadi_sample {
+    double time;                  /* simulated, as wadi_world_get_time counts [s] */
+    double value;
+} wadi_sample;
+typedef enum wadi_source_shape WADI_ENUM {
+    WADI_SOURCE_DISC = 0,
+    WADI_SOURCE_BOX = 1,
+    WADI_SOURCE_POINT = 2         /* the cell that holds `center` */
+} wadi_source_shape;
+/** A source or drain of a world: a tap, a spring, a pump, a conveyor. Numbers as "sources" of level files have them. */
+typedef struct wadi_source {
+    uint32_t struct_size;
+    wadi_source_shape shape;
+    wadi_bool sand;               /* 1 = of sand, 0 = of water */
+    wadi_bool drain;              /* 1 = with `level`: takes away what stands above, too */
+    double center[2];             /* x, y of point and disc [m] */
+    double radius;                /* disc [m], above 0 */
+    double from[2], to[2];        /* x, y of a box's south-west and north-east corner [m], `to` the greater */
+    wadi_bool set_velocity;       /* 1 = `velocity` holds */
+    uint32_t rate_count;          /* samples, 0 ... 4096; 0 = there is no such series. A source has a rate, a discharge or a level; with
+                                     a level the other is the most that it moves */
+    uint32_t discharge_count;
+    uint32_t level_count;
+    double velocity[2];           /* forced on the water inside while something is added [m/s], -1e4 ... 1e4 */
+    const wadi_sample* rate;      /* depth per time [m/s], -1e4 ... 1e4; below 0 it takes away; 0 = off */
+    const wadi_sample* discharge; /* volume per time [m3/s], -1e9 ... 1e9, shared by the cells inside */
+    const wadi_sample* level;     /* of water: elevation of the surface that it holds in each cell [m] */
+    uint64_t step;                /* wadi_world_set_source: the water step ahead of which it changes; 0 = the next one */
+    uint64_t player;              /* as wadi_edit.player */
+} wadi_source;
+static inline wadi_source wadi_default_source(void) {
+    WADI_ZERO_STRUCT(wadi_source);
+    value.radius = 1;
+    return value;
+}
+/** Source `index` as it is now, 0 ... wadi_world_info.source_count - 1: those of the level come first, in its order. The series stay where
+ *  they are until the next call of it on this world or wadi_destroy_world. step and player are 0.
+ *  Errors: BAD_ARGUMENT (no such source: the message says how many there are). */
+WADI_API wadi_result wadi_world_get_source(wadi_world_id world, uint32_t index, wadi_source* source);
+/** Makes source `index`, 0 ... 31, another one: moves it, opens or closes it, or adds one. It waits for its step like an edit, with edits'
+ *  rule of players, and acts ahead of them. To close a tap give it one sample of 0; sources are never taken out. Those below `index` that
+ *  the world lacks come along, closed. Series are copied. What the ledger has of the source stays. The command log has it, snapshots and
+ *  kept steps hold the sources of their moment; like edits, those that wait are in none, and every way back in time drops them.
+ *  Other values of the series cost a look at them. Another place, shape or number of sources records the step anew once its own comes:
+ *  some milliseconds, so move taps seldom, or pour with a brush that follows. The first source of a material promotes the world, as an
+ *  edit does.
+ *  Waits: nothing; ahead of a step at which a source comes to another place wadi_world_step and _update wait for the steps before.
+ *  Errors: BAD_ARGUMENT, naming the field and its range (a shape outside the grid, a rate beside a discharge, times that do not rise, a
+ *  step that is done, `effects` that the level forces off), NOT_SUPPORTED (the command log is on and full for that step); nothing is
+ *  changed. What only shows at its step, OUT_OF_MEMORY or NOT_READY (inside a recording), is an error of wadi_world_step or _update. */
+WADI_API wadi_result wadi_world_set_source(wadi_world_id world, uint32_t index, const wadi_source* source);
+
 /* ---- Material ---- */
 
 /** One number of the material. */
@@ -811,16 +876,16 @@ WADI_API wadi_result wadi_world_set_material(wadi_world_id world, const char* na
 
 /* ---- Saving and going back ---- */
 
-/** Saves the state to memory, to the bit: fields, ledgers and running totals, not the level itself nor edits that wait.
+/** Saves the state to memory, to the bit: fields, ledgers and running totals, not the level itself nor edits and sources that wait.
  *  *size: bytes at `data` in, bytes of the snapshot out; data may be NULL to ask the number.
  *  Waits: the steps; nothing to ask the number.
  *  Errors: BAD_ARGUMENT (size too small). */
 WADI_API wadi_result wadi_world_save(wadi_world_id world, void* data, size_t* size);
 /** Goes to a saved state: the world continues as the saved one would have, in every bit, on any backend that passes the exact-float
  *  test.
- *  The snapshot must be of a world of the same level settings (grid, dt, material, method, sides, sources, rain); its material is taken
- *  as it was changed by then; initial fields may differ; effects that only this world has start from zero, and the world is promoted to
- *  those that only the snapshot has. Edits that wait and steps kept for roll-back are forgotten.
+ *  The snapshot must be of a world of the same level settings (grid, dt, material, method, sides, sources, rain); its material and
+ *  sources are taken as they were changed by then; initial fields may differ; effects that only this world has start from zero, and the
+ *  world is promoted to those that only the snapshot has. Edits and sources that wait and steps kept for roll-back are forgotten.
  *  Waits: the steps.
  *  Errors, the world as it was, also where the host's own memory ends: BAD_FILE (no snapshot, a newer version, truncated, changed),
  *  BAD_ARGUMENT (of another level, or with effects that this world's level forces off), OUT_OF_MEMORY. */
@@ -861,15 +926,15 @@ WADI_API wadi_result wadi_world_set_rollback(wadi_world_id world, uint32_t frame
 /** Lists the steps that can be gone back to, oldest first. */
 WADI_API wadi_result wadi_world_get_rollback_steps(wadi_world_id world, uint64_t* steps, uint32_t* count);
 /** Goes back to the newest kept step <= `step`, written to *reached (may be NULL).
- *  Later kept steps and edits that wait are forgotten. The world goes on from there as it did the first time, in every bit, given the
- *  same input. Steps with an effect that the world has lost since are forgotten.
- *  Waits: nothing, but the steps where the material was another then.
+ *  Later kept steps, edits and sources that wait are forgotten. The world goes on from there as it did the first time, in every bit,
+ *  given the same input. Steps with an effect that the world has lost since are forgotten.
+ *  Waits: nothing, but the steps where material or sources were others then.
  *  Errors: BAD_ARGUMENT (no step that old is kept). */
 WADI_API wadi_result wadi_world_roll_back(wadi_world_id world, uint64_t step, uint64_t* reached);
 
 /* ---- Command log ---- */
 
-/** 1 = from now on remember every edit, written region, trim and change of the material with its step, in host memory that grows;
+/** 1 = from now on remember every edit, source, written region, trim and change of the material with its step, in host memory that grows;
  *  0 = stop and drop the log.
  *  Off at first. Going back in time drops what was remembered for later steps. While it is on wadi_world_write_region_from is refused. */
 WADI_API wadi_result wadi_world_set_command_log(wadi_world_id world, wadi_bool on);
@@ -877,8 +942,16 @@ WADI_API wadi_result wadi_world_set_command_log(wadi_world_id world, wadi_bool o
  *  *size: bytes at `data` in, bytes of the log out; data may be NULL to ask the number.
  *  Errors: BAD_ARGUMENT (size too small). */
 WADI_API wadi_result wadi_world_get_commands(wadi_world_id world, void* data, size_t* size);
+/** Every player, for wadi_world_get_commands_since. */
+#define WADI_EVERY_PLAYER 0xFFFFFFFFFFFFFFFFu
+/** wadi_world_get_commands, of the commands that count ahead of `step` or a later one and are of one player alone, with the stamps that
+ *  they use: what a lockstep game sends each turn, where every player queues for the steps of the turn after next. Commands other than
+ *  edits and sources are of player 0. Played commands are in the log, too: ask for your own player, and none goes round twice.
+ *  Errors: BAD_ARGUMENT (size too small; player above 4294967295 but WADI_EVERY_PLAYER). */
+WADI_API wadi_result wadi_world_get_commands_since(wadi_world_id world, uint64_t step, uint64_t player, void* data, size_t* size);
 /** Queues the commands of a log in a world of the same level: a fresh one, or one that stands where logging began.
- *  After the same number of steps, in frames of any rhythm, both have the same hash, on every backend that passes the exact-float test.
+ *  Stamps that the world has are not made again. After the same number of steps, in frames of any rhythm, both have the same hash, on
+ *  every backend that passes the exact-float test.
  *  Waits: room for stamps; the steps where a written region or trim counts at once, as do later steps ahead of which one counts.
  *  Errors, nothing queued: BAD_FILE (no log, a newer version, truncated, changed), BAD_ARGUMENT (of another level, or with commands for
  *  steps already done). */

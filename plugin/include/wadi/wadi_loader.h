@@ -31,6 +31,7 @@
     X(wadi_result, world_set_outputs, (wadi_world_id world, wadi_output_mask mask)) \
     X(wadi_result, world_get_view, (wadi_world_id world, wadi_output output, wadi_output_set set, wadi_output_view* view)) \
     X(wadi_result, world_set_host_outputs, (wadi_world_id world, wadi_output_mask mask)) \
+    X(wadi_result, world_wait_for_outputs, (wadi_world_id world)) \
     X(wadi_result, world_get_host_output, (wadi_world_id world, wadi_output output, const float** data, uint64_t* row_pitch, uint64_t* step)) \
     X(wadi_result, world_get_tiles, (wadi_world_id world, wadi_tile* tiles, uint32_t* count, uint64_t* step)) \
     X(wadi_result, world_get_dirty_regions, (wadi_world_id world, int64_t since_step, wadi_region* regions, uint32_t* count, uint64_t* step)) \
@@ -49,6 +50,8 @@
     X(wadi_result, world_write_region_from, (wadi_world_id world, wadi_field field, const wadi_region* region, const wadi_device_values* values)) \
     X(wadi_result, world_prepare_effects, (wadi_world_id world)) \
     X(wadi_result, world_trim, (wadi_world_id world)) \
+    X(wadi_result, world_get_source, (wadi_world_id world, uint32_t index, wadi_source* source)) \
+    X(wadi_result, world_set_source, (wadi_world_id world, uint32_t index, const wadi_source* source)) \
     X(wadi_result, world_get_material, (wadi_world_id world, wadi_material_info* infos, uint32_t* count)) \
     X(wadi_result, world_set_material, (wadi_world_id world, const char* name, double value)) \
     X(wadi_result, world_save, (wadi_world_id world, void* data, size_t* size)) \
@@ -63,6 +66,7 @@
     X(wadi_result, world_roll_back, (wadi_world_id world, uint64_t step, uint64_t* reached)) \
     X(wadi_result, world_set_command_log, (wadi_world_id world, wadi_bool on)) \
     X(wadi_result, world_get_commands, (wadi_world_id world, void* data, size_t* size)) \
+    X(wadi_result, world_get_commands_since, (wadi_world_id world, uint64_t step, uint64_t player, void* data, size_t* size)) \
     X(wadi_result, world_play_commands, (wadi_world_id world, const void* data, size_t size)) \
     X(wadi_result, world_get_commands_cost, (wadi_world_id world, const void* data, size_t size, wadi_cost* cost)) \
     X(size_t, world_describe_plan, (wadi_world_id world, char* text, size_t size)) \

@@ -114,7 +114,10 @@ bool begins_with(const Bytes& bytes, const char (&name)[9]) {
         log.remember(true);
         Edit edit;
         edit.x0 = edit.y0 = edit.radius = edit.amount = 0.5;
-        const bool noted = log.edit({&edit, 1}) &&
+        SourceChange tap;
+        tap.source.radius = 0.5;
+        tap.source.rate.samples = {{0, 0.1}, {1, 0}};
+        const bool noted = log.edit({&edit, 1}) && log.set_source(tap) &&
                            log.write_region(EditLayer::sand, {0, 0, 2, 1}, std::vector<float>(2, 0.25F)) &&
                            log.set_material(0, 999) && log.trim();
         if (!noted) std::abort();
