@@ -70,6 +70,11 @@ def check(site, wanted):
                 found.append(f"{name}: loads {address} from elsewhere")
             elif not there[0].is_file():
                 found.append(f"{name}: loads {address}, which is not there")
+    for menu in site.rglob("menudata.js"):  # doxygen's
+        for address in re.findall(r'url:"([^"]+)"', menu.read_text(encoding="utf-8")):
+            path, fragment = target(menu.resolve(), address)
+            if not path.is_file() or fragment and fragment not in pages[path].anchors:
+                found.append(f"{menu.relative_to(site)}: links to {address}, which is not there")
     for style in site.rglob("*.css"):
         for address in re.findall(r"url\(\s*['\"]?([^)'\"]+)", style.read_text(encoding="utf-8", errors="replace")):
             if re.match(r"https?:|//", address):
@@ -99,9 +104,10 @@ def control():
         (site / "sub/index.html").write_text('<h1 id="right">s</h1><a href="../index.html">up</a><link rel="stylesheet" href="../gone.css"><a href="#nowhere">n</a>')
         (site / "lonely.html").write_text("<p>alone</p>")
         (site / "style.css").write_text("a { background: url(https://example.org/y.png) }")
+        (site / "menudata.js").write_text('var menudata={children:[{text:"a",url:"sub/index.html#right"},{text:"b",url:"sub/none.html"}]}')
         seen, _, _ = check(site, ["index.html", "missing.html"])
     wanted = ("#wrong, where", "gone.html, which", "gone.png, which", "x.js from elsewhere", "gone.css, which", "#nowhere, where", "lonely.html: no link",
-              "missing.html: is not there", "y.png from elsewhere")
+              "missing.html: is not there", "y.png from elsewhere", "sub/none.html, which")
     missing = [sign for sign in wanted if sum(sign in breach for breach in seen) != 1]
     return missing + ([] if len(seen) == len(wanted) else seen)
 
