@@ -195,7 +195,10 @@ def check(root, work, library, said):
                     breach = compiled(text, language, where, work, library)
             elif language in ("cs", "csharp"):
                 breach = csharp(text, where, work) if shutil.which("mcs") else None
-            elif language in ("", "sh", "bash"):
+            elif language in ("", "sh", "bash", "console"):
+                if language == "console":  # commands behind "$ ", and what they print
+                    text = "\n".join(row[2:] if row.startswith("$ ") else "" for row in text.splitlines()) + "\n"
+                    breach = None if text.strip() else 'a console without a command behind "$ "'
                 found += [f"{name}:{line + 1 + number}: {what}" for number, what in shell(text, repository)]
             elif language == "json":
                 try:
@@ -203,7 +206,7 @@ def check(root, work, library, said):
                 except ValueError as error:
                     breach = str(error)
             elif language not in LEFT:
-                breach = f"no rule for the language {language}; there are c, cpp, cs, sh, json and, not looked into, {', '.join(sorted(LEFT))}"
+                breach = f"no rule for the language {language}; there are c, cpp, cs, sh, console, json and, not looked into, {', '.join(sorted(LEFT))}"
             if breach:
                 found.append(f"{where}: {breach}")
     return found, counts
@@ -242,6 +245,8 @@ CONTROLS = (  # (block, what must be said of it)
     ("```sh\nif true; then\n```\n", "syntax error"),
     ("```\ncmake --preset gone\n```\n", "no preset gone"),
     ("    no-such-program --fast\n", "no-such-program is no script"),
+    ("```console\n$ samples/there.sh --nowhere\nsome (words\n```\n", "knows no --nowhere"),
+    ("```console\nsome words\n```\n", "console without a command"),
     ("```json\n{ 1 }\n```\n", "property name"),
     ("```fortran\nend\n```\n", "no rule for the language fortran"),
 )
