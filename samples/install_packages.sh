@@ -9,10 +9,10 @@ packages_of[demo]="build-essential cmake ninja-build python3 libglm-dev nlohmann
 [[ ! -e /dev/nvidiactl ]] || packages_of[demo]+=" libegl1 libglvnd0 libgl1 libopengl0 libglx0 libgles2" # NVIDIA's Vulkan driver loads these
 packages_of[viewer]="${packages_of[demo]} ffmpeg" # for its videos
 packages_of[import]="${packages_of[demo]} libtiff-dev libtinyexr-dev" # TIFFs and EXRs in wadi-import
-# To run all tests: the viewer in a window, validation layers, the C# binding, arrays in Python.
-packages_of[tests]="${packages_of[viewer]} libtiff-dev libtinyexr-dev doctest-dev python3-numpy pkg-config vulkan-validationlayers xvfb twm xdotool mono-mcs mono-runtime"
-packages_of[contributing]="clang-format-14 pre-commit" # beside the tests: CONTRIBUTING.md
 packages_of[docs]="mkdocs mkdocs-material python3-pymdownx doxygen nodejs libjs-katex fonts-katex" # the site: plugin/docs
+# To run all tests: the site, the viewer in a window, validation layers, the C# binding, arrays in Python.
+packages_of[tests]="${packages_of[viewer]} ${packages_of[docs]} libtiff-dev libtinyexr-dev doctest-dev python3-numpy pkg-config vulkan-validationlayers xvfb twm xdotool mono-mcs mono-runtime"
+packages_of[contributing]="clang-format-14 pre-commit" # beside the tests: CONTRIBUTING.md
 # Lanes of tests/platforms, beside the tests.
 packages_of[windows]="g++-mingw-w64-x86-64-posix wine64"
 packages_of[aarch64]="g++-aarch64-linux-gnu qemu-user"
