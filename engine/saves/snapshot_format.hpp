@@ -1,6 +1,6 @@
 // A snapshot as bytes: what lies where, the checksum, and for which level it is.
 //
-// Little-endian, version 6:
+// Little-endian, version 7:
 //      0  char[8]  "WADISNAP"
 //      8  u32      version
 //     12  u32      number of fields
@@ -12,7 +12,7 @@
 //     48  u64      digest of the level's settings
 //     56  u64      steps
 //     64  i64[2]   quanta of sand and water that the ledger began with
-//     80  f64      per number of material_keys(): its value; 23 of them in version 4, 27 in 5
+//     80  f64      per number of material_keys(): its value; 23 of them in version 4, 27 in 5, 28 in 6
 //      .  f64[2]   per running total: metres, whole quanta
 //      .  per field: char[32] name, u64 bytes
 //      .  the fields in that order, as they lie on the device, ghosts and padding included
@@ -24,7 +24,7 @@
 
 namespace wadi {
 
-constexpr std::uint32_t snapshot_version = 6, oldest_snapshot_version = 4;
+constexpr std::uint32_t snapshot_version = 7, oldest_snapshot_version = 4;
 
 /// Bytes of what lies in memory already: they fit, also where size_t has 32 bits.
 constexpr std::size_t in_memory(std::uint64_t bytes) { return static_cast<std::size_t>(bytes); }

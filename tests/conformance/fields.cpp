@@ -22,7 +22,8 @@ template <class Real> const Field<Real>* cell_field(const Solver<Real>& s, const
         {"stress_xx", &s.sxx},           {"stress_xy", &s.sxy},
         {"stress_yy", &s.syy},           {"cohesive_share", &s.cohesive_share},
         {"roughness", &s.roughness},     {"mixed_diffused", &s.mixed},
-        {"wedge_depth", &s.wedge_depth},
+        {"wedge_depth", &s.wedge_depth}, {"water_in_pores", &s.pore_water},
+        {"open_sand", &s.open_sand},     {"felt_water", &s.felt_water},
     };
     const auto found = fields.find(base);
     return found == fields.end() ? nullptr : found->second;

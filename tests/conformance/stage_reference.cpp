@@ -21,6 +21,7 @@ template <class Real>
 constexpr Step<Real> steps[] = {
     {"apply_sources", &Solver<Real>::apply_sources, EFFECT_SOURCES},
     {"apply_rain", &Solver<Real>::apply_rain, EFFECT_RAIN},
+    {"open_pores", &Solver<Real>::open_pores, EFFECT_INFILTRATION},
     {"open_sides", &Solver<Real>::update_open_sides, EFFECT_OPEN_SIDES | EFFECT_WATER},
     {"split_water", &Solver<Real>::split_water, 0},
     {"diffuse_mixed_velocity", &Solver<Real>::diffuse_mixed_velocity, EFFECT_PUBLISHED | EFFECT_DIFFUSION},
@@ -32,6 +33,7 @@ constexpr Step<Real> steps[] = {
     {"compute_water_flux", &Solver<Real>::compute_water_flux, EFFECT_WATER},
     {"account_sides", nullptr, EFFECT_OPEN_SIDES},
     {"integrate_water_height", &Solver<Real>::integrate_water_height, EFFECT_WATER},
+    {"infiltrate", &Solver<Real>::infiltrate, EFFECT_INFILTRATION},
     {"measure_layer_exchange", &Solver<Real>::measure_layer_exchange, EFFECT_PUBLISHED | EFFECT_MIXTURE},
     {"extrapolate_velocity", &Solver<Real>::extrapolate_pure_velocity, EFFECT_PUBLISHED | EFFECT_WATER},
     {"backtrace_water_velocity", &Solver<Real>::backtrace_pure_velocity, EFFECT_PUBLISHED | EFFECT_WATER},

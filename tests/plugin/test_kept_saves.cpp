@@ -23,7 +23,10 @@ struct Kept {
     double friction; // which a host had changed
 };
 // One row for each version since that of the first release.
-const Kept snapshots[] = {{4, 5135146086101446750u, 0.61}, {5, 5135146086101446750u, 0.61}, {6, 5135146086101446750u, 0.61}};
+const Kept snapshots[] = {{4, 5135146086101446750u, 0.61},
+                          {5, 5135146086101446750u, 0.61},
+                          {6, 5135146086101446750u, 0.61},
+                          {7, 5135146086101446750u, 0.61}};
 const uint32_t logs[] = {2, 3};
 constexpr uint64_t steps = 12;
 
