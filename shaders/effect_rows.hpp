@@ -52,13 +52,16 @@ inline constexpr EffectRow choice_rows[] = {
      "numerical viscosity of water where it is compressed: bores do not ring"},
     {EFFECT_FLOW_FRICTION, "flow_friction", EFFECT_SAND | EFFECT_SLOPE_NORMAL,
      "friction of sand rises with its speed, and where it is thin"},
+    {EFFECT_INFILTRATION, "infiltration", EFFECT_MIXTURE | EFFECT_SLOPE_NORMAL,
+     "water that stands on sand enters its pores at a rate"},
 };
 
 inline constexpr std::uint32_t all_effects = (1u << std::size(effect_rows)) - 1;
 
 /// The paper's own stages know nothing of these.
 inline constexpr std::uint32_t never_published = EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION | EFFECT_RETENTION |
-                                                 EFFECT_SECOND_ORDER_SAND | EFFECT_SHOCK_VISCOSITY | EFFECT_FLOW_FRICTION;
+                                                 EFFECT_SECOND_ORDER_SAND | EFFECT_SHOCK_VISCOSITY | EFFECT_FLOW_FRICTION |
+                                                 EFFECT_INFILTRATION;
 
 /// The mask with all that its effects and choices need.
 constexpr std::uint32_t with_needs(std::uint32_t mask) {

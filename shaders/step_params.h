@@ -23,6 +23,7 @@
 #define FUSED_ROWS 16    // and along y
 #define MAX_WAKES 36     // rectangles of active tiles that one step wakes: all sources and all sides have room
 #define LEAST_GRAVITY_CAP 0.15f // what gravity_cap comes down to in fast water, NUMERICS 2.4b
+#define FULL_PORES (-1.0f) // water_in_pores of sand that is full under water, NUMERICS 2.24
 #define SAMPLE_FLOATS 12 // results per point of sample_points
 #define SOURCE_DISC 0
 #define SOURCE_BOX 1
@@ -98,6 +99,8 @@ struct WorldParams {
     float step_k;               // k of the whole step, N k [s/m]
     float inv_step_k2;          // 1/step_k^2 [m2/s2]
     float inv_substeps;         // N/T: water substeps per sand substep
+    float infiltration;         // dt K: depth that enters dry sand by its weight alone [m]
+    float suction;              // psi: head with which dry sand draws water in [m]
 
     // sand substep
     float ks;                   // dts/dx [s/m]

@@ -12,7 +12,9 @@ constexpr char magic[] = "WADISNAP";
 constexpr std::size_t fields_at = 12, material_at = 80, name_bytes = 32, field_bytes = name_bytes + 8, total_bytes = 16;
 
 // How many numbers of the material a version holds: keys are added ahead of those of lists, which are saturation's.
-std::size_t material_numbers(std::uint32_t version) { return version == 4 ? 23 : version == 5 ? 27 : material_keys().size(); }
+std::size_t material_numbers(std::uint32_t version) {
+    return version == 4 ? 23 : version == 5 ? 27 : version == 6 ? 28 : material_keys().size();
+}
 
 // The key of a number that a version holds.
 int material_key(std::uint32_t version, int number) {

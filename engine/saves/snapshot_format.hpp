@@ -12,7 +12,7 @@
 //     48  u64      digest of the level's settings
 //     56  u64      steps
 //     64  i64[2]   quanta of sand and water that the ledger began with
-//     80  f64      per number of material_keys(): its value; 23 of them in version 4, 27 in 5
+//     80  f64      per number of material_keys(): its value; 23 of them in version 4, 27 in 5, 28 in 6
 //      .  u64      0, or the number of sources and 1 where a host has changed those of the level; not in versions up to 6
 //      .  per source: source_format.hpp
 //      .  f64[2]   per running total: metres, whole quanta

@@ -23,6 +23,8 @@ template <class Real> const Field<Real>* cell_field(const Solver<Real>& s, const
         {"stress_yy", &s.syy},           {"cohesive_share", &s.cohesive_share},
         {"roughness", &s.roughness},     {"mixed_diffused", &s.mixed},
         {"wedge_depth", &s.wedge_depth}, {"rain_share", &s.rain_share},
+        {"water_in_pores", &s.pore_water}, {"open_sand", &s.open_sand},
+        {"felt_water", &s.felt_water},
     };
     const auto found = fields.find(base);
     return found == fields.end() ? nullptr : found->second;

@@ -45,6 +45,7 @@ std::vector<CaseSpec> list() {
     add("bounds", "33x17", ALL | SECOND, "thin_film", "default", 300);
     add("bounds", "33x17", ALL | SAND_SECOND, "random", "default", 300);
     add("bounds", "33x17", ALL, "random", "porous", 300);
+    add("bounds", "33x17", ALL | SOAKING, "random", "porous", 300);
     add("bounds", "33x17", EFFECT_SAND | ELASTIC | SLOPES | SAND_SECOND, "cliff", "default", 300);
     add("bounds", "33x17", WET | ELASTIC | EFFECT_COHESION | SECOND, "cliff", "plain", 300);
     add("bounds", "33x17", ALL_PUBLISHED, "random", "default", 300);
@@ -59,6 +60,7 @@ std::vector<CaseSpec> list() {
     add("lake_at_rest", "33x17", EFFECT_WATER | PUBLISHED, "lake_at_rest", "default", 200);
     add("lake_at_rest", "33x17", WET | SLOPES | EFFECT_RETENTION, "lake_at_rest", "default", 200);
     add("lake_at_rest", "33x17", WET | ELASTIC | EFFECT_COHESION | SLOPES | EFFECT_RETENTION, "lake_at_rest", "default", 200);
+    add("lake_at_rest", "33x17", WET | SLOPES | EFFECT_RETENTION | SOAKING, "lake_at_rest", "default", 200);
     add("lake_at_rest", "33x17", EFFECT_WATER | SECOND, "lake_at_rest", "default", 200);
     add("lake_at_rest", "33x17", WET | ELASTIC | EFFECT_COHESION | SECOND, "lake_at_rest", "default", 200);
     add("static_pile", "33x17", EFFECT_SAND | PUBLISHED, "static_pile", "default", 200);
@@ -80,6 +82,8 @@ std::vector<CaseSpec> list() {
         add(symmetry, "33x17", ALL, "random", "default", 40);
         add(symmetry, "33x17", ALL | SECOND, "random", "default", 40);
         add(symmetry, "33x17", ALL | FLOWING, "random", "default", 40);
+        add(symmetry, "33x17", ALL | SOAKING, "random", "porous", 40);
+        add(symmetry, "33x17", ALL | SECOND | SOAKING, "random", "default", 40);
         add(symmetry, "33x17", ALL, "random", "porous", 40);
         add(symmetry, "33x17", ALL | SECOND, "random", "porous", 40);
         add(symmetry, "33x17", ALL | SAND_SECOND, "random", "default", 40);

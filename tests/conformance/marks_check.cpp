@@ -31,7 +31,8 @@ struct Marks {
         const double water = has(EFFECT_WATER) ? at("water_height", i, j) : 0,
                      sand = has(EFFECT_SAND) ? at("sand_height", i, j) : 0;
         if (layer == 's') return sand;
-        const double mixed = has(EFFECT_MIXTURE) ? std::min(water, static_cast<double>(run.params.porosity) * sand) : 0;
+        double mixed = has(EFFECT_MIXTURE) ? std::min(water, static_cast<double>(run.params.porosity) * sand) : 0;
+        if (has(EFFECT_INFILTRATION) && at("water_in_pores", i, j) >= 0) mixed = std::min(mixed, at("water_in_pores", i, j));
         return layer == 'm' ? mixed : water - mixed;
     }
     static std::string velocity(char layer, char axis) {
@@ -197,7 +198,7 @@ Verdict check_limit_counts(const StageRun& run) {
                 counts[8] += column > most * (1 + 1e-6) ? 1 : 0;
                 unsure += std::abs(column - most) <= 1e-6 * most ? 1 : 0;
                 highest = std::max(highest, column);
-                const double depth = w - std::min(w, pore_room(p, s));
+                const double depth = std::max(standing_water<double>(run, i, j) - s, 0.0);
                 if (!water || depth <= static_cast<double>(p.dry_threshold)) continue;
                 top = std::max(top, limits.surface(i, j));
                 if (!beside(0, 12, 48)) continue;

@@ -66,6 +66,13 @@ Verdict check_side_ledger(const StageRun& run) {
 
 using Counts = std::array<Count, LEDGER_ENTRIES>;
 
+// The water of a cell that stands so deep: where pores hold less than they could (NUMERICS 2.24), the more of it on the sand.
+double wanted_water(const StageRun& run, int i, int j, double depth, double sand) {
+    const double held = wide(run.before("water_in_pores", i, j)), room = pore_room(run.params, sand);
+    const bool waits = (run.scene.effects & EFFECT_INFILTRATION) != 0 && held >= 0 && held < room && depth >= sand;
+    return waits ? depth - (sand - held) : water_standing(run.params, depth, sand);
+}
+
 // Adds what sources and sinks do to a cell, in their order, to the counts.
 void count_sources(const StageRun& run, int i, int j, Counts& counts) {
     const auto& settings = run.scene.settings;
@@ -83,9 +90,9 @@ void count_sources(const StageRun& run, int i, int j, Counts& counts) {
         const vec4& now = run.pilot.input.source[n];
         double depth = wide(now.x);
         if (!source.level.samples.empty())
-            depth = std::clamp(water_standing(run.params, std::max(wide(now.y) - wide(run.before("terrain", i, j)), 0.0), sand) -
-                                   water,
-                               source.drain ? -depth : 0.0, depth);
+            depth =
+                std::clamp(wanted_water(run, i, j, std::max(wide(now.y) - wide(run.before("terrain", i, j)), 0.0), sand) - water,
+                           source.drain ? -depth : 0.0, depth);
         if (depth > 0 && wide(run.before("terrain", i, j)) + water + sand + depth > wide(run.params.largest_height)) {
             counts[LEDGER_REFUSED].add(depth, run.params);
             continue;

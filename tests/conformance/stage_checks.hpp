@@ -28,8 +28,12 @@ double water_standing(const WorldParams& params, double depth, double sand);
 template <class Real> Real standing_water(const StageRun& run, int i, int j) {
     const auto sand = static_cast<double>(run.before("sand_height", i, j)),
                water = static_cast<double>(run.before("water_height", i, j));
-    const double room = pore_room(run.params, sand);
+    const double room = pore_room(run.params, sand), held = static_cast<double>(run.before("water_in_pores", i, j));
     if (water <= 0) return 0;
+    if ((run.scene.effects & EFFECT_INFILTRATION) != 0 && held >= 0 && held < room) { // 2.24: the rest stands on the sand
+        const double table = std::min(std::min(water, held) / static_cast<double>(run.params.porosity), sand);
+        return static_cast<Real>(water > held ? sand + (water - held) : table);
+    }
     return static_cast<Real>(water < room ? std::min(water / static_cast<double>(run.params.porosity), sand)
                                           : water + (sand - room));
 }

@@ -88,6 +88,8 @@ std::vector<CaseSpec> list() {
         const std::size_t rounds = masks.size() < 3 ? 2 * scenes.size() : masks.size() < 7 ? scenes.size() : scenes.size() / 2;
         std::size_t turn = 0;
         for (const std::uint32_t mask : masks) {
+            // What stands on slow sand is little beside what is in it: without a quantum that difference is rounding.
+            const bool little = stages[stage].name == "integrate_water_velocity" && (mask & EFFECT_INFILTRATION) != 0;
             const auto add = [&](const char* grid, const std::string& scene, const std::string& method, std::uint32_t more = 0) {
                 cases.push_back({std::string(stages[stage].name),
                                  {{"grid", grid}, {"effects", effects_text(mask | more)}, {"scene", scene}, {"method", method}}});
@@ -96,7 +98,7 @@ std::vector<CaseSpec> list() {
             // Open sides put velocities and water on the rim of every other stage as well.
             if ((mask & EFFECT_OPEN_SIDES) == 0) {
                 add("33x17", "random", "default", EFFECT_OPEN_SIDES);
-                add("5x7", "slope", "plain", EFFECT_OPEN_SIDES);
+                add("5x7", "slope", little ? "unsmoothed" : "plain", EFFECT_OPEN_SIDES);
             }
             for (std::size_t n = 0; n < rounds; ++n, ++turn) {
                 const std::string scene = scenes[(turn + 1) % scenes.size()],

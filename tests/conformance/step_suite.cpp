@@ -78,6 +78,8 @@ constexpr Row against_reference[] = {
     {"33x17", EFFECT_SAND | SLOPES | FLOWING, "slope", "default", 3},
     {"33x17", WET | ELASTIC | EFFECT_COHESION | SLOPES | EFFECT_RETENTION | FLOWING, "slope", "default", 2},
     {"33x17", WET | SLOPES | EFFECT_RETENTION, "dam_break", "porous", 2},
+    {"33x17", WET | SLOPES | EFFECT_RETENTION | SOAKING, "dam_break", "porous", 2},
+    {"33x17", WET | SLOPES | EFFECT_RETENTION | SOAKING, "slope", "default", 2},
     {"33x17", WET | ELASTIC | EFFECT_COHESION | SLOPES | EFFECT_RETENTION, "slope", "porous", 2},
     {"33x17", WET | SECOND, "slope", "porous", 3},
     {"33x17", ALL, "flat", "default", 2},

@@ -263,6 +263,10 @@ Case make_case(std::uint64_t seed) {
     }
     if (random.chance(0.5))
         s.material.porosity = random.pick({0.4, 0.375, random.real(0.01, 1), random.log(0.01, 0.05), 1 - random.log(1e-7, 1e-2)});
+    if (random.chance(0.3)) {
+        s.material.conductivity = random.pick({random.log(1e-9, 1e-5), random.log(1e-5, 1e-2), random.log(1e-2, 10)});
+        s.material.suction = random.pick({0.0, random.log(1e-6, 1e-1), random.real(0, 10)});
+    }
     for (Source& source : s.sources) {
         if (source.material != SourceMaterial::water || !random.chance(0.3)) continue;
         source.level = {{{0, std::min(random.real(-0.2, 2) * size, s.method.largest_height)}}};

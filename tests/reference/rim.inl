@@ -120,7 +120,7 @@ template <class Real> Real Solver<Real>::clear_depth(std::size_t N, Real level) 
 
 /// What the velocity out of the domain becomes beside such a surface: 2.4e, c and d.
 template <class Real> Real Solver<Real>::beside_level(std::size_t N, Real level, Real u) const {
-    const Real eta_in = water_surface(N);
+    const Real eta_in = (terrain[N] + seen_depth(N));
     const Real eta_out = std::max(level, terrain[N]);
     if (std::abs(eta_in - eta_out) <= P.rest_surface * lifts(N, N) && std::abs(u) <= P.rest_velocity * lifts(N, N))
         return Real(0);
@@ -143,7 +143,7 @@ template <class Real> Real Solver<Real>::level_face(const Axis& ax, int a, int b
     const Real outside = std::max(level - terrain[N], Real(0));
     const Real ghost = clear_depth(N, level);
     ghost_water.along(ax)[f] = ghost;
-    const Real push = P.k * water_gravity(std::abs(own), std::max(standing(N), outside)) * (standing(N) - outside);
+    const Real push = P.k * water_gravity(std::abs(own), std::max(seen_depth(N), outside)) * (seen_depth(N) - outside);
     const Real depth = mean(pure[N], ghost);
     Real moved = own + push;
     if (depth > Real(0)) {
@@ -170,9 +170,9 @@ template <class Real> Real Solver<Real>::waves_face(const Axis& ax, int a, int b
     const Real outside = std::max(level - terrain[N], Real(0));
     const Real ghost = clear_depth(N, level);
     ghost_water.along(ax)[f] = ghost;
-    const Real g = water_gravity(std::abs(next), std::max(standing(N), outside));
+    const Real g = water_gravity(std::abs(next), std::max(seen_depth(N), outside));
     const auto wave = [&](Real depth) { return std::sqrt(g * std::max(depth, Real(0))); };
-    const Real rise = minmod(pure[N] - pure[M], water_surface(N) - water_surface(M));
+    const Real rise = minmod(pure[N] - pure[M], (terrain[N] + seen_depth(N)) - (terrain[M] + seen_depth(M)));
     const Real arriving = std::min(P.k * (wave(pure[N]) + std::max(next, Real(0))), Real(1));
     const Real c_in = wave(pure[N] + (Real(1) - arriving) * rise / Real(2));
     const Real c_still = wave(clear_depth(N, still));
@@ -183,11 +183,11 @@ template <class Real> Real Solver<Real>::waves_face(const Axis& ax, int a, int b
     const Real swing = Real(2) * c_in + Real(2) * c_still - Real(4) * c_wave;
     const Real moved = shoots ? next : stream + swing;
     const bool rests =
-        std::abs(standing(N) - outside) <= P.rest_surface * lifts(N, N) && std::abs(stream) <= P.rest_velocity * lifts(N, N);
+        std::abs(seen_depth(N) - outside) <= P.rest_surface * lifts(N, N) && std::abs(stream) <= P.rest_velocity * lifts(N, N);
     u[f] = rests ? Real(0) : outward * beside_level(N, level, moved);
     const Real share = absorbs > Real(0) ? std::min(P.dt / absorbs, Real(0.5)) : P.k * c_still / (Real(4) * Real(cells));
     if (!rests) stream = clamped(shoots ? next - swing : stream + share * Real(2) * (c_in - c_wave), P.clamp);
-    return P.k * g * (standing(N) - outside);
+    return P.k * g * (seen_depth(N) - outside);
 }
 
 /// The water inside the sand of the cell beside such a reservoir (2.4e, c, d) gains as much as the water above it, less the drag
@@ -199,7 +199,7 @@ template <class Real> void Solver<Real>::seep(const Axis& ax, int a, int b, Real
     const std::size_t f = ax.face(a, b);
     const std::size_t N = ax.cell(far_end ? a - 1 : 0, b);
     const Real outside = std::max(level - terrain[N], Real(0));
-    const Real rise = water_surface(N) - (terrain[N] + outside);
+    const Real rise = (terrain[N] + seen_depth(N)) - (terrain[N] + outside);
     Real& um = mixed_velocity.along(ax)[f];
     const Real own = outward * um;
     const Real pushed = own + gain;
@@ -210,14 +210,15 @@ template <class Real> void Solver<Real>::seep(const Axis& ax, int a, int b, Real
             const Real drains = std::clamp((depth / sand[N] - P.retained) / (Real(1) - P.retained), Real(0), Real(1));
             return drains * drains * drains;
         };
-        free = pushed > Real(0)   ? through(standing(N))
+        free = pushed > Real(0)   ? through(seen_depth(N))
                : pushed < Real(0) ? through(outside)
-                                  : std::max(through(standing(N)), through(outside));
+                                  : std::max(through(seen_depth(N)), through(outside));
     }
     Real u = Real(0);
     if (free > Real(0)) u = pushed / (Real(1) + P.dt * P.exchange / (P.rho_w * free));
     if (std::abs(rise) <= P.rest_surface * lifts(N, N) && std::abs(own) <= P.rest_velocity * lifts(N, N)) u = Real(0);
-    if (blocked(mixed[N], P.porosity * std::min(outside, sand[N]), water_surface(N), terrain[N] + outside, P.eps)) u = Real(0);
+    if (blocked(mixed[N], P.porosity * std::min(outside, sand[N]), (terrain[N] + seen_depth(N)), terrain[N] + outside, P.eps))
+        u = Real(0);
     um = clamped(outward * u, P.clamp);
     if (outside - sand[N] > P.eps || sand[N] <= P.eps) return;
     ghost_water.along(ax)[f] = water_at_level(N, level);
@@ -284,7 +285,7 @@ template <class Real> void Solver<Real>::run_off(const Axis& ax, bool far_end, i
         };
     const std::size_t N = cell(0), M = cell(1), F = cell(2);
     const Real next = speed(1), runs = std::max(next, Real(0));
-    const Real g = water_gravity(std::abs(next), std::max(standing(N), standing(M)));
+    const Real g = water_gravity(std::abs(next), std::max(seen_depth(N), seen_depth(M)));
     const auto bed = [&](std::size_t c) { return terrain[c] + (has(EFFECT_MIXTURE) ? sand[c] : Real(0)); };
     const auto ratio = [](Real a, Real over) { return over > Real(0) ? a / over : Real(0); };
     const Real h = pure[N], before = pure[M];
@@ -299,11 +300,11 @@ template <class Real> void Solver<Real>::run_off(const Axis& ax, bool far_end, i
     const Real steady = bed(M) + before - falls - bed(N);
     const Real narrowed = std::clamp(ratio(before, std::max(steady, P.eps)), Real(0.25), Real(4));
     // 2: the wave.
-    const Real fall = water_surface(N) - water_surface(M);
+    const Real fall = (terrain[N] + seen_depth(N)) - (terrain[M] + seen_depth(M));
     const bool rests = std::abs(fall) <= P.rest_surface * lifts(N, M) && std::abs(next) <= P.rest_velocity * lifts(N, M);
     const Real head = Real(1) + std::min(ratio(runs, c), Real(1));
     const Real rise = rests ? Real(0) : (fall + falls) / head;
-    const Real behind = cells > 2 ? (water_surface(M) - (bed(F) + pure[F]) + falls) / head : rise;
+    const Real behind = cells > 2 ? ((terrain[M] + seen_depth(M)) - (bed(F) + pure[F]) + falls) / head : rise;
     Real wave = (Real(1) - std::min(P.k * (c + runs), Real(1))) * (rise - behind) / Real(2);
     wave = rise + std::clamp(wave, -std::abs(rise) / Real(2), std::abs(rise) / Real(2));
     wave = std::clamp(wave, -h / Real(2), h / Real(2));
@@ -341,7 +342,7 @@ template <class Real> void Solver<Real>::fall(const Axis& ax, bool far_end, int 
     const Real outward = far_end ? Real(1) : Real(-1);
     Field<Real>& u = pure_velocity.along(ax);
     const Real next = ax.along() > 1 ? outward * u[ax.face(far_end ? ax.along() - 1 : 1, b)] : Real(0);
-    const Real critical = std::sqrt(water_gravity(std::abs(next), standing(N)) * pure[N]);
+    const Real critical = std::sqrt(water_gravity(std::abs(next), seen_depth(N)) * pure[N]);
     const std::size_t f = ax.face(far_end ? ax.along() : 0, b);
     u[f] = outward * std::clamp(std::max(next, critical), Real(0), P.clamp);
     if (has(EFFECT_SECOND_ORDER_WATER)) ghost_water.along(ax)[f] = pure[N];
@@ -375,7 +376,8 @@ template <class Real> void Solver<Real>::update_side(const Side& side, const Axi
             const Real critical = P.gravity > Real(0) ? std::cbrt(q * q / P.gravity) : Real(0);
             const Real fastest = given * P.k / P.alpha;
             const bool shooting = side.depth > 0 && static_cast<Real>(side.depth) < critical;
-            const Real depth = std::max(shooting ? static_cast<Real>(side.depth) : std::max(standing(inner), critical), fastest);
+            const Real depth =
+                std::max(shooting ? static_cast<Real>(side.depth) : std::max(seen_depth(inner), critical), fastest);
             ghost_water.along(ax)[f] = depth;
             if (depth > Real(0)) pure_velocity.along(ax)[f] = -outward * given / depth;
         } else if (side.has_level()) {

@@ -12,7 +12,7 @@ template <class Real> void Solver<Real>::compute_sand_flux() { limited_flux(Laye
 template <class Real> void Solver<Real>::integrate_sand_height() {
     const Axis x = axis(false);
     sand_before = sand;
-    for (std::size_t c = 0; c < cells(); ++c) mixed_before[c] = std::min(water[c], pore_room(sand[c]));
+    for (std::size_t c = 0; c < cells(); ++c) mixed_before[c] = in_pores(c);
     for (int j = 0; j < x.ny; ++j)
         for (int i = 0; i < x.nx; ++i) {
             Real& h = sand[x.cell(i, j)];

@@ -51,6 +51,8 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
     // 2.23: one layer of water, and the paper, know no pores; as large as the sand they leave no grains.
     const double porosity = has(EFFECT_MIXTURE) && !has(EFFECT_PUBLISHED) ? material.porosity : 1;
     P.porosity = static_cast<Real>(static_cast<float>(porosity));
+    P.conductivity = static_cast<Real>(material.conductivity);
+    P.suction = static_cast<Real>(material.suction);
     P.displaces = static_cast<Real>(porosity < 1 ? 1 - porosity : 1);
     P.pressed = static_cast<Real>(has(EFFECT_DRAG) ? 1 - porosity : 0);
     const double measured = has(EFFECT_SLOPE_NORMAL) ? 0.78 : 1;
@@ -120,7 +122,10 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
                                &syy,
                                &rotation,
                                &cohesive_share,
-                               &wedge_depth})
+                               &wedge_depth,
+                               &pore_water,
+                               &open_sand,
+                               &felt_water})
         field->assign(nx * ny, Real(0));
     Vxx.assign(nx * ny, Real(1));
     Vyy.assign(nx * ny, Real(1));
@@ -201,6 +206,8 @@ template <class Real> void Solver<Real>::load(const InitialFields& fields) {
     if (has(EFFECT_SAND)) velocities(fields.sand_velocity_x, fields.sand_velocity_y, sand_velocity);
     if (has(EFFECT_WATER)) velocities(fields.velocity_x, fields.velocity_y, pure_velocity);
     if (has(EFFECT_MIXTURE)) velocities(fields.velocity_x, fields.velocity_y, mixed_velocity);
+    for (std::size_t c = 0; c < cells(); ++c)
+        pore_water[c] = water[c] > Real(0) && water[c] >= pore_room(sand[c]) ? Real(-1) : water[c];
     split_water();
 }
 
@@ -264,6 +271,9 @@ template <class Real> template <class Other> void Solver<Real>::copy_from(const 
     faces(&A::bend_gain, &B::bend_gain);
     faces(&A::bed_lift, &B::bed_lift);
     field(&A::wedge_depth, &B::wedge_depth);
+    field(&A::pore_water, &B::pore_water);
+    field(&A::open_sand, &B::open_sand);
+    field(&A::felt_water, &B::felt_water);
     rained = static_cast<Real>(other.rained);
     water_added = other.water_added;
     sand_added = other.sand_added;
@@ -293,6 +303,7 @@ template <class Real> void Solver<Real>::step_robust() {
         limit_water_outflow();
         compute_water_flux();
         integrate_water_height();
+        infiltrate();
         if (has(EFFECT_SECOND_ORDER_WATER)) center_water_velocity();
         integrate_water_velocity();
     }

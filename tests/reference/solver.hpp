@@ -25,6 +25,7 @@ template <class Real> struct Constants {
     Real flow_length{}, flow_beta{};  // L [m], beta of 2.8
     Real flow_gamma{};                // gamma of 2.8
     Real porosity{};                  // n of 2.23
+    Real conductivity{}, suction{};   // K [m/s], psi [m] of 2.24
     Real displaces{}, pressed{};      // beta, share of grains that a sloping surface of water pushes (2.23)
     Real c0{}, c1{}, c2{};            // cohesion of the yield surface [Pa]
     Real yield_cohesion{};            // its share of the material's
@@ -75,6 +76,7 @@ template <class Real> class Solver {
     void dilute_water_velocity();
     void update_open_sides();                    // 2.9, water
     void start_water_velocity();                 // 2.16, in step 0 -> pure_velocity
+    void open_pores();                           // 2.24 -> open_sand
     void split_water();                          // mixed = min(W, P), pure = W - mixed
     void update_water_boundary_types();          // 2.12 -> pure_type, mixed_type
     void diffuse_mixed_velocity();               // 2.15 -> mixed_velocity
@@ -86,6 +88,7 @@ template <class Real> class Solver {
     void backtrace_pure_velocity();              // 2.12 -> pure_velocity
     void transport_mixed_velocity();             // both for the mixed water
     void damp_shocks(const Faces<Real>& before); // 2.3
+    void infiltrate();                           // 2.24 -> pore_water, mixed, pure
     void center_water_velocity();                // 2.16 -> centered_velocity, pure_flux
     void integrate_water_velocity();             // 2.3, 2.4 -> pure_velocity, mixed_velocity, mixed_push
     void compute_bed_load();                     // 2.11 -> bed_load
@@ -136,6 +139,7 @@ template <class Real> class Solver {
     Field<Real> Vxx, Vxy, Vyy;        // left stretch of the sand; 2.13: right stretch, or F's symmetric part
     Field<Real> rotation;             // 2.13: angle, or (Fyx - Fxy)/2
     Field<Real> wedge_depth;          // 2.18: sand above the failing plane [m]
+    Field<Real> pore_water;           // 2.24: what pores hold at most, -1 where they are full under water [m]
     Faces<Real> sand_velocity, pure_velocity, mixed_velocity; // us, uw, um [m/s]
 
     // Intermediate fields. Fluxes are depths per step, k q [m].
@@ -151,6 +155,7 @@ template <class Real> class Solver {
     Faces<Real> pure_type, mixed_type, sand_type; // boundary types: 0 untracked, 1 tracked, 2 fixed
     Faces<Real> extrapolated;                     // velocity of one layer
     Field<Real> saturation;                       // phibar
+    Field<Real> open_sand, felt_water;            // 2.24: what the stages of water and sand take for hs and W
     Field<Real> sand_before, mixed_before;        // hs^n and min(W, P^n)
     Field<Real> sxx, sxy, syy;                    // Cauchy stress [Pa]
     Field<Real> cohesive_share;                   // R of 2.18, 0 without elastoplastic
@@ -254,6 +259,13 @@ template <class Real> class Solver {
     Real pore_room(Real depth) const;
     Real standing(Real held, Real depth) const;
     Real standing(std::size_t cell) const;
+    Real in_pores(std::size_t cell) const;
+    bool waits(std::size_t cell) const;
+    Real seen_depth(std::size_t cell) const;
+    Real transport_depth(std::size_t cell) const;
+    Real pure_surface(std::size_t cell) const;
+    Real coupled_depth(std::size_t cell) const;
+    Real open_depth(std::size_t cell) const;
     Real water_surface(std::size_t cell) const;
     Real water_at_level(std::size_t cell, Real level) const;
     Real lifts(std::size_t one, std::size_t other) const;

@@ -37,7 +37,7 @@ template <class Real> Real Solver<Real>::face_depth(Layer layer, const Axis& ax,
             const std::size_t c = ax.cell(cell, b);
             if (layer == Layer::sand) return Column{sand[c], terrain[c] + sand[c]};
             if (layer == Layer::pure) return Column{pure[c], pure[c]};
-            return Column{mixed[c], P.porosity * water_surface(c)};
+            return Column{mixed[c], P.porosity * (terrain[c] + transport_depth(c))};
         }
         const bool next = layer == Layer::pure && (cell == -1 || cell == ax.along());
         const Real outside = next ? ghost_water.along(ax)[ax.face(cell == -1 ? 0 : cell, b)] : Real(0);

@@ -6,7 +6,7 @@ namespace wadi::reference {
 
 template <class Real> void Solver<Real>::split_water() {
     for (std::size_t c = 0; c < cells(); ++c) {
-        mixed[c] = has(EFFECT_SAND) ? std::min(water[c], pore_room(sand[c])) : Real(0);
+        mixed[c] = has(EFFECT_SAND) ? in_pores(c) : Real(0);
         pure[c] = has(EFFECT_MIXTURE) ? water[c] - mixed[c] : water[c];
     }
 }
@@ -15,11 +15,14 @@ template <class Real> Real Solver<Real>::diffusion(const Axis& ax, int a, int b)
     const std::size_t L = ax.cell(a - 1, b);
     const std::size_t R = ax.cell(a, b);
     Real q(0);
-    const auto wet = [&](std::size_t c) { return std::min(standing(c), sand[c]); };
+    const auto wet = [&](std::size_t c) { return std::min(transport_depth(c), open_depth(c)); };
+    const Real rise = (terrain[R] + transport_depth(R)) - (terrain[L] + transport_depth(L));
+    const bool waiting = has(EFFECT_INFILTRATION) && (waits(L) || waits(R));
+    const Real coarse = !waiting ? lifts(L, R) : std::max(waits(L) ? Real(1) : lifts(L, L), waits(R) ? Real(1) : lifts(R, R));
     if (has(EFFECT_PUBLISHED))
         q = -P.diffusion * (mixed[R] - mixed[L]) / P.dx;
-    else if (sand[L] > P.eps && sand[R] > P.eps && std::abs(water_surface(R) - water_surface(L)) > P.rest_surface * lifts(L, R))
-        q = -P.porosity * P.diffusion * minmod(wet(R) - wet(L), water_surface(R) - water_surface(L)) / P.dx;
+    else if (open_depth(L) > P.eps && open_depth(R) > P.eps && std::abs(rise) > P.rest_surface * coarse)
+        q = -P.porosity * P.diffusion * minmod(wet(R) - wet(L), rise) / P.dx;
     return has(EFFECT_RETENTION) ? q * relative_permeability(q > Real(0) ? L : R) : q;
 }
 
@@ -88,6 +91,35 @@ template <class Real> void Solver<Real>::integrate_water_height() {
     }
 }
 
+/// 2.24: Green and Ampt's rate, in whole quanta, over what flowed through the sides of sand that is not full.
+template <class Real> void Solver<Real>::infiltrate() {
+    if (!has(EFFECT_INFILTRATION)) return;
+    const Real phase = P.quantum > Real(0) ? rounding_phase(Layer::pure, axis(false), 0) : Real(0);
+    for (std::size_t c = 0; c < cells(); ++c) {
+        const Real room = pore_room(sand[c]);
+        const Real start = std::min(pore_water[c] >= Real(0) && pore_water[c] < room ? mixed_predicted[c] : water[c], room);
+        const Real above = water[c] - start;
+        const Real deep = std::max(start / P.porosity, Real(0.01));
+        const Real rate = P.conductivity * (Real(1) + (above + P.suction) / deep);
+        const Real inside = start + std::min({whole_quanta(P.dt * rate, P.quantum, phase), above, room - start});
+        const bool fills = inside >= room, over = water[c] > inside;
+        pore_water[c] = fills && over ? Real(-1) : inside;
+        felt_water[c] = over && !fills ? inside : water[c];
+    }
+    split_water();
+}
+
+/// 2.24: to the quantum.
+template <class Real> void Solver<Real>::open_pores() {
+    for (std::size_t c = 0; c < cells(); ++c) {
+        open_sand[c] = open_depth(c);
+        if (P.quantum <= Real(0) || !waits(c)) continue;
+        Real whole = std::floor(in_pores(c) / P.porosity / P.quantum) * P.quantum;
+        for (int n = 0; n < 2 && pore_room(whole) < in_pores(c); ++n) whole += P.quantum;
+        open_sand[c] = std::min(whole, sand[c]);
+    }
+}
+
 /// 2.4b: gravity that keeps surface waves stable beside velocities up to `fastest`.
 template <class Real> Real Solver<Real>::water_gravity(Real fastest, Real deepest) const {
     if (P.gravity_cap <= Real(0) || deepest <= Real(0)) return P.gravity;
@@ -113,6 +145,7 @@ template <class Real> Real Solver<Real>::friction_rate(std::size_t L, std::size_
 /// 2.4f: how much of the pure water of `from` stands beside the sand of `to`, whose pores are not full.
 template <class Real> Real Solver<Real>::depth_beside(std::size_t from, std::size_t to) const {
     if (!has(EFFECT_MIXTURE) || !has(EFFECT_SLOPE_NORMAL) || P.exchange <= Real(0)) return Real(0);
+    if (has(EFFECT_INFILTRATION)) return Real(0); // 2.24
     const Real top = terrain[to] + sand[to];
     if (water_surface(to) >= top) return Real(0);
     const Real upper = std::min(water_surface(from), top);
@@ -145,13 +178,16 @@ void Solver<Real>::water_face(const Faces<Real>& pure_old, const Faces<Real>& mi
     Real& um = mixed_velocity.along(ax)[f];
     const Real before = pure_old.along(ax)[f];
     const Real fastest = std::max(std::abs(uw), std::abs(um));
-    const Real push = P.k * water_gravity(fastest, std::max(standing(L), standing(R))) * rise;
+    const Real pull = P.k * water_gravity(fastest, std::max(coupled_depth(L), coupled_depth(R)));
+    const Real push = pull * rise;
 
-    uw -= push;
+    const Real pure_rise = pure_surface(R) - pure_surface(L);
+    uw -= pull * pure_rise;
     const Real beside_L = depth_beside(L, R);
     const Real beside_R = depth_beside(R, L);
     enter_sand(uw, um, L, R, uw > Real(0) ? beside_L : beside_R);
-    if (level && std::abs(uw) <= P.rest_velocity * coarse) uw = Real(0);
+    const Real fine = has(EFFECT_INFILTRATION) ? Real(1) : coarse;
+    if (std::abs(pure_rise) <= P.rest_surface * fine && std::abs(uw) <= P.rest_velocity * fine) uw = Real(0);
     uw = leaving_wet(uw, pure[L], pure[R], P.eps);
     const Real across = across_face(pure_old, ax, a, b);
     uw = rubbed(uw, across, std::hypot(before, across), P.dt * friction_rate(L, R));
@@ -226,13 +262,13 @@ template <class Real> void Solver<Real>::center_water_velocity() {
         const std::size_t L = ax.cell(a - 1, b);
         const std::size_t R = ax.cell(a, b);
         const std::size_t f = ax.face(a, b);
-        const Real eta_L = water_surface(L);
-        const Real eta_R = water_surface(R);
+        const Real eta_L = pure_surface(L);
+        const Real eta_R = pure_surface(R);
         if (blocked(pure[L], pure[R], eta_L, eta_R, P.eps)) return;
         const Real u = pure_velocity.along(ax)[f];
         const Real across = across_face(pure_velocity, ax, a, b);
-        const Real push = P.k * water_gravity(std::abs(u), std::max(standing(L), standing(R))) * (eta_R - eta_L);
-        const auto eta = [&](int cell) { return water_surface(ax.cell(cell, b)); };
+        const Real push = P.k * water_gravity(std::abs(u), std::max(coupled_depth(L), coupled_depth(R))) * (eta_R - eta_L);
+        const auto eta = [&](int cell) { return pure_surface(ax.cell(cell, b)); };
         const Real rise = eta_R - eta_L;
         const Real rise_low = a > 1 ? eta_L - eta(a - 2) : rise;
         const Real rise_high = a + 1 < ax.along() ? eta(a + 1) - eta_R : rise;

@@ -114,6 +114,7 @@ WorldParams content_params(std::uint32_t effects) {
     m.retention = 0.3;
     m.flow_length = 2e-3;
     m.porosity = 0.4;
+    m.conductivity = 1e-3;
     m.exchange_rate = 3e4;
     m.cohesion_dry = 500;
     settings.method.shock_viscosity = 0.25;

@@ -45,7 +45,9 @@ struct Material {
     double flow_length = 0;         // L of NUMERICS 2.8; 0 = friction is the same at every speed
     double flow_beta = 0.65;        // beta, gamma of NUMERICS 2.8
     double flow_gamma = 0.77;
-    double porosity = 1; // n of NUMERICS 2.23; 1 = pores as large as the sand
+    double porosity = 1;     // n of NUMERICS 2.23; 1 = pores as large as the sand
+    double conductivity = 0; // K of NUMERICS 2.24; 0 = water enters pores at once
+    double suction = 0.05;   // psi of NUMERICS 2.24
     friend bool operator==(const Material&, const Material&) = default;
 };
 

@@ -132,6 +132,8 @@ constexpr Choice choices[] = {
      [](Settings& s) { s.method.shock_viscosity = Method{}.shock_viscosity; }},
     {row(EFFECT_FLOW_FRICTION), "flow_length > 0", [](const Settings& s) { return s.material.flow_length > 0; },
      [](Settings& s) { s.material.flow_length = 2e-3; }},
+    {row(EFFECT_INFILTRATION), "conductivity > 0", [](const Settings& s) { return s.material.conductivity > 0; },
+     [](Settings& s) { s.material.conductivity = 1e-3; }},
 };
 
 constexpr bool has_rule(const Effect& effect) { return effect.why != nullptr; }

@@ -9,17 +9,31 @@ namespace {
 // What a list of active tiles consists of: the dispatches of a pass over tiles name them too.
 constexpr std::array tile_fields = {"activity", "active_tiles", "active_counts", "active_list", "active_dispatch"};
 
+// What transport of water takes for the sand: with infiltration that whose pores hold what is in them, so that the rest stands on
+// it.
+Names open_names(const PlanBuilder& b) {
+    if (!b.has(EFFECT_INFILTRATION)) return {};
+    return {{"sand_height", "open_sand"}};
+}
+
+// What the sand takes for its water: with infiltration none that waits above pores which have room.
+Names felt_names(const PlanBuilder& b) {
+    if (!b.has(EFFECT_INFILTRATION)) return {};
+    return {{"water_height", "felt_water"}};
+}
+
 void plan_water_fluxes(PlanBuilder& b) {
-    if (b.has(EFFECT_DIFFUSION)) b.run("diffuse_mixed_water");
-    b.run("limit_water_outflow");
-    b.run("compute_water_flux");
+    if (b.has(EFFECT_DIFFUSION)) b.run("diffuse_mixed_water", {}, open_names(b));
+    b.run("limit_water_outflow", {}, open_names(b));
+    b.run("compute_water_flux", {}, open_names(b));
 }
 
 // Both layers' fluxes and the new height.
 void plan_water_transport(PlanBuilder& b) {
     plan_water_fluxes(b);
     if (b.has(EFFECT_OPEN_SIDES)) account_water(b);
-    b.run("integrate_water_height", {"water_height"});
+    b.run("integrate_water_height", {"water_height"}, open_names(b));
+    if (b.has(EFFECT_INFILTRATION)) b.run("infiltrate");
 }
 
 // Momentum advection of second order takes the pure water's velocities at the time of the heights, the mixed water's as they are.
@@ -49,6 +63,7 @@ void plan_inflow(PlanBuilder b) {
     if (b.has(EFFECT_SOURCES)) b.run("apply_sources");
     if (b.has(EFFECT_RAIN)) b.run("apply_rain");
     if (b.has(EFFECT_RAIN_MAP) && !b.has(EFFECT_PUBLISHED)) b.run("dilute_water_velocity");
+    if (b.has(EFFECT_INFILTRATION)) b.run("open_pores");
     if (b.has(EFFECT_PUBLISHED)) plan_published_diffusion(b);
     if (b.has(EFFECT_WATER | EFFECT_OPEN_SIDES)) b.run("open_sides");
 }
@@ -57,7 +72,7 @@ void plan_inflow(PlanBuilder b) {
 void plan_start(PlanBuilder b) {
     if (!b.has(EFFECT_SECOND_ORDER_WATER) || b.has(EFFECT_PUBLISHED)) return;
     plan_water_fluxes(b);
-    b.run("integrate_water_height");
+    b.run("integrate_water_height", {}, open_names(b));
     plan_water_velocity(b, {}, {{"water_height", "water_height_next"}});
     Names names;
     for (const std::string axis : {"x", "y"}) {
@@ -76,7 +91,7 @@ void plan_water(PlanBuilder b) {
 void plan_water_on_sand(PlanBuilder b) {
     if (!b.has(EFFECT_WATER)) return;
     if (b.has(EFFECT_BED_SHEAR)) b.run("compute_bed_load");
-    if (b.has(EFFECT_COHESION) && !b.fuse("smooth_saturation", {})) b.run("compute_saturation");
+    if (b.has(EFFECT_COHESION) && !b.fuse("smooth_saturation", {}, felt_names(b))) b.run("compute_saturation", {}, felt_names(b));
 }
 
 // Stretch and sand height move.
@@ -112,15 +127,16 @@ void plan_sand_forces(PlanBuilder b) {
         b.run("accelerate_mixture", fused);
         return;
     }
-    const Names drag = drag_names(b);
+    Names drag = drag_names(b);
     for (const auto& [binding, field] : drag) {
         moved.push_back(field);
         fused.push_back(field);
     }
+    drag.merge(felt_names(b));
     if (b.fuses_forces() && b.fuse("accelerate_sand", fused, drag)) return;
     if (b.has(EFFECT_SLOPE_NORMAL)) b.run("bend_sand_velocity");
     if (b.has(EFFECT_FLOW_FRICTION)) b.run("raise_friction");
-    b.run("integrate_sand_velocity", sand);
+    b.run("integrate_sand_velocity", sand, felt_names(b));
     if (b.has(EFFECT_SLOPE_NORMAL)) b.run("raise_failing_planes", {"wedge_depth"});
     b.run("apply_friction", moved, drag);
 }
@@ -129,7 +145,7 @@ void plan_sand_forces(PlanBuilder b) {
 void plan_active_tiles(PlanBuilder b) {
     if (!b.tiles_by_material()) {
         for (const char* stage : {"mark_active_tiles", "count_active_tiles", "list_active_tiles"}) b.run(stage);
-        if (b.has(EFFECT_WATER)) b.run("keep_water_awake");
+        if (b.has(EFFECT_WATER)) b.run("keep_water_awake", {}, open_names(b));
         return;
     }
     b.run("choose_active_tiles");
@@ -146,10 +162,10 @@ void plan_active_tiles(PlanBuilder b) {
 }
 
 // Two lists, unless the substeps move the water's velocities to their other buffers, as single-layer drag does: they would have
-// to in tiles without sand, too.
+// to in tiles without sand, too. With infiltration the sand reads what the water's passes leave, also where all water is gone.
 bool tells_materials_apart(std::uint32_t effects) {
     constexpr std::uint32_t both = EFFECT_WATER | EFFECT_SAND, drag = EFFECT_DRAG | EFFECT_MIXTURE;
-    return (effects & both) == both && (effects & drag) != EFFECT_DRAG;
+    return (effects & both) == both && (effects & drag) != EFFECT_DRAG && (effects & EFFECT_INFILTRATION) == 0;
 }
 
 // What a pass reads on one side carries changes to the other: the sums along each direction count, and the largest of them.
@@ -184,7 +200,9 @@ void share_scratch(StepPlan& plan) {
     std::vector<Life> lives;
     for (auto& field : plan.fields) {
         // Its ghosts are read. They are 0, and what another field of this plan or of the one before leaves there must not get in.
-        if (field.role != FieldRole::scratch || field.name == "mixed_diffused") continue;
+        if (field.role != FieldRole::scratch || field.name == "mixed_diffused" || field.name == "open_sand" ||
+            field.name == "felt_water")
+            continue;
         Life life{&field, order.size(), 0};
         for (std::size_t n = 0; n < order.size(); ++n) {
             if (std::find(order[n]->fields.begin(), order[n]->fields.end(), field.name) == order[n]->fields.end()) continue;

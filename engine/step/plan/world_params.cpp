@@ -134,6 +134,8 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     p.bed_slope_number = f(2 / dx);
     p.bed_slope_cap = f(0.2 * dx / s.dt);
     p.limiter = w.outflow_limiter ? 1.0F : 0.0F;
+    p.infiltration = f(dt * m.conductivity);
+    p.suction = f(m.suction);
     p.inv_substeps = f(static_cast<double>(w.water_substeps) / w.substeps);
 
     p.ks = f(ks);

@@ -2,6 +2,7 @@
 #include "engine/settings/data/quanta.hpp"
 #include "engine/step/plan/world_params.hpp"
 #include "engine/threads/bands.hpp"
+#include <cmath>
 #include <numeric>
 #include <span>
 #include <string>
@@ -29,6 +30,25 @@ std::int64_t count_quanta(const std::vector<float>& heights, double quantum, dou
     return std::accumulate(parts.begin(), parts.end(), std::int64_t{0}, add_quanta);
 }
 
+// A level's water fills pores first (NUMERICS 2.24).
+Status fill_pores(WorldState& state, const InitialFields& fields, double quantum) {
+    if (state.plan().find("water_in_pores") == nullptr || fields.water.empty()) return ok_status();
+    const auto& layout = state.layout();
+    const float porosity = state.params().porosity;
+    const auto whole = [&](float h) { return nearest_quantum(static_cast<double>(h), quantum, Halves::even); };
+    return state.fields().write_rows("water_in_pores", [&](int j, std::span<float> row) {
+        if (j < 0 || j >= layout.ny) return;
+        const std::size_t start = static_cast<std::size_t>(j) * static_cast<std::size_t>(layout.nx);
+        for (std::size_t i = 0; i < static_cast<std::size_t>(layout.nx); ++i) {
+            const double water = whole(fields.water[start + i]);
+            const auto room =
+                static_cast<double>(porosity * static_cast<float>(fields.sand.empty() ? 0.0 : whole(fields.sand[start + i])));
+            const double holds = quantum > 0 ? std::floor(room / quantum) * quantum : room;
+            row[i + GHOST] = water > 0 && water >= holds ? FULL_PORES : static_cast<float>(water);
+        }
+    });
+}
+
 } // namespace
 
 Status upload(WorldState& state, const InitialFields& fields) {
@@ -51,6 +71,7 @@ Status upload(WorldState& state, const InitialFields& fields) {
     if (auto status = heights("terrain", fields.terrain, true); !status) return status;
     if (auto status = heights("sand_height", fields.sand, false); !status) return status;
     if (auto status = heights("water_height", fields.water, false); !status) return status;
+    if (auto status = fill_pores(state, fields, quantum); !status) return status;
     for (const std::string layer : {"water", "mixed", "sand"})
         for (const bool along_x : {true, false}) {
             const bool sand = layer == "sand";

@@ -87,6 +87,12 @@ Status WorldState::set_effects(const EffectChoice& effects) {
         if (auto status = fields_.write("rain_share", 0, with_ghosts(layout_, rain_shares(settings_), true)); !status)
             return status;
     }
+    // Water that was there already is in the pores, as far as they hold it; sand that was is dry.
+    if (plan.find("water_in_pores") != nullptr && plan_.find("water_in_pores") == nullptr &&
+        plan_.find("water_height") != nullptr) {
+        const auto fill = [](int, std::span<float> row) { std::fill(row.begin(), row.end(), FULL_PORES); };
+        if (auto status = fields_.write_rows("water_in_pores", fill); !status) return status;
+    }
     plan_ = std::move(plan);
     other_plan_ = std::move(other);
     effects_ = effects;
