@@ -129,7 +129,7 @@ TEST_CASE("a lake over a dune rests in every bit for 20 s at any porosity, with 
             auto scene = lake_in_dune(porosity, porosity, cohesive);
             CHECK(keeps_every_bit(scene));
             scene.settings.material.conductivity = 1e-3; // 2.24
-            if (!cohesive) CHECK(keeps_every_bit(scene));
+            CHECK(keeps_every_bit(scene));
         }
     CHECK_FALSE(keeps_every_bit(lake_in_dune(0.4, 1, false))); // control: water as if pores were as large as the sand
 }
