@@ -115,15 +115,19 @@ std::vector<CaseSpec> list() {
                 // One cell on a brush's soft rim: without a quantum nothing but that cell gives its strain a scale.
                 const bool one_value = scene == "one_wet_cell" && stages[stage].name == "apply_edits" &&
                                        (mask & EFFECT_ELASTOPLASTIC) != 0 && (method == "plain" || method == "bare");
-                // A film is so level that what its slopes withhold of the push, 1 - C r, is rounding, unless quanta are coarse.
+                // On level ground nothing bends but what coarse quanta make of it.
+                const bool straight = scene == "dam_break" && stages[stage].name == "bend_sand_velocity";
+                // A film is so level that what its slopes withhold of the push, 1 - C r, is rounding, unless quanta are coarse;
+                // of second order so much less is left that coarse quanta are of no help.
                 const bool level_film =
                     scene == "thin_film" && stages[stage].name == "integrate_sand_velocity" && (mask & EFFECT_SLOPE_NORMAL) != 0;
                 // One deep cell that has yielded: kept as it is, its F holds less strain than a float beside 1 resolves.
                 const bool lone = grid == std::string("1x1") && (mask & EFFECT_DIRECT_STRAIN) != 0;
                 add(lone ? "9x1" : grid, scene,
-                    level_film                                         ? "coarse"
-                    : rounding_only || unresolved || film || one_value ? "unsmoothed"
-                                                                       : method);
+                    level_film && (mask & EFFECT_SECOND_ORDER_SAND) == 0           ? "coarse"
+                    : level_film                                                   ? "default"
+                    : rounding_only || unresolved || film || one_value || straight ? "unsmoothed"
+                                                                                   : method);
             }
         }
         if (stages[stage].name == "integrate_water_velocity") {
