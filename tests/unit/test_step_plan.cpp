@@ -4,6 +4,7 @@
 #include "engine/step/plan/step_plan.hpp"
 #include "tests/support/worlds.hpp"
 #include <algorithm>
+#include <array>
 #include <doctest/doctest.h>
 #include <fstream>
 #include <set>
@@ -15,23 +16,26 @@ namespace {
 // Laws of sand that are branches of stages that run anyway.
 constexpr std::uint32_t sand_laws = EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION | EFFECT_RETENTION;
 
-// With none of the sand's laws and with all that are legal, a few with some of them, with the water's viscosity, also a branch,
-// or with a map of rain.
-// Under sanitizers a few of all.
+// With none of the sand's laws and with all that are legal, a few with some of them, and a few with each of what adds no pass but
+// its own to any other: the water's viscosity, a map of rain, a rate of infiltration. Under sanitizers a few of all.
 std::vector<std::uint32_t> legal_masks() {
+    constexpr std::array lone = {EFFECT_SHOCK_VISCOSITY, EFFECT_RAIN_MAP, EFFECT_INFILTRATION};
+    constexpr std::uint32_t any_lone = EFFECT_SHOCK_VISCOSITY | EFFECT_RAIN_MAP | EFFECT_INFILTRATION;
     std::uint32_t all = all_effects;
-    for (const auto& choice : choice_table()) all |= choice.bit & ~EFFECT_SHOCK_VISCOSITY;
+    for (const auto& choice : choice_table()) all |= choice.bit;
+    all &= ~any_lone;
     std::vector<std::uint32_t> masks;
     int between = 0;
     for (std::uint32_t mask = 1; mask <= all; ++mask) {
-        if (!is_legal(mask) || (mask & (EFFECT_WATER | EFFECT_SAND)) == 0) continue;
-        if ((mask & EFFECT_RAIN_MAP) != 0 && ++between % 17 != 0) continue;
+        if ((mask & any_lone) != 0 || (mask & (EFFECT_WATER | EFFECT_SAND)) == 0 || !is_legal(mask)) continue;
         bool most = true;
         for (const std::uint32_t law : {EFFECT_SLOPE_NORMAL, EFFECT_INTERNAL_FRICTION, EFFECT_RETENTION})
             most = most && ((mask & law) != 0 || !is_legal(mask | law));
         if (most || (mask & sand_laws) == 0 || ++between % 17 == 0) masks.push_back(mask);
-        if (is_legal(mask | EFFECT_SHOCK_VISCOSITY) && ++between % 17 == 0) masks.push_back(mask | EFFECT_SHOCK_VISCOSITY);
+        for (const std::uint32_t bit : lone)
+            if (is_legal(mask | bit) && ++between % 17 == 0) masks.push_back(mask | bit);
     }
+    masks.push_back(all_effects | any_lone);
     if (!test::few_steps) return masks;
     std::vector<std::uint32_t> few = {masks.back()};
     for (std::size_t n = 0; n < masks.size(); n += 17) few.push_back(masks[n]);
