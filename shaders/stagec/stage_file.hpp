@@ -38,7 +38,8 @@ struct Stage {
     std::vector<std::string> tested; // effect names that HAS() or a condition asks
 };
 
-inline constexpr const char* first_choice = "EFFECT_PUBLISHED"; // from its bit on the bits are choices of method
+inline constexpr const char* usual_choice = "EFFECT_SHOCK_VISCOSITY"; // the default method's, wherever there is water
+inline constexpr const char* first_choice = "EFFECT_PUBLISHED";       // from its bit on the bits are choices of method
 
 /// Refuses what it does not know, by file and line: words, types, extents, bindings out of order, a stage without a kernel.
 Stage parse_stage(const std::string& path);

@@ -2,7 +2,7 @@
 //   stagec glsl  EFFECTS_H STAGE OUT.comp          GLSL wrapper: prelude, stage, main()
 //   stagec cpp   EFFECTS_H STAGE OUT.cpp ISA all|common|largest [BELOW]  a function per mask the stage distinguishes, for one
 //                                                  instruction set; largest: of each choice of methods the masks that no other
-//                                                  one includes; common: those and all without a choice; BELOW: the set whose
+//                                                  one includes; common: those and all of the default method; BELOW: the set whose
 //                                                  functions run the masks that are left out
 //   stagec cuda  EFFECTS_H STAGE OUT.cu all|largest  every mask as CUDA kernels; largest: masks that no other one includes
 //   stagec nocontract IN.spv OUT.spv               decorates every float operation NoContraction

@@ -41,10 +41,14 @@ std::string select_function(const Stage& s, const CpuSet& set, unsigned tested, 
                             const Effects& effects) {
     const auto& [isa, below, chosen] = set;
     if (!below.empty() && chosen != "all") {
-        const unsigned choices = ~(effects.at(first_choice) - 1);
-        const auto kept = largest(masks, choices);
+        const unsigned choices = ~(effects.at(first_choice) - 1), usual = effects.at(usual_choice);
+        const auto all = masks, kept = largest(masks, choices);
+        const auto has = [](const std::vector<unsigned>& list, unsigned mask) {
+            return std::find(list.begin(), list.end(), mask) != list.end();
+        };
         std::erase_if(masks, [&](unsigned mask) {
-            return !(chosen == "common" && (mask & choices) == 0) && std::find(kept.begin(), kept.end(), mask) == kept.end();
+            const bool of_default = (mask & choices & ~usual) == 0 && ((mask & usual) != 0 || !has(all, mask | usual));
+            return !(chosen == "common" && of_default) && !has(kept, mask);
         });
     }
     std::ostringstream o;
