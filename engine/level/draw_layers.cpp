@@ -149,7 +149,7 @@ class Drawing {
             auto changed = draw_centers(layer, LayerTarget::terrain, fields_.terrain, nullptr);
             if (!changed) return changed.status();
             warn_unchanged(layer, *changed);
-            if (*changed) warn_thin(layer);
+            if (*changed) warn(warning_of_thin_terrain(layer, grid_));
         }
         lowest_ = lowest_terrain();
         return ok_status();
@@ -178,7 +178,7 @@ class Drawing {
         });
         warn_unchanged(lists_.sand, changed);
         for (std::size_t n = 0; n < changed.size(); ++n)
-            if (changed[n] != 0) warn_low(lists_.sand[n]);
+            if (changed[n] != 0) warn(warning_of_thin_sand(lists_.sand[n], grid_));
         return ok_status();
     }
 
@@ -389,19 +389,8 @@ class Drawing {
         field[cell] = static_cast<float>(nearest_quantum(height, grid_.quantum, Halves::away));
     }
 
-    void warn_thin(const Layer& layer) {
-        if (thin_line_work(layer, grid_) == 0) return;
-        warnings_.push_back(layer.path + ": a width of " + number_text(width_of(layer.shape, grid_)) +
-                            " m is thin for cells of " + number_text(grid_.dx) +
-                            " m; it is drawn as wide as the cells that its middle runs through, without gaps");
-    }
-
-    void warn_low(const Layer& layer) {
-        const bool raises = layer.combine != Combine::subtract && layer.combine != Combine::min && layer.amount != Amount::wet;
-        if (!raises || layer.top == 0 || !thinner_than_a_cell(layer, grid_)) return;
-        warnings_.push_back(layer.path + ": a width of " + number_text(width_of(layer.shape, grid_)) +
-                            " m is thin for cells of " + number_text(grid_.dx) +
-                            " m; its sand stands as wide as its cells and lower, and holds back less");
+    void warn(std::optional<std::string> text) {
+        if (text) warnings_.push_back(std::move(*text));
     }
 
     void warn_unchanged(const std::vector<Layer>& layers, const std::vector<char>& changed) {

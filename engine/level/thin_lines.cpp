@@ -1,4 +1,5 @@
 #include "engine/level/thin_lines.hpp"
+#include "engine/settings/rules/messages.hpp"
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -72,9 +73,20 @@ void add_segment(Point a, Point b, const LevelGrid& grid, std::vector<std::size_
     }
 }
 
+/// Width across a box or ridge, of the grid's metres.
+double width_of(const Shape& shape, const LevelGrid& grid) {
+    if (shape.kind == ShapeKind::ridge) return shape.width;
+    return std::min(shape.to[0] - shape.from[0], (shape.to[1] - shape.from[1]) * grid.stretch_y);
+}
+
 bool is_upright_line(const Layer& layer) {
     const bool line = layer.shape.kind == ShapeKind::ridge || layer.shape.kind == ShapeKind::box;
     return !layer.map && line && !has_sloping_sides(layer.shape);
+}
+
+/// Whether an upright box or ridge is narrower than a cell.
+bool thinner_than_a_cell(const Layer& layer, const LevelGrid& grid) {
+    return is_upright_line(layer) && width_of(layer.shape, grid) < grid.dx * (1 - 1e-9);
 }
 
 bool is_thin(const Layer& layer, const LevelGrid& grid) {
@@ -86,16 +98,12 @@ bool is_thin(const Layer& layer, const LevelGrid& grid) {
     return width_of(shape, grid) < least * (1 - 1e-9);
 }
 
+std::string thin_text(const Layer& layer, const LevelGrid& grid) {
+    return layer.path + ": a width of " + number_text(width_of(layer.shape, grid)) + " m is thin for cells of " +
+           number_text(grid.dx) + " m; ";
+}
+
 } // namespace
-
-double width_of(const Shape& shape, const LevelGrid& grid) {
-    if (shape.kind == ShapeKind::ridge) return shape.width;
-    return std::min(shape.to[0] - shape.from[0], (shape.to[1] - shape.from[1]) * grid.stretch_y);
-}
-
-bool thinner_than_a_cell(const Layer& layer, const LevelGrid& grid) {
-    return is_upright_line(layer) && width_of(layer.shape, grid) < grid.dx * (1 - 1e-9);
-}
 
 std::vector<std::size_t> thin_line(const Layer& layer, const LevelGrid& grid) {
     std::vector<std::size_t> cells;
@@ -117,6 +125,17 @@ std::int64_t thin_line_work(const Layer& layer, const LevelGrid& grid) {
         if (clip(a, b, grid)) work += sorting * (std::fabs(b[0] - a[0]) + std::fabs(b[1] - a[1]) + 1);
     }
     return static_cast<std::int64_t>(work);
+}
+
+std::optional<std::string> warning_of_thin_terrain(const Layer& layer, const LevelGrid& grid) {
+    if (thin_line_work(layer, grid) == 0) return std::nullopt;
+    return thin_text(layer, grid) + "it is drawn as wide as the cells that its middle runs through, without gaps";
+}
+
+std::optional<std::string> warning_of_thin_sand(const Layer& layer, const LevelGrid& grid) {
+    const bool raises = layer.combine != Combine::subtract && layer.combine != Combine::min && layer.amount != Amount::wet;
+    if (!raises || layer.top == 0 || !thinner_than_a_cell(layer, grid)) return std::nullopt;
+    return thin_text(layer, grid) + "its sand stands as wide as its cells and lower, and holds back less";
 }
 
 } // namespace wadi

@@ -4,21 +4,21 @@
 #include "engine/level/layers.hpp"
 #include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <vector>
 
 namespace wadi {
-
-/// Width across a box or ridge, of the grid's metres.
-double width_of(const Shape& shape, const LevelGrid& grid);
 
 /// Cells, row-major and ascending, that the middle line of a thin upright box or ridge runs through, each joined to the next by a
 /// side. Empty for other layers, and for those wide enough to have no gaps.
 std::vector<std::size_t> thin_line(const Layer& layer, const LevelGrid& grid);
 
-/// Whether an upright box or ridge is narrower than a cell.
-bool thinner_than_a_cell(const Layer& layer, const LevelGrid& grid);
-
 /// What that takes, as drawing_work() counts.
 std::int64_t thin_line_work(const Layer& layer, const LevelGrid& grid);
+
+/// What to say of a layer of terrain that is drawn by its thin_line(), and of sand that is narrower than a cell; else nothing.
+std::optional<std::string> warning_of_thin_terrain(const Layer& layer, const LevelGrid& grid);
+std::optional<std::string> warning_of_thin_sand(const Layer& layer, const LevelGrid& grid);
 
 } // namespace wadi

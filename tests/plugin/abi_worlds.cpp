@@ -100,6 +100,14 @@ std::vector<unsigned char> saved(const AbiWorld& world) {
     return bytes;
 }
 
+std::vector<unsigned char> log_of(const AbiWorld& world) {
+    std::size_t size = 0;
+    REQUIRE(wadi_world_get_commands(world.id, nullptr, &size) == WADI_OK);
+    std::vector<unsigned char> bytes(size);
+    REQUIRE(wadi_world_get_commands(world.id, bytes.data(), &size) == WADI_OK);
+    return bytes;
+}
+
 bool error_mentions(const std::string& text) { return std::string(wadi_get_last_error()).find(text) != std::string::npos; }
 
 } // namespace wadi::test

@@ -35,6 +35,8 @@ std::uint64_t steps_of(const AbiWorld& world);
 std::uint64_t device_bytes(wadi_world_id world);
 /// By wadi_world_save.
 std::vector<unsigned char> saved(const AbiWorld& world);
+/// By wadi_world_get_commands.
+std::vector<unsigned char> log_of(const AbiWorld& world);
 bool error_mentions(const std::string& text);
 
 } // namespace wadi::test

@@ -92,14 +92,6 @@ void add_source(const AbiWorld& world) {
                     std::string(wadi_get_last_error()));
 }
 
-Bytes log_of(const AbiWorld& world) {
-    size_t size = 0;
-    REQUIRE(wadi_world_get_commands(world.id, nullptr, &size) == WADI_OK);
-    Bytes bytes(size);
-    REQUIRE(wadi_world_get_commands(world.id, bytes.data(), &size) == WADI_OK);
-    return bytes;
-}
-
 uint32_t version_of(const Bytes& bytes) {
     uint32_t version = 0;
     REQUIRE(bytes.size() > 12);

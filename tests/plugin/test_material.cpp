@@ -58,14 +58,6 @@ bool has_effect(const AbiWorld& world, const std::string& name) {
     return std::any_of(effects.begin(), effects.end(), [&](const auto& e) { return name == e.name && e.on == 1; });
 }
 
-std::vector<unsigned char> log_of(const AbiWorld& world) {
-    size_t size = 0;
-    REQUIRE(wadi_world_get_commands(world.id, nullptr, &size) == WADI_OK);
-    std::vector<unsigned char> bytes(size);
-    REQUIRE(wadi_world_get_commands(world.id, bytes.data(), &size) == WADI_OK);
-    return bytes;
-}
-
 // Other values that show, effects switched on and off among them.
 const std::map<std::string, double> showing = {
     {"water_density", 1100}, {"sand_density", 2600},   {"friction", 0.05},

@@ -51,14 +51,6 @@ uint64_t sources_of(const AbiWorld& world) {
     return info.source_count;
 }
 
-std::vector<unsigned char> log_of(const AbiWorld& world) {
-    size_t size = 0;
-    REQUIRE(wadi_world_get_commands(world.id, nullptr, &size) == WADI_OK);
-    std::vector<unsigned char> bytes(size);
-    REQUIRE(wadi_world_get_commands(world.id, bytes.data(), &size) == WADI_OK);
-    return bytes;
-}
-
 constexpr uint32_t session_steps = 40;
 
 // A tap that comes, moves, changes its flow, is joined by sand from a box, and closes.
