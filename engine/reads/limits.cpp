@@ -53,7 +53,10 @@ Status Limits::prepare() {
     const auto& layout = state_.layout();
     const std::uint64_t tiles = std::uint64_t{LIMIT_WORDS} * sizeof(std::uint32_t) *
                                 static_cast<std::uint64_t>(layout.tile_columns()) * static_cast<std::uint64_t>(layout.strips());
+    const std::uint64_t columns = std::uint64_t{LIMIT_WORDS} * sizeof(std::uint32_t) *
+                                  static_cast<std::uint64_t>(layout.pitch()) * static_cast<std::uint64_t>(layout.strips());
     const compute::BufferDesc wanted[] = {{layout.size() * sizeof(std::uint32_t), "limits marks"},
+                                          {columns, "limits of columns"},
                                           {tiles, "limits of tiles"},
                                           {tiles, "limits readback", compute::HostAccess::readback}};
     for (std::size_t n = 0; n < buffers_.size(); ++n) {
@@ -64,10 +67,11 @@ Status Limits::prepare() {
     }
     if (!program_) {
         const auto build = [this, tiles](compute::ProgramBuilder& builder, const Parity& parity) {
-            const Slots slots = {{"limit_marks", buffers_[0]}, {"limit_counts", buffers_[1]}};
-            auto status = state_.append_stage(builder, "mark_limits", parity, slots);
-            if (status) status = state_.append_stage(builder, "count_limits", parity, slots);
-            builder.copy({buffers_[1], buffers_[2], 0, 0, tiles});
+            const Slots slots = {{"limit_marks", buffers_[0]}, {"limit_columns", buffers_[1]}, {"limit_counts", buffers_[2]}};
+            Status status;
+            for (const char* stage : looking_stages)
+                if (status) status = state_.append_stage(builder, stage, parity, slots);
+            builder.copy({buffers_[2], buffers_[3], 0, 0, tiles});
             return status;
         };
         program_ = std::make_unique<StateProgram>(state_, "limits", build);
@@ -80,7 +84,7 @@ Status Limits::prepare() {
 LimitCounts Limits::counts(std::uint64_t step) const {
     const auto& layout = state_.layout();
     const Settings& settings = state_.settings();
-    const auto bytes = state_.device().mapped(buffers_[2]);
+    const auto bytes = state_.device().mapped(buffers_[3]);
     LimitCounts all;
     all.step = step;
     double driven2 = 0, top = -1e30, bottom = 1e30;

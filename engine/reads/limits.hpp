@@ -77,7 +77,7 @@ class Limits {
     void tell_once(Told kind, bool due, const LimitCounts& counts, const std::function<std::string()>& text);
 
     WorldState& state_;
-    std::array<compute::Buffer, 3> buffers_{}; // marks, counts of tiles, their readback
+    std::array<compute::Buffer, 4> buffers_{}; // marks, counts of columns and of tiles, their readback
     std::unique_ptr<StateProgram> program_;
     bool watching_ = false;
     compute::Ticket pending_;                   // a look that has not been collected; 0 = none

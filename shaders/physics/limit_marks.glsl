@@ -12,4 +12,8 @@
 #define FACE_MARKS_x ((3u * MARK_CLAMPED_x + MARK_CAPPED_x) * 65537u) // all of a west face
 #define FACE_MARKS_y ((3u * MARK_CLAMPED_y + MARK_CAPPED_y) * 65537u)
 
+// Of the LIMIT_WORDS that count_limits makes of them.
+#define LIMIT_SUMS 9   // counts; behind them are floats by their bits
+#define LIMIT_LEAST 12 // of those the one of which the least is wanted
+
 #endif

@@ -104,12 +104,15 @@ struct Turn {
     float cs, sn, cs_less_one;
 };
 
+// A component of F - I, within what may be squared and summed up and stay finite on every device.
+FN float bounded_strain(float e) { return wclamp(e, -1.0e14f, 1.0e14f); }
+
 // Right stretch less the identity, and rotation, of F = I + e = R P.
 FN Stretch right_stretch(float e_xx, float e_xy, float e_yx, float e_yy, REF(Turn) by) {
-    float exx = wclamp(e_xx, -1.0e14f, 1.0e14f); // what is squared below stays finite
-    float exy = wclamp(e_xy, -1.0e14f, 1.0e14f);
-    float eyx = wclamp(e_yx, -1.0e14f, 1.0e14f);
-    float eyy = wclamp(e_yy, -1.0e14f, 1.0e14f);
+    float exx = bounded_strain(e_xx);
+    float exy = bounded_strain(e_xy);
+    float eyx = bounded_strain(e_yx);
+    float eyy = bounded_strain(e_yy);
     float x = 2.0f + (exx + eyy);
     float y = eyx - exy;
     float n = wsqrt(x * x + y * y);

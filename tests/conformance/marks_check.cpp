@@ -1,6 +1,8 @@
 // mark_limits by its definition: counts of faces beside wet cells, at the clamp and with capped gravity, and whether the outflow
 // of a cell's layers exceeds what they hold. Where a float may fall on either side of a limit, both answers pass. count_limits:
-// its counts are those of the marks, its floats by their definitions in double precision.
+// its counts are those of the marks, its floats by their definitions in double precision. fold_limits: what it folds, word by
+// word.
+#include "shaders/physics/limit_marks.glsl"
 #include "tests/conformance/stage_checks.hpp"
 #include <algorithm>
 #include <array>
@@ -167,57 +169,87 @@ Verdict check_limit_counts(const StageRun& run) {
     const FieldLayout layout{p.nx, p.ny};
     const auto& marks = run.buffer("limit_marks").before;
     const bool water = (run.scene.effects & EFFECT_WATER) != 0;
-    for (int tile = 0; tile < layout.tile_columns() * layout.strips(); ++tile) {
-        std::array<std::uint32_t, 9> counts{};
+    const auto plane = static_cast<std::size_t>(layout.pitch()) * static_cast<std::size_t>(layout.strips());
+    for (int n = 0; n < (p.nx + 1) * layout.strips(); ++n) {
+        std::array<std::uint32_t, LIMIT_SUMS> counts{};
         double driven2 = 0, wave = 0, top = -1e30, bottom = 1e30, deep_sand = 0, highest = -1e30;
         std::uint32_t unsure = 0; // columns so near to the largest height that a float may tell either way
-        const int first_i = tile % layout.tile_columns() * STRIP, first_j = tile / layout.tile_columns() * STRIP;
-        for (int j = first_j; j < std::min(first_j + STRIP, p.ny + 1); ++j) {
-            for (int i = first_i; i < std::min(first_i + STRIP, p.nx + 1); ++i) {
-                const auto marked = [&](int a, int b, std::size_t layer) { return marks[layout.index(a, b)] >> (16 * layer); };
-                for (std::size_t layer = 0; layer < 2; ++layer) {
-                    const std::uint32_t of = marked(i, j, layer);
-                    const std::uint32_t found[] = {of & 3u, (of >> 2 & 3u) + (of >> 4 & 3u), (of >> 6 & 1u) + (of >> 7 & 1u),
-                                                   of >> 8 & 1u};
-                    for (std::size_t n = 0; n < 4; ++n) counts[4 * layer + n] += found[n];
-                }
-                if (i == p.nx || j == p.ny) continue;
-                // Any of the cell's four faces: bits of the west and south one at its own place.
-                const auto beside = [&](std::size_t layer, std::uint32_t x, std::uint32_t y) {
-                    return ((marked(i, j, layer) & (x | y)) | (marked(i + 1, j, layer) & x) | (marked(i, j + 1, layer) & y)) != 0;
-                };
-                const double w = limits.height("water_height", i, j), s = limits.height("sand_height", i, j);
-                if (beside(1, 64, 128)) deep_sand = std::max(deep_sand, s);
-                if (water && beside(0, 64, 128)) {
-                    const auto size = [&](const char* name, int a, int b) { return std::abs(limits.height(name, a, b)); };
-                    const double speed = std::max({size("water_velocity_x", i, j), size("water_velocity_x", i + 1, j),
-                                                   size("water_velocity_y", i, j), size("water_velocity_y", i, j + 1)});
-                    wave = std::max(wave, speed + std::sqrt(static_cast<double>(p.gravity) * standing_water<double>(run, i, j)));
-                }
-                const double column = limits.height("terrain", i, j) + s + w, most = static_cast<double>(p.largest_height);
-                counts[8] += column > most * (1 + 1e-6) ? 1 : 0;
-                unsure += std::abs(column - most) <= 1e-6 * most ? 1 : 0;
-                highest = std::max(highest, column);
-                const double depth = std::max(standing_water<double>(run, i, j) - s, 0.0);
-                if (!water || depth <= static_cast<double>(p.dry_threshold)) continue;
-                top = std::max(top, limits.surface(i, j));
-                if (!beside(0, 12, 48)) continue;
-                bottom = std::min(bottom, limits.surface(i, j));
-                driven2 = std::max(driven2, limits.driven2(i, j, depth));
+        const int i = n % (p.nx + 1), strip = n / (p.nx + 1);
+        for (int j = strip * STRIP; j < std::min((strip + 1) * STRIP, p.ny + 1); ++j) {
+            const auto marked = [&](int a, int b, std::size_t layer) { return marks[layout.index(a, b)] >> (16 * layer); };
+            for (std::size_t layer = 0; layer < 2; ++layer) {
+                const std::uint32_t of = marked(i, j, layer);
+                const std::uint32_t found[] = {of & 3u, (of >> 2 & 3u) + (of >> 4 & 3u), (of >> 6 & 1u) + (of >> 7 & 1u),
+                                               of >> 8 & 1u};
+                for (std::size_t kind = 0; kind < 4; ++kind) counts[4 * layer + kind] += found[kind];
             }
+            if (i == p.nx || j == p.ny) continue;
+            // Any of the cell's four faces: bits of the west and south one at its own place.
+            const auto beside = [&](std::size_t layer, std::uint32_t x, std::uint32_t y) {
+                return ((marked(i, j, layer) & (x | y)) | (marked(i + 1, j, layer) & x) | (marked(i, j + 1, layer) & y)) != 0;
+            };
+            const double w = limits.height("water_height", i, j), s = limits.height("sand_height", i, j);
+            if (beside(1, 64, 128)) deep_sand = std::max(deep_sand, s);
+            if (water && beside(0, 64, 128)) {
+                const auto size = [&](const char* name, int a, int b) { return std::abs(limits.height(name, a, b)); };
+                const double speed = std::max({size("water_velocity_x", i, j), size("water_velocity_x", i + 1, j),
+                                               size("water_velocity_y", i, j), size("water_velocity_y", i, j + 1)});
+                wave = std::max(wave, speed + std::sqrt(static_cast<double>(p.gravity) * standing_water<double>(run, i, j)));
+            }
+            const double column = limits.height("terrain", i, j) + s + w, most = static_cast<double>(p.largest_height);
+            counts[8] += column > most * (1 + 1e-6) ? 1 : 0;
+            unsure += std::abs(column - most) <= 1e-6 * most ? 1 : 0;
+            highest = std::max(highest, column);
+            const double depth = std::max(standing_water<double>(run, i, j) - s, 0.0);
+            if (!water || depth <= static_cast<double>(p.dry_threshold)) continue;
+            top = std::max(top, limits.surface(i, j));
+            if (!beside(0, 12, 48)) continue;
+            bottom = std::min(bottom, limits.surface(i, j));
+            driven2 = std::max(driven2, limits.driven2(i, j, depth));
         }
-        const auto got = run.buffer("limit_counts").words().subspan(static_cast<std::size_t>(tile) * LIMIT_WORDS, LIMIT_WORDS);
-        for (std::size_t n = 0; n < counts.size(); ++n) {
-            if (got[n] >= counts[n] && got[n] <= counts[n] + (n == 8 ? unsure : 0)) continue;
-            return failed("limit_counts " + std::to_string(n) + " of tile " + std::to_string(tile) + " is " +
-                          std::to_string(got[n]) + ", counted " + std::to_string(counts[n]));
+        const auto all = run.buffer("limit_columns").words();
+        const std::string of_column = " of column " + std::to_string(i) + ", strip " + std::to_string(strip) + " is ";
+        std::array<std::uint32_t, LIMIT_WORDS> got{};
+        for (std::size_t word = 0; word < got.size(); ++word)
+            got[word] = all[word * plane + static_cast<std::size_t>(strip * layout.pitch() + i)];
+        for (std::size_t word = 0; word < counts.size(); ++word) {
+            if (got[word] >= counts[word] && got[word] <= counts[word] + (word == 8 ? unsure : 0)) continue;
+            return failed("word " + std::to_string(word) + of_column + std::to_string(got[word]) + ", counted " +
+                          std::to_string(counts[word]));
         }
         const double numbers[] = {driven2, wave, top, bottom, deep_sand, highest};
-        for (std::size_t n = 0; n < std::size(numbers); ++n) {
-            const double value = static_cast<double>(std::bit_cast<float>(got[9 + n]));
-            if (std::abs(value - numbers[n]) <= 1e-4 * std::max(std::abs(numbers[n]), 1e-3)) continue;
-            return failed("limit_counts " + std::to_string(9 + n) + " of tile " + std::to_string(tile) + " is " +
-                          std::to_string(value) + ", by its definition " + std::to_string(numbers[n]));
+        for (std::size_t word = LIMIT_SUMS; word < got.size(); ++word) {
+            const double value = static_cast<double>(std::bit_cast<float>(got[word])), wanted = numbers[word - LIMIT_SUMS];
+            if (std::abs(value - wanted) <= 1e-4 * std::max(std::abs(wanted), 1e-3)) continue;
+            return failed("word " + std::to_string(word) + of_column + std::to_string(value) + ", by its definition " +
+                          std::to_string(wanted));
+        }
+    }
+    return {};
+}
+
+Verdict check_limit_folds(const StageRun& run) {
+    const FieldLayout layout{run.params.nx, run.params.ny};
+    const auto& columns = run.buffer("limit_columns").before;
+    const auto got = run.buffer("limit_counts").words();
+    for (int tile = 0; tile < layout.tile_columns() * layout.strips(); ++tile) {
+        const int first = tile % layout.tile_columns() * STRIP, strip = tile / layout.tile_columns();
+        for (int word = 0; word < LIMIT_WORDS; ++word) {
+            std::uint32_t sum = 0;
+            float least = 1e30F, most = -1e30F;
+            for (int i = first; i < std::min(first + STRIP, layout.nx + 1); ++i) {
+                const std::uint32_t found =
+                    columns[static_cast<std::size_t>((word * layout.strips() + strip) * layout.pitch() + i)];
+                sum += found;
+                least = std::min(least, std::bit_cast<float>(found));
+                most = std::max(most, std::bit_cast<float>(found));
+            }
+            const std::uint32_t wanted =
+                word < LIMIT_SUMS ? sum : std::bit_cast<std::uint32_t>(word == LIMIT_LEAST ? least : most);
+            const std::uint32_t is = got[static_cast<std::size_t>(tile * LIMIT_WORDS + word)];
+            if (is != wanted)
+                return failed("word " + std::to_string(word) + " of tile " + std::to_string(tile) + " is " + std::to_string(is) +
+                              ", not " + std::to_string(wanted));
         }
     }
     return {};

@@ -270,7 +270,7 @@ Status measure_beside_step(Device& device, PassRunner& runner, const char* stage
     return ok_status();
 }
 
-// What a host asks for beside the step: one brush 64 cells wide, 1000 points.
+// What a host asks for beside the step: one brush 64 cells wide, 1000 points, which limits spoke.
 Status measure_host_work(Device& device, int size, const PerfOptions& options, std::vector<Row>& rows) {
     constexpr int points = 1000;
     auto scene = make_large_scene(size, options.scene, ALL);
@@ -284,9 +284,15 @@ Status measure_host_work(Device& device, int size, const PerfOptions& options, s
             xy.push_back(static_cast<float>(size * dx * std::fmod(step * (n + 1), 1.0)));
     std::map<std::string, compute::Buffer> extra;
     Status status;
-    for (const auto& [name, bytes] : {std::pair<const char*, std::uint64_t>{"stamp_images", STAMP_PAGE * 4},
-                                      {"points", xy.size() * 4},
-                                      {"samples", std::uint64_t{points} * SAMPLE_FLOATS * 4}}) {
+    for (const auto& [name, bytes] :
+         {std::pair<const char*, std::uint64_t>{"stamp_images", STAMP_PAGE * 4},
+          {"points", xy.size() * 4},
+          {"samples", std::uint64_t{points} * SAMPLE_FLOATS * 4},
+          {"limit_marks", runner.layout().size() * 4},
+          {"limit_columns", std::uint64_t{LIMIT_WORDS} * 4 * static_cast<std::uint64_t>(runner.layout().pitch()) *
+                                static_cast<std::uint64_t>(runner.layout().strips())},
+          {"limit_counts", std::uint64_t{LIMIT_WORDS} * 4 * static_cast<std::uint64_t>(runner.layout().tile_columns()) *
+                               static_cast<std::uint64_t>(runner.layout().strips())}}) {
         auto made = device.create_buffer({bytes, name});
         if (made) extra[name] = *made;
         if (status) status = made.status();
@@ -307,6 +313,9 @@ Status measure_host_work(Device& device, int size, const PerfOptions& options, s
     if (status)
         status = measure_beside_step(device, runner, "sample_points", query, extra, {.name = "1000 points", .size = size},
                                      options, rows);
+    for (const char* stage : {"mark_limits", "count_limits", "fold_limits"})
+        if (status)
+            status = measure_beside_step(device, runner, stage, StepInput{}, extra, {.name = stage, .size = size}, options, rows);
     for (const auto& [name, buffer] : extra) device.destroy_buffer(buffer);
     return status;
 }
@@ -380,6 +389,7 @@ Status run_perf(Session& session, const PerfOptions& options, bool first) {
         if (!options.stage.empty()) continue;
         constexpr std::pair<const char*, std::uint32_t> steps[] = {
             {"step, all effects", ALL},
+            {"step, all effects and infiltration", ALL | EFFECT_INFILTRATION},
             {"step, sand of the paper", ALL & ~SAND_LAWS},
             {"step, published", (ALL & ~never_published) | EFFECT_PUBLISHED},
             {"step, water only", EFFECT_WATER},

@@ -203,6 +203,7 @@ constexpr Definition definitions[] = {
     {"apply_sources", check_source_ledger},
     {"mark_limits", check_marks},
     {"count_limits", check_limit_counts},
+    {"fold_limits", check_limit_folds},
     {"sample_points", check_samples},
     {"apply_edits", check_edits},
     {"write_values", check_values},

@@ -44,6 +44,7 @@ Verdict check_definition(const StageRun& run);
 
 Verdict check_marks(const StageRun& run);        // marks_check.cpp
 Verdict check_limit_counts(const StageRun& run); // marks_check.cpp
+Verdict check_limit_folds(const StageRun& run);  // marks_check.cpp
 Verdict check_published(const StageRun& run);    // published_check.cpp
 Verdict check_strips(const StageRun& run);       // tiles_check.cpp
 Verdict check_tiles(const StageRun& run);        // tiles_check.cpp

@@ -1,5 +1,6 @@
 #include "tests/conformance/stage_inputs.hpp"
 #include "engine/step/plan/source_shapes.hpp"
+#include "shaders/physics/limit_marks.glsl"
 #include "tests/conformance/active_tiles_check.hpp"
 #include "tests/conformance/compare.hpp"
 #include "tests/conformance/edits_check.hpp"
@@ -143,6 +144,22 @@ std::vector<std::uint32_t> mark_words(std::size_t count) {
     return words;
 }
 
+// Counts and floats of columns, as count_limits leaves them; or nothing yet, all of which it must write but the row's rest.
+void fill_limit_columns(BenchBuffer& buffer, const FieldLayout& layout, bool found) {
+    const auto pitch = static_cast<std::size_t>(layout.pitch()), rows = LIMIT_WORDS * static_cast<std::size_t>(layout.strips());
+    std::vector<std::uint32_t> words(pitch * rows, nan_word);
+    if (found)
+        for (std::size_t n = 0; n < words.size(); ++n) {
+            const std::uint32_t count = static_cast<std::uint32_t>(n) * 2654435761u >> 25;
+            const bool sum = n < LIMIT_SUMS * pitch * static_cast<std::size_t>(layout.strips());
+            words[n] = sum ? count : std::bit_cast<std::uint32_t>(static_cast<float>(count) - 64.0F);
+        }
+    fill_words(buffer, std::move(words), !found);
+    if (found) return;
+    for (std::size_t n = 0; n < pitch * rows; ++n) buffer.may_change[n] = n % pitch <= static_cast<std::size_t>(layout.nx);
+    buffer.must_change = buffer.may_change;
+}
+
 std::vector<std::uint32_t> ledger_words(std::size_t count) {
     std::vector<std::uint32_t> words(count);
     for (std::size_t n = 0; n < count; ++n) words[n] = ledger_start(n);
@@ -195,6 +212,8 @@ std::vector<BenchBuffer> stage_buffers(const compute::StageInfo& stage, const Sc
             buffers[b].must_change = buffers[b].may_change;
         } else if (binding.name == "limit_marks" && binding.access == Access::in) {
             fill_words(buffers[b], mark_words(layout.size()), false);
+        } else if (binding.name == "limit_columns") {
+            fill_limit_columns(buffers[b], layout, binding.access == Access::in);
         } else if (binding.name == "limit_counts") {
             const auto tiles = static_cast<std::size_t>(layout.tile_columns() * layout.strips());
             fill_words(buffers[b], std::vector<std::uint32_t>(tiles * LIMIT_WORDS, nan_word), true);

@@ -142,7 +142,8 @@ Status WorldState::prepare(std::uint32_t effects) {
         std::set<int> stages = {compute::find_stage("apply_edits")};
         for (const auto* passes : {&plan.start_passes, &plan.water_passes, &plan.substep_passes})
             for (const auto& pass : *passes) stages.insert(pass.stage);
-        if (log) stages.merge(std::set<int>{compute::find_stage("mark_limits"), compute::find_stage("count_limits")});
+        if (log)
+            for (const char* stage : looking_stages) stages.insert(compute::find_stage(stage));
         for (const int stage : stages) {
             if (auto made = device_.create_pipeline(stage, effects, group_of(stage, tiles)); !made) return made.status();
         }

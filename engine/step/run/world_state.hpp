@@ -4,12 +4,16 @@
 #include "engine/settings/rules/effects.hpp"
 #include "engine/step/run/active_tiles.hpp"
 #include "engine/step/run/field_store.hpp"
+#include <array>
 #include <optional>
 
 namespace wadi {
 
 /// Buffers by the name of a stage's binding.
 using Slots = std::map<std::string, compute::Buffer>;
+
+/// By these, one after the other, a world looks for limits at work (engine/reads/limits.hpp).
+inline constexpr std::array looking_stages = {"mark_limits", "count_limits", "fold_limits"};
 
 class WorldState {
   public:
