@@ -112,3 +112,8 @@ LEAF float bits_float(int x) { float r; __builtin_memcpy(&r, &x, 4); return r; }
 // Without short circuits: a branch inside a stage would stop the loop from vectorising.
 LEAF bool both(bool a, bool b) { return static_cast<bool>(static_cast<int>(a) & static_cast<int>(b)); }
 LEAF bool either(bool a, bool b) { return static_cast<bool>(static_cast<int>(a) | static_cast<int>(b)); }
+// By bits: behind a condition g++ would sink the load of a or b, and the row would not vectorise.
+LEAF float choose(bool c, float a, float b) {
+    int mask = -static_cast<int>(c);
+    return bits_float((float_bits(a) & mask) | (float_bits(b) & ~mask));
+}

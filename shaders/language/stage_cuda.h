@@ -87,3 +87,4 @@ FN int float_bits(float x) { return __float_as_int(x); }
 FN float bits_float(int x) { return __int_as_float(x); }
 FN bool both(bool a, bool b) { return a && b; }
 FN bool either(bool a, bool b) { return a || b; }
+FN float choose(bool c, float a, float b) { return c ? a : b; }

@@ -41,3 +41,4 @@ int float_bits(float x) { return floatBitsToInt(x); }
 float bits_float(int x) { return intBitsToFloat(x); }
 bool both(bool a, bool b) { return a && b; }
 bool either(bool a, bool b) { return a || b; }
+float choose(bool c, float a, float b) { return c ? a : b; }

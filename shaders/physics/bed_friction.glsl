@@ -20,14 +20,17 @@ FN float bed_grip(float friction_dt, float gravity_dt, float rough, bool any_rou
     return grip;
 }
 
+// Size of a velocity of at most 1e14 m/s, 1e-14 where there is none: what is rooted is in the range of lean_root.
+FN float size_of(float x, float y) { return lean_root((x * x + y * y) + 1.0e-28f); }
+
 // A component of the velocity behind friction V' = V* - rate |V'| V': `pushed` is its component of V*, `own` and `across` are the
 // face's and the cross velocity from before the step, rate = dt c/h [s/m]. V* across is taken as what friction would hold at `across`,
 // so that a steady flow is the same for any time step.
 FN float bed_friction(float pushed, float own, float across, float rate) {
-    float held = across * (1.0f + wmin(rate * wsqrt(square(own) + square(across)), 1.0e30f));
-    float speed = wsqrt(square(wclamp(pushed, -1.0e15f, 1.0e15f)) + square(wclamp(held, -1.0e15f, 1.0e15f)));
-    float root = wsqrt(1.0f + wmin(4.0f * rate * speed, 1.0e30f)); // of an infinity it is undefined on some GPUs
-    return wdiv(2.0f * pushed, 1.0f + root);
+    float push = wclamp(pushed, -1.0e14f, 1.0e14f);
+    float held = wclamp(across * (1.0f + wmin(rate * size_of(own, across), 1.0e29f)), -1.0e14f, 1.0e14f);
+    float root = lean_root(1.0f + wmin(4.0f * rate * size_of(push, held), 1.0e29f)); // of an infinity it is undefined on some GPUs
+    return lean_quotient(2.0f * push, 1.0f + root); // next to nothing is flushed behind it
 }
 
 #endif

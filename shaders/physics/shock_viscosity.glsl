@@ -24,14 +24,16 @@ FN float faster_flux(float u_low, float u_high, float flux_low, float flux_high)
 
 // Viscous flux of a cell (NUMERICS 2.3, after von Neumann and Richtmyer 1950, limited after Christensen 1990): of what the neighbours'
 // compression does not explain. Three times it does, so that no smooth wave is damped but at its crest, where 12 k times the rest is
-// next to nothing. 0.12 keeps the explicit step stable at a step of the depth. carried: what the faster of its faces moves; a film
-// that runs into a lake at speed brings it next to nothing.
-FN float shock_flux(Compression at, float height, float carried, float viscosity, float k) {
+// next to nothing. 0.12 keeps the explicit step stable at a step of the depth. The faster of its two faces bounds it by what it carries;
+// a film that runs into a lake at speed brings it next to nothing.
+FN float shock_flux(Compression at, float height, float u_low, float u_high, float flux_low, float flux_high, float viscosity, float k) {
     float rest = wmax(at.own - wmax(3.0f * wmin(at.low, at.high), 0.0f), 0.0f);
     float flux = 0.0f;
     if (UNIFORM(rest > 0.0f)) {
-        float number = wmin(wmin(viscosity * wsqrt(wmax(height, 0.0f)), 12.0f * k * rest), 0.12f);
-        flux = -wmin(number * height, 4.0f * carried) * rest;
+        float carried = faster_flux(u_low, u_high, flux_low, flux_high);
+        float depth = wmax(height, 0.0f);
+        float number = wmin(wmin(viscosity * lean_root(wmax(depth, 1.0e-28f)), 12.0f * k * rest), 0.12f);
+        flux = -wmin(number * depth, 4.0f * carried) * rest;
     }
     return flux;
 }

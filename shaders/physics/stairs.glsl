@@ -12,11 +12,11 @@ struct Stairs {
 // A face through which nothing runs stands at exactly 0.
 FN float shut(float velocity) { return velocity == 0.0f ? 1.0f : 0.0f; }
 
-// Whether any face around is shut: without one no corner stands beside.
+// Whether a face around may be shut: without one no corner stands beside. A product of creeping ones may come to nothing, too.
 FN bool touches_bank(Around at, float left_low, float left_high, float right_low, float right_high) {
-    float along = wmin(wmin(wabs(at.low), wabs(at.high)), wmin(wabs(at.left), wabs(at.right)));
-    float across = wmin(wmin(wabs(left_low), wabs(left_high)), wmin(wabs(right_low), wabs(right_high)));
-    return wmin(along, across) == 0.0f;
+    float along = (at.low * at.high) * (at.left * at.right);
+    float across = (left_low * left_high) * (right_low * right_high);
+    return either(along == 0.0f, across == 0.0f);
 }
 
 // Whether anything goes through the four sides of a face's control volume.
@@ -46,9 +46,8 @@ FN float turned_gain(float inflow, float turned, float own, float near, float ac
     float across = wmax(wabs(across_a), wabs(across_b));
     float speed = wmax(along, across) + 0.25f * wmin(along, across); // of both, from 12 % below to 3 % above
     float faster = wclamp(own, -speed, speed) - near;
-    float up = own > 0.0f ? 1.0f : 0.0f;
-    float down = own < 0.0f ? 1.0f : 0.0f;
-    return wmin(wmax(turned, 0.0f), wmax(inflow, 0.0f)) * (up * wmax(faster, 0.0f) + down * wmin(faster, 0.0f));
+    float with_own = own * faster > 0.0f ? faster : 0.0f;
+    return wmin(wmax(turned, 0.0f), wmax(inflow, 0.0f)) * with_own;
 }
 
 #endif

@@ -8,9 +8,6 @@ struct Around {
     float low, high, left, right;
 };
 
-// A velocity beside a face, or where that lies beyond the grid another. Bounds choose: g++ would sink the load behind a condition.
-FN float beyond_side(float inside, float beyond, bool in_grid) { return wclamp(inside, in_grid ? -1.0e30f : beyond, in_grid ? 1.0e30f : beyond); }
-
 // Flux-form staggered upwind advection of one face velocity in increment form (NUMERICS 2.3, after Stelling and
 // Duinmeijer 2003): flux_* are the depths moved through the four sides of the face's own control volume, each the sum of two faces',
 // low and high along its direction, left and right across it; height its mean new depth, inv_sum 1 over the sum of both cells': the halves
