@@ -46,7 +46,7 @@ FN float turned_gain(float inflow, float turned, float own, float near, float ac
     float across = wmax(wabs(across_a), wabs(across_b));
     float speed = wmax(along, across) + 0.25f * wmin(along, across); // of both, from 12 % below to 3 % above
     float faster = wclamp(own, -speed, speed) - near;
-    float with_own = own * faster > 0.0f ? faster : 0.0f;
+    float with_own = (own * 1.0e20f) * faster > 0.0f ? faster : 0.0f; // no product of both is next to nothing
     return wmin(wmax(turned, 0.0f), wmax(inflow, 0.0f)) * with_own;
 }
 
