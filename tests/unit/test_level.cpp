@@ -39,7 +39,7 @@ TEST_CASE("level: layers of water draw how deep it stands, pores hold their shar
         return at(level, level.fields.water, 3, 3);
     };
     struct Drawn {
-        const char* layer;
+        std::string layer;
         double porous, whole; // water for a porosity of 0.4 and of 1 [m]
     };
     for (const Drawn& drawn : {Drawn{R"("wet": 0.5)", 0.2, 0.5}, Drawn{R"("wet": 1)", 0.4, 1},
