@@ -68,35 +68,44 @@ bool forced_off(const Settings& settings, const char* effect) {
 
 /// What of the settings decides whether a wet slope holds.
 struct SlopeLaw {
-    double density_ratio, friction, chi;
-    double porosity, buoyancy; // n, beta (NUMERICS 2.23)
+    double density_ratio, friction, chi; // chi > 0: pressure in pores bears weight, too (NUMERICS 2.18)
+    double porosity, buoyancy;           // n, beta (NUMERICS 2.23)
     bool drag;
+    double retained; // what pores hold back, of sand on its slope
 
     explicit SlopeLaw(const Settings& settings)
         : density_ratio(settings.material.water_density / settings.material.sand_density), friction(settings.material.friction),
-          chi(forced_off(settings, "slope_normal") ? 0 : settings.material.slope_normal),
+          chi(forced_off(settings, "slope_normal") || settings.method.published() ? 0 : settings.material.slope_normal),
           porosity(forced_off(settings, "mixture") || settings.method.published() ? 1 : settings.material.porosity),
-          buoyancy(porosity < 1 ? 1 - porosity : 1), drag(settings.material.exchange_rate > 0 && !forced_off(settings, "drag")) {}
+          buoyancy(porosity < 1 ? 1 - porosity : 1), drag(settings.material.exchange_rate > 0 && !forced_off(settings, "drag")),
+          retained(chi > 0 && drag && !forced_off(settings, "retention") && !forced_off(settings, "mixture")
+                       ? settings.material.retention
+                       : 0) {}
 };
 
 /// What pushes and holds sand on a wet slope, per weight of the sand (section 4).
 struct WetSlope {
-    double held = 0;  // by friction, buoyancy taken off
-    double water = 0; // push of pore water by drag, per slope of the sand
+    double held = 0;   // by friction, what pressure bears taken off
+    double weight = 0; // that pushes
+    double water = 0;  // push of pore water by drag, per slope of the sand
     double chi = 0;
 
     /// `wetness`: share of the sand's depth that water fills; `fall`: of the water's surface per fall of the sand's.
     WetSlope(const SlopeLaw& law, double wetness, double fall) {
-        const double ratio = law.density_ratio * wetness;
-        held = std::max(law.friction * (1 - law.buoyancy * ratio), 0.0);
+        const double ratio = law.density_ratio * std::max(wetness - law.retained, 0.0) / (1 - law.retained);
+        const double left = std::max(1 - law.buoyancy * ratio, 0.0);
+        held = law.friction * left;
+        weight = law.chi > 0 ? left : 1;
         water = law.drag ? ratio * fall : 0;
         chi = law.chi;
     }
-    double push(double slope) const { return slope * (1 + water * (1 + chi * slope * slope)); }
+    double push(double slope) const { return slope * (weight + water * (1 + chi * slope * slope)); }
     /// Slope where both are the same.
     double limit() const {
-        double slope = held / (1 + water); // no less than it, and Newton's steps stay so
-        for (int n = 0; n < 8; ++n) slope -= (push(slope) - held) / (1 + water * (1 + 3 * chi * slope * slope));
+        const double least = weight + water;
+        if (least <= 0) return 0;
+        double slope = held / least; // no less than it, and Newton's steps stay so
+        for (int n = 0; n < 8; ++n) slope -= (push(slope) - held) / (least + 3 * water * chi * slope * slope);
         return slope;
     }
 };
@@ -298,12 +307,13 @@ void warn_sand(const Settings& s, const Survey& survey, std::vector<std::string>
             "method.sand_transport_order: 2 with water_transport_order 1 moves sand and the water in it apart, and "
             "damp sand tears into ripples; set both to 2");
     if (survey.steep_faces > 0)
-        warnings.push_back(
-            "wet sand slopes up to " + number_text(std::round(survey.steepest_wet * 1000) / 1000) + " at " +
-            std::to_string(survey.steep_faces) + " faces, more than friction holds there, " +
-            number_text(std::round(survey.steepest_limit * 1000) / 1000) +
-            " (friction (1 - r), r = density ratio * W/hs, over 1 + r (1 + slope_normal slope^2) where the water's surface falls "
-            "as the sand's does): it will slump; lower the slopes or the water, or raise material.friction");
+        warnings.push_back("wet sand slopes up to " + number_text(std::round(survey.steepest_wet * 1000) / 1000) + " at " +
+                           std::to_string(survey.steep_faces) + " faces, more than friction holds there, " +
+                           number_text(std::round(survey.steepest_limit * 1000) / 1000) +
+                           " (friction (1 - b r) over 1 - b r + r (1 + slope_normal slope^2) where the water's surface falls as "
+                           "the sand's does, r = "
+                           "density ratio times the share of full pores, b = 1 - porosity, or 1): it will slump; lower the "
+                           "slopes or the water, or raise material.friction");
 }
 
 /// True when a cell centre lies inside the source; a point always has its cell.

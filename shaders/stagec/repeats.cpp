@@ -50,6 +50,27 @@ Source words_written_out(const Source& stage) {
     return out;
 }
 
+// What the parts of a vector in a parameter block mean has nothing to do with axes: there .x would silently become .y.
+void refuse_parts_of_parameters(const Source& stage, std::size_t begin, std::size_t end) {
+    const std::string& text = stage.text;
+    for_each_word(text.substr(0, end), [&](const std::string& word, std::size_t at) {
+        if (at < begin || (word != "P" && word != "S") || text[at - 1] == '.') return;
+        int members = 0;
+        for (std::size_t next = at + word.size(); next < end && (text[next] == '.' || text[next] == '[');) {
+            if (text[next] == '[') {
+                next = behind_bracket(stage, next);
+                continue;
+            }
+            const std::string member = word_at(text, next + 1);
+            next += 1 + member.size();
+            const bool part = ++members > 1 && (member == "x" || member == "y");
+            if (part)
+                stage.fail(at, text.substr(at, next - at) +
+                                   " would be another number for the other axis: read it ahead of EACH_AXIS");
+        }
+    });
+}
+
 } // namespace
 
 Source written_out(const Source& given, const std::string& reads) {
@@ -66,9 +87,11 @@ Source written_out(const Source& given, const std::string& reads) {
         const std::size_t next = skip_blanks(stage.text, at + word.size());
         if (next < stage.text.size() && stage.text[next] == '{') {
             const std::size_t end = behind_bracket(stage, next);
+            refuse_parts_of_parameters(stage, next, end);
             all.push_back({at, end, AxisBlock(stage, next + 1, end - 1, changing), {}});
         } else if (word_at(stage.text, next) == "HELPER") {
             const std::size_t end = behind_bracket(stage, std::min(stage.text.find('{', next), stage.text.size() - 1));
+            refuse_parts_of_parameters(stage, next, end);
             const std::string text = stage.text.substr(next, end - next);
             const std::string other = other_axis(text);
             if (tidy(other) == tidy(text)) stage.fail(at, "nothing in this function is another for each axis");

@@ -24,6 +24,7 @@ constexpr int exit_failed = 1, exit_usage = 2, exit_skipped = 77;
 struct Options {
     std::vector<std::string> backends, required, suites;
     std::string stage, chosen_case, level, output = "console";
+    bool from_reference = false; // locate
     bool validate = false;
     int max_cells = 0; // of a case's grid; 0 = no limit
     int max_steps = 0; // of a case; 0 = no limit
@@ -214,8 +215,9 @@ int run_perf_mode(const Options& options, bool of_tiles) {
     return targets->empty() ? exit_skipped : 0;
 }
 
-// Where a level first runs otherwise on a device than on the plain CPU: what to do with the level that a fuzzer's failure left.
-Result<std::string> locate_in_level(Session& session, const Level& level, int max_steps) {
+// Where a level first runs otherwise on a device than on the plain CPU, or than the reference solver: what to do with the level
+// that a fuzzer's failure left.
+Result<std::string> locate_in_level(Session& session, const Level& level, int max_steps, bool from_reference) {
     auto device = session.device();
     if (!device) return device.status();
     auto plain = open_plain_cpu(), other = open_plain_cpu();
@@ -226,6 +228,7 @@ Result<std::string> locate_in_level(Session& session, const Level& level, int ma
     const Scene scene{level.name, level.settings, level.fields, (*world)->plan().effects};
     int steps = std::max(1, static_cast<int>(std::lround(level.duration / level.settings.dt)));
     if (max_steps > 0) steps = std::min(steps, max_steps);
+    if (from_reference) return locate_against_reference(**device, scene, steps);
     return locate_against_device(**device, **other, scene, steps);
 }
 
@@ -240,7 +243,7 @@ int run_locate(const Options& options) {
     for (const auto& [name, why] : absent) std::fprintf(stderr, "%s: no device: %s\n", name.c_str(), why.c_str());
     for (const Target& target : *targets) {
         Session session(target, {});
-        auto found = locate_in_level(session, *level, options.max_steps);
+        auto found = locate_in_level(session, *level, options.max_steps, options.from_reference);
         if (!found) return usage(found.status());
         std::printf("%s  %s\n", target.label().c_str(), found->c_str());
     }
@@ -293,6 +296,7 @@ int run(int argc, char** argv) {
     CLI::App* locate =
         app.add_subcommand("locate", "say in which pass and cell a level first runs otherwise than on the plain CPU");
     locate->add_option("level", options.level, "its level.json, as wadi-fuzz leaves it")->required();
+    locate->add_flag("--reference", options.from_reference, "than the reference solver, within what rounding explains");
     const CLI::App* self_check = app.add_subcommand("self-check", "tamper with results; the tests must notice");
     CLI11_PARSE(app, argc, argv);
     if (perf->parsed() || tiles->parsed()) return run_perf_mode(options, tiles->parsed());

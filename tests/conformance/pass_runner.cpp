@@ -87,9 +87,13 @@ Status PassRunner::open() {
     return device_.write(buffer("source_shapes"), 0, std::as_bytes(std::span(shapes)));
 }
 
-std::vector<const PlanPass*> PassRunner::passes() const {
+std::vector<const PlanPass*> PassRunner::passes(bool first) const {
     std::vector<const PlanPass*> all;
-    for (const auto& pass : plan_.water_passes) all.push_back(&pass);
+    for (std::size_t n = 0; n < plan_.water_passes.size(); ++n) {
+        if (first && n == plan_.start_at)
+            for (const auto& pass : plan_.start_passes) all.push_back(&pass);
+        all.push_back(&plan_.water_passes[n]);
+    }
     for (int t = 0; t < plan_.substeps; ++t)
         for (const auto& pass : plan_.substep_passes) all.push_back(&pass);
     return all;
@@ -158,12 +162,10 @@ double PassRunner::bytes_of(const PlanPass& pass) const {
     return bytes;
 }
 
-std::string pass_label(const StepPlan& plan, std::size_t pass) {
-    const bool water = pass < plan.water_passes.size();
-    const std::size_t in_sand = water ? 0 : pass - plan.water_passes.size();
-    const PlanPass& found = water ? plan.water_passes[pass] : plan.substep_passes[in_sand % plan.substep_passes.size()];
-    std::string label(compute::stage_table()[static_cast<std::size_t>(found.stage)].name);
-    if (!water) label += " of substep " + std::to_string(in_sand / plan.substep_passes.size());
+std::string pass_label(const StepPlan& plan, const std::vector<const PlanPass*>& passes, std::size_t pass) {
+    const std::size_t sand = plan.substep_passes.size(), water = passes.size() - sand * static_cast<std::size_t>(plan.substeps);
+    std::string label(compute::stage_table()[static_cast<std::size_t>(passes[pass]->stage)].name);
+    if (pass >= water) label += " of substep " + std::to_string((pass - water) / sand);
     return label;
 }
 

@@ -25,8 +25,8 @@ class PassRunner {
     const StepPlan& plan() const { return plan_; }
     const WorldParams& params() const { return params_; }
     FieldLayout layout() const { return {params_.nx, params_.ny}; }
-    /// All passes of one water step, the substeps' repeated.
-    std::vector<const PlanPass*> passes() const;
+    /// All passes of one water step, the substeps' repeated; `first`: of a world's first, with what starts it.
+    std::vector<const PlanPass*> passes(bool first = false) const;
 
     /// Appends a pass to a program and makes its flips current.
     Status append(compute::ProgramBuilder& builder, const PlanPass& pass);
@@ -54,6 +54,6 @@ class PassRunner {
 };
 
 /// "limit_sand_outflow of substep 1": a pass of passes() by its place.
-std::string pass_label(const StepPlan& plan, std::size_t pass);
+std::string pass_label(const StepPlan& plan, const std::vector<const PlanPass*>& passes, std::size_t pass);
 
 } // namespace wadi::conformance

@@ -125,6 +125,7 @@ void References::run_stage(const std::string& stage) {
     const auto run = [&](auto& solver) {
         if (stage == "diffuse_mixed_velocity" || stage == "diffuse_mixed_water" || stage == "limit_water_outflow")
             solver.split_water();
+        if (stage == "start_water_velocity") return solver.start_water_velocity();
         run_reference_stage(solver, stage);
     };
     run(narrow);

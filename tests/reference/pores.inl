@@ -61,6 +61,11 @@ template <class Real> Real Solver<Real>::coupled_depth(std::size_t c) const {
 
 template <class Real> Real Solver<Real>::water_surface(std::size_t c) const { return terrain[c] + standing(c); }
 
+/// 2.24: of the water inside the sand, for the sand's substeps: what waited behind the water's step is left out in all of them.
+template <class Real> Real Solver<Real>::felt_surface(std::size_t c) const {
+    return has(EFFECT_INFILTRATION) ? terrain[c] + standing(felt_water[c], sand[c]) : water_surface(c);
+}
+
 /// The water of a cell whose surface stands at `level`.
 template <class Real> Real Solver<Real>::water_at_level(std::size_t c, Real level) const {
     const Real depth = std::max(level - terrain[c], Real(0));

@@ -77,8 +77,8 @@ template <class Real> void Solver<Real>::add_gravity(const Faces<Real>& old, con
         const Real own = slope.C * slope.r * slope.d;
         const Real borne = std::max(Real(1) - ratio * P.displaces * pores.full, Real(0)); // by the water's pressure
         // What drag brings of held water: the fall of the water's surface, where 2.4c lets it.
-        const Real eta_L = water_surface(L);
-        const Real eta_R = water_surface(R);
+        const Real eta_L = felt_surface(L);
+        const Real eta_R = felt_surface(R);
         const Real brought = blocked(mixed[L], mixed[R], eta_L, eta_R, P.eps) ? Real(0) : eta_R - eta_L;
         const Real weight = std::max(Real(1) - ratio * (P.displaces * pores.full - pores.held), Real(0));
         const Real down = borne * own + ratio * pores.held * (own - brought) + weight * wedge_push(ax, a, b, slope, own);

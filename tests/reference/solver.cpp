@@ -201,13 +201,13 @@ template <class Real> void Solver<Real>::load(const InitialFields& fields) {
     heights(fields.terrain, terrain);
     if (has(EFFECT_SAND)) heights(fields.sand, sand);
     if (has(EFFECT_WATER)) heights(fields.water, water);
+    for (std::size_t c = 0; c < cells(); ++c)
+        pore_water[c] = water[c] > Real(0) && water[c] >= pore_room(sand[c]) ? Real(-1) : water[c];
     for (std::size_t c = 0; c < cells(); ++c) Vxx[c] = Vyy[c] = Real(1) + balance(sand[c], water[c]);
     if (settings.method.prestress && has(EFFECT_COHESION) && has(EFFECT_SLOPE_NORMAL)) bound_balance();
     if (has(EFFECT_SAND)) velocities(fields.sand_velocity_x, fields.sand_velocity_y, sand_velocity);
     if (has(EFFECT_WATER)) velocities(fields.velocity_x, fields.velocity_y, pure_velocity);
     if (has(EFFECT_MIXTURE)) velocities(fields.velocity_x, fields.velocity_y, mixed_velocity);
-    for (std::size_t c = 0; c < cells(); ++c)
-        pore_water[c] = water[c] > Real(0) && water[c] >= pore_room(sand[c]) ? Real(-1) : water[c];
     split_water();
 }
 

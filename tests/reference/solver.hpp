@@ -267,6 +267,7 @@ template <class Real> class Solver {
     Real coupled_depth(std::size_t cell) const;
     Real open_depth(std::size_t cell) const;
     Real water_surface(std::size_t cell) const;
+    Real felt_surface(std::size_t cell) const;
     Real water_at_level(std::size_t cell, Real level) const;
     Real lifts(std::size_t one, std::size_t other) const;
     Real stressed(Real cohesive) const;

@@ -23,7 +23,8 @@ template <class Real> Real Solver<Real>::diffusion(const Axis& ax, int a, int b)
         q = -P.diffusion * (mixed[R] - mixed[L]) / P.dx;
     else if (open_depth(L) > P.eps && open_depth(R) > P.eps && std::abs(rise) > P.rest_surface * coarse)
         q = -P.porosity * P.diffusion * minmod(wet(R) - wet(L), rise) / P.dx;
-    return has(EFFECT_RETENTION) ? q * relative_permeability(q > Real(0) ? L : R) : q;
+    const std::size_t from = q > Real(0) ? L : R;
+    return has(EFFECT_RETENTION) && !waits(from) ? q * relative_permeability(from) : q; // 2.24: what waits is over full pores
 }
 
 template <class Real> void Solver<Real>::diffuse_mixed_water() {
@@ -245,7 +246,8 @@ template <class Real> void Solver<Real>::integrate_water_velocity() {
     advect(EFFECT_SECOND_ORDER_WATER, pure_predicted, pure_flux, centered_velocity, P.k, pure_velocity);
     for_inner_faces([&](const Axis& ax, int a, int b) { // 2.9: rain brings no velocity
         const Real depth = mean(pure_predicted[ax.cell(a - 1, b)], pure_predicted[ax.cell(a, b)]);
-        if (depth > Real(0) && !has(EFFECT_RAIN_MAP)) pure_velocity.along(ax)[ax.face(a, b)] *= Real(1) - std::min(rained / depth, Real(1));
+        if (depth > Real(0) && !has(EFFECT_RAIN_MAP))
+            pure_velocity.along(ax)[ax.face(a, b)] *= Real(1) - std::min(rained / depth, Real(1));
     });
     damp_shocks(before);
     if (has(EFFECT_MIXTURE)) {

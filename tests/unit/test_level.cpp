@@ -32,6 +32,29 @@ TEST_CASE("level: comments are allowed") {
     CHECK(parse_level("// a level\n" + level_text::level("/* none */ \"gravity\": 1.62"), "", {}));
 }
 
+TEST_CASE("level: layers of water draw how deep it stands, pores hold their share of that") {
+    const auto water = [](const std::string& layer, const std::string& more) {
+        const Level level =
+            must(parse(R"("sand": [{"shape": "plane", "height": 1}], "water": [{"shape": "plane", )" + layer + "}]" + more));
+        return at(level, level.fields.water, 3, 3);
+    };
+    struct Drawn {
+        std::string layer;
+        double porous, whole; // water for a porosity of 0.4 and of 1 [m]
+    };
+    for (const Drawn& drawn : {Drawn{R"("wet": 0.5)", 0.2, 0.5}, Drawn{R"("wet": 1)", 0.4, 1},
+                               Drawn{R"("surface": 0.5, "inside_sand": true)", 0.2, 0.5}, Drawn{R"("surface": 1.5)", 0.9, 1.5},
+                               Drawn{R"("surface": 1.5, "inside_sand": true)", 0.9, 1.5}}) {
+        CAPTURE(drawn.layer);
+        const std::string porous = R"(, "material": {"porosity": 0.4})";
+        CHECK(water(drawn.layer, porous) == doctest::Approx(drawn.porous).epsilon(1e-6));
+        CHECK(water(drawn.layer, "") == doctest::Approx(drawn.whole).epsilon(1e-6));
+        // One layer of water, and the paper, know no pores.
+        CHECK(water(drawn.layer, porous + R"(, "effects": {"mixture": "off"})") == doctest::Approx(drawn.whole).epsilon(1e-6));
+        CHECK(water(drawn.layer, porous + R"(, "method": {"name": "published"})") == doctest::Approx(drawn.whole).epsilon(1e-6));
+    }
+}
+
 TEST_CASE("level: plane") {
     const Level level = must(parse(R"("terrain": [{"shape": "plane", "height": 2, "slope_x": 0.1, "slope_y": -0.2}])"));
     CHECK(at(level, level.fields.terrain, 0, 0) == doctest::Approx(2 + 0.05 - 0.1).epsilon(1e-6));

@@ -189,13 +189,18 @@ TEST_CASE("level warnings: cohesion too weak for a wall, wet slopes") {
         return slope(std::to_string(rise), "\"wet\": " + wet, more);
     };
     const auto limit = [](const std::string& held) { return "at 1170 faces, more than friction holds there, " + held + " "; };
-    // tests/stability/quality/test_wet_sand.cpp has the same slopes move or stand.
-    CHECK_MESSAGE(says(seeping(1.05 * 0.1652, "1"), limit("0.165")), seeping(1.05 * 0.1652, "1"));
-    CHECK(seeping(0.95 * 0.1652, "1").empty());
-    CHECK(says(seeping(1.05 * 0.2972, "0.4925"), limit("0.297")));
-    CHECK(seeping(0.95 * 0.2972, "0.4925").empty());
-    CHECK(says(seeping(1.05 * 0.25, "1", R"(, "exchange_rate": 0)"), limit("0.25")));
-    CHECK(seeping(0.95 * 0.25, "1", R"(, "exchange_rate": 0)").empty());
+    // tests/stability/quality/test_wet_sand.cpp and test_porosity.cpp have the same slopes move or stand.
+    const auto turns_at = [&](double held, const char* text, const std::string& wet, const std::string& more = "") {
+        CHECK_MESSAGE(says(seeping(1.05 * held, wet, more), limit(text)), seeping(1.05 * held, wet, more));
+        CHECK_MESSAGE(seeping(0.95 * held, wet, more).empty(), seeping(0.95 * held, wet, more));
+    };
+    turns_at(0.2428, "0.243", "1");
+    turns_at(0.3612, "0.361", "0.75");
+    turns_at(0.5, "0.5", "0.4925"); // what pores hold back weighs as sand
+    turns_at(0.5, "0.5", "1", R"(, "exchange_rate": 0)");
+    turns_at(0.1667, "0.167", "1", R"(}, "effects": {"slope_normal": "off")"); // no pressure bears weight there
+    turns_at(0.2427, "0.243", "1", R"(, "porosity": 0.4, "sand_density": 1600)");
+    turns_at(0.2609, "0.261", "1", R"(, "porosity": 0.3, "sand_density": 1866.9)");
     CHECK(seeping(0.49, "0").empty());
     // Pores full to a level: nothing seeps.
     CHECK(slope("0.2", R"("surface": 0.6, "inside_sand": true)").empty());
@@ -205,6 +210,24 @@ TEST_CASE("level warnings: cohesion too weak for a wall, wet slopes") {
     };
     CHECK_FALSE(damp("0.3", "1").empty());
     CHECK(damp("0.3", "0.25").empty()); // cohesion holds it
+}
+
+TEST_CASE("level warnings: water that porous sand displaces counts with its depth, not with its volume") {
+    const auto lake = [](const char* porosity) { // up to 2 m over 1 m of sand, 1.4 m of water
+        return warnings(R"("sand": [{"shape": "plane", "height": 1}], "water": [{"shape": "plane", "surface": 2}],
+            "material": {"young_modulus": 2e5, "porosity": )" +
+                            std::string(porosity) + "}",
+                        0.03);
+    };
+    CHECK_MESSAGE(says(lake("0.4"), "and the level has 2 m; use"), lake("0.4"));
+    CHECK_MESSAGE(says(lake("1"), "and the level has 2 m; use"), lake("1"));
+    const auto pond = [](const char* porosity) { // the same beside a dry bed: 1 m above the sand
+        return warnings(R"("sand": [{"shape": "plane", "height": 1}],
+            "water": [{"shape": "box", "from": [0, 0], "to": [2, 3], "surface": 2}], "material": {"young_modulus": 2e5, "porosity": )" +
+                        std::string(porosity) + "}");
+    };
+    CHECK_MESSAGE(says(pond("0.4"), "water of 1 m beside dry ground"), pond("0.4"));
+    CHECK_MESSAGE(says(pond("1"), "water of 1 m beside dry ground"), pond("1"));
 }
 
 TEST_CASE("level warnings: an opening between two cell centres") {

@@ -1,7 +1,7 @@
 // Water that enters sand at a rate (NUMERICS 2.24): what runs on dry sand, what sinks into it, and what rests.
 #include "engine/settings/data/quanta.hpp"
 #include "engine/settings/rules/material_keys.hpp"
-#include "tests/stability/quality.hpp"
+#include "tests/stability/quality/wet_scenes.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -152,6 +152,34 @@ TEST_CASE("what an edit or rain adds stands on dry sand, what a level begins wit
     check_books(*world);
 }
 
+TEST_CASE("pores that shrink let go at once what they held: it stands on the sand that is left") {
+    for (const double conductivity : {1e-6, 0.0}) { // and where pores fill at once
+        CAPTURE(conductivity);
+        auto scene = flat_scene(8, 8, 0.5, 0.01);
+        make_slow_sand(scene.settings.material, conductivity, 0);
+        scene.fill(scene.fields.sand, [](double, double) { return 1.0; });
+        scene.fill(scene.fields.water,
+                   [](double x, double) { return x < 2 ? 0.3 : 0.4; }); // three quarters of the pores, and all
+        auto world = make_world(scene);
+        step(*world, 2);
+        const Edit digs = brush(EditLayer::sand, 2, 2, 50, -0.5, 0); // room is left for 0.2 m
+        edit_world(*world, {digs});
+        step(*world, 1);
+        const auto depth = cells_of(*world, "water_depth"), water = cells_of(*world, "water_height");
+        CHECK(water.at(0, 3) == doctest::Approx(0.3).epsilon(1e-5));
+        CHECK(depth.at(0, 3) == doctest::Approx(0.1).epsilon(0.002));
+        CHECK(depth.at(7, 3) == doctest::Approx(0.2).epsilon(0.002));
+        // control: sand that stays large enough keeps all of it, though an edit took some
+        auto kept = make_world(scene);
+        edit_world(*kept, {brush(EditLayer::sand, 2, 2, 50, -0.25, 0)}); // room is left for 0.3 m
+        step(*kept, 3);
+        CHECK(cells_of(*kept, "water_depth").at(0, 3) < 1e-5);
+        CHECK(cells_of(*kept, "water_depth").at(7, 3) == doctest::Approx(0.1).epsilon(0.002));
+        check_books(*world);
+        check_books(*kept);
+    }
+}
+
 TEST_CASE("a lake over soaked sand feels nothing when a host makes its sand tight") {
     auto scene = flat_scene(24, 6, 0.25, 0.01);
     make_slow_sand(scene.settings.material, 0, 0);
@@ -173,11 +201,9 @@ TEST_CASE("a lake over soaked sand feels nothing when a host makes its sand tigh
 TEST_CASE("water that enters sand at a rate: the same bits on every backend, over tiles, from a save, no quantum lost") {
     for (const double conductivity : {1e-7, 1e-3, 1.0}) {
         CAPTURE(conductivity);
-        auto scene = mixed_scene(70, 45);
+        auto scene = mixed_scene_with_sides(70, 45);
         scene.settings.material.porosity = pore_space;
         scene.settings.material.conductivity = conductivity;
-        scene.settings.sides[SIDE_WEST] = {SideKind::level, 0, 1e30, {{{0, 1.5}}}};
-        scene.settings.sides[SIDE_EAST] = {SideKind::outflow, 0, 1e30, {}};
         on_every_backend(scene, [](World& w) { step(w, 40); });
         auto tiled = scene;
         scene.settings.active_tiles = 0;

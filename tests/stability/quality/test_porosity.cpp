@@ -1,7 +1,7 @@
 // Pores that are a share of the sand (NUMERICS 2.23): what sand displaces, what it bears when it is soaked, how water seeps
 // through it.
 #include "engine/step/plan/world_params.hpp"
-#include "tests/stability/quality.hpp"
+#include "tests/stability/quality/wet_scenes.hpp"
 #include <algorithm>
 #include <cmath>
 
@@ -183,39 +183,11 @@ TEST_CASE("soaked sand with seepage along its slope stands to half of its fricti
     CHECK(soaked_speed(0.24, 1, 1600, 1e6) > 0.01); // control: what displaces as much as it has room for
 }
 
-namespace {
-
-/// Water that has entered a dry wall of sand, which stands, from a lake 1 m deep beside it after `seconds` [m2].
-double seeped_into(double dx, double seconds, double porosity) {
-    const int n = static_cast<int>(std::lround(24 / dx));
-    auto scene = flat_scene(n, 2, dx, 0.09 * dx);
-    auto& material = scene.settings.material;
-    make_quartz(material, porosity);
-    material.friction = 1.5;
-    material.young_modulus = 2e6;
-    material.cohesion_dry = material.cohesion_wet = material.cohesion_capillary = 2e5;
-    material.exchange_rate = 1e5;
-    material.diffusion_rate = material.retention = 0;
-    scene.settings.method.substeps = 3;
-    scene.fill(scene.fields.sand, [](double x, double) { return x > 12 ? 6.0 : 0.0; });
-    scene.fill(scene.fields.water, [](double x, double) { return x > 12 ? 0.0 : 1.0; });
-    auto world = make_world(scene);
-    step(*world, static_cast<int>(std::lround(seconds / scene.settings.dt)));
-    check_books(*world);
-    const auto water = cells_of(*world, "water_height").values;
-    double sum = 0;
-    for (int i = n / 2; i < n; ++i) sum += static_cast<double>(water[static_cast<std::size_t>(i)]) * dx;
-    return sum;
-}
-
-} // namespace
-
 TEST_CASE("water seeps into a wall of sand as Boussinesq's equation has it at any porosity") {
-    // n h_t = K (h h_x)_x: n times the height of the similarity solution is 0.8875 sqrt(n K h^3 t).
     for (const double porosity : {0.4, 1.0})
         for (const double dx : {0.2, 0.1}) {
-            const double exact = 0.8875 * std::sqrt(porosity * 1000 * 9.81 / 1e5 * 4);
-            const double share = seeped_into(dx, 4, porosity) / exact;
+            const double seeped = seeped_into_wall(dx, 4, [&](Material& material) { make_quartz(material, porosity); });
+            const double share = seeped / seeped_by_boussinesq(4, porosity);
             CAPTURE(porosity);
             MESSAGE("cells of " << dx << " m, porosity " << porosity << ": volume over that of the similarity solution "
                                 << share);
@@ -278,10 +250,8 @@ TEST_CASE("ground water between two levels flows as Dupuit has it at any porosit
 TEST_CASE("porous sand and water: the same bits on every backend, no quantum lost") {
     for (const double porosity : {0.4, 1.0 / 3, 0.02, 0.999}) {
         CAPTURE(porosity);
-        auto scene = mixed_scene(33, 20);
+        auto scene = mixed_scene_with_sides(33, 20);
         make_quartz(scene.settings.material, porosity);
-        scene.settings.sides[SIDE_WEST] = {SideKind::level, 0, 1e30, {{{0, 1.5}}}};
-        scene.settings.sides[SIDE_EAST] = {SideKind::outflow, 0, 1e30, {}};
         on_every_backend(scene, [](World& w) { step(w, 60); });
     }
 }

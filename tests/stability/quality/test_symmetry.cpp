@@ -1,7 +1,8 @@
 // Mirrored and transposed scenes give mirrored and transposed bits (the rule of paired sums: shaders/README.md).
-#include "tests/support/worlds.hpp"
+#include "tests/stability/quality/wet_scenes.hpp"
 #include <algorithm>
 #include <doctest/doctest.h>
+#include <tuple>
 
 using namespace wadi;
 using namespace wadi::test;
@@ -64,15 +65,16 @@ void check_symmetric(Scene scene, bool transpose, bool mirror) {
 } // namespace
 
 TEST_CASE("transposed, mirrored and both, with all coupled effects and open sides") {
-    for (const auto& [quantum, porosity] :
-         {std::pair(-1.0, 1.0), std::pair(0.0, 1.0), std::pair(-1.0, 0.4), std::pair(0.0, 0.4)}) {
+    for (const auto& [quantum, porosity, conductivity] :
+         {std::tuple(-1.0, 1.0, 0.0), std::tuple(0.0, 1.0, 0.0), std::tuple(-1.0, 0.4, 0.0), std::tuple(0.0, 0.4, 0.0),
+          std::tuple(-1.0, 0.4, 1e-3), std::tuple(0.0, 0.4, 1e-3)}) {
         CAPTURE(quantum);
         CAPTURE(porosity);
-        auto scene = mixed_scene(40, 31);
+        CAPTURE(conductivity);
+        auto scene = mixed_scene_with_sides(40, 31);
         scene.settings.method.quantum = quantum;
         scene.settings.material.porosity = porosity;
-        scene.settings.sides[SIDE_WEST] = {SideKind::level, 0, 1e30, {{{0, 1.5}}}};
-        scene.settings.sides[SIDE_EAST] = {SideKind::outflow, 0, 1e30, {}};
+        scene.settings.material.conductivity = conductivity;
         check_symmetric(scene, true, false);
         check_symmetric(scene, false, true);
         check_symmetric(scene, true, true);
