@@ -19,6 +19,7 @@ template <class Real> struct Step {
 // In the order of the step plan. The splits of the water are the reference's own: the stages derive them where they read.
 template <class Real>
 constexpr Step<Real> steps[] = {
+    {"mix_source_momentum", &Solver<Real>::mix_source_momentum, EFFECT_SOURCES | EFFECT_WATER, EFFECT_PUBLISHED},
     {"apply_sources", &Solver<Real>::apply_sources, EFFECT_SOURCES},
     {"apply_rain", &Solver<Real>::apply_rain, EFFECT_RAIN},
     {"dilute_water_velocity", &Solver<Real>::dilute_water_velocity, EFFECT_RAIN_MAP, EFFECT_PUBLISHED},

@@ -63,8 +63,13 @@ template <class Real> void Solver<Real>::apply_source(const Source& source, doub
     for (int j = 0; j < x.ny; ++j)
         for (int i = 0; i < x.nx; ++i) {
             const std::size_t cell = x.cell(i, j);
-            if (covers(i, j))
-                add_depth(is_water ? water : sand, cell, holds ? missing(cell) : amount, is_water ? water_added : sand_added);
+            if (!covers(i, j)) continue;
+            const Real before = water[cell];
+            add_depth(is_water ? water : sand, cell, holds ? missing(cell) : amount, is_water ? water_added : sand_added);
+            const Real poured = std::max(water[cell] - before, Real(0));
+            from_sources[0][cell] += poured;
+            for (std::size_t n = 0; n < 2; ++n)
+                if (source.set_velocity && rate > 0) from_sources[1 + n][cell] += poured * static_cast<Real>(source.velocity[n]);
         }
 
     if (!source.set_velocity || !is_water || !(rate > 0)) return;
@@ -82,7 +87,24 @@ template <class Real> void Solver<Real>::apply_source(const Source& source, doub
 
 template <class Real> void Solver<Real>::apply_sources() {
     if (!has(EFFECT_SOURCES)) return;
+    for (Field<Real>& field : from_sources) field.assign(cells(), Real(0));
     for (std::size_t s = 0; s < settings.sources.size(); ++s) apply_source(settings.sources[s], source_totals_[s]);
+}
+
+/// Ahead of apply_sources(): what a copy of this world's sources bring mixes with the pure water that is there.
+template <class Real> void Solver<Real>::mix_source_momentum() {
+    if (!has(EFFECT_SOURCES) || !has(EFFECT_WATER) || has(EFFECT_PUBLISHED)) return;
+    split_water();
+    Solver poured = *this;
+    poured.apply_sources();
+    for_inner_faces([&](const Axis& ax, int a, int b) {
+        const std::size_t L = ax.cell(a - 1, b), R = ax.cell(a, b);
+        const auto& [depth, along_x, along_y] = poured.from_sources;
+        const Real added = mean(depth[L], depth[R]), there = mean(pure[L], pure[R]);
+        const Real momentum = ax.is_y ? mean(along_y[L], along_y[R]) : mean(along_x[L], along_x[R]);
+        Real& u = pure_velocity.along(ax)[ax.face(a, b)];
+        if (added > Real(0)) u = (there * u + momentum) / (there + added);
+    });
 }
 
 template <class Real> void Solver<Real>::apply_rain() {

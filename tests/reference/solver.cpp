@@ -286,6 +286,7 @@ template <class Real> template <class Other> void Solver<Real>::copy_from(const 
 }
 
 template <class Real> void Solver<Real>::step() {
+    mix_source_momentum();
     apply_sources();
     apply_rain();
     dilute_water_velocity();

@@ -71,6 +71,7 @@ template <class Real> class Solver {
     void step();
 
     // Stages, in the order in which step() calls them.
+    void mix_source_momentum();
     void apply_sources();
     void apply_rain();
     void dilute_water_velocity();
@@ -162,6 +163,7 @@ template <class Real> class Solver {
     Faces<Real> friction_limit, withheld_push;    // 2.18: N, k_sand g_f (K - C r) d (1 - r^ f) [m/s]
     Faces<Real> bend_gain, bed_lift;              // 2.3: of bends: what they add to us [m/s], g_b [m/s2]
     Field<Real> roughness;                        // of each cell beyond P.manning [s/m^(1/3)]
+    std::array<Field<Real>, 3> from_sources;      // by sources of water in this step: depth, and its momentum along x and y
     Real rained{};                                // depth of rain in this step [m], under a map where it rains most
     double rain_peak = 1;                         // how many times settings.rain that is
     Field<Real> rain_share;                       // of it on each cell, in 1/65536

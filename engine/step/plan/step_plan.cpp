@@ -60,6 +60,7 @@ void plan_water_motion(PlanBuilder& b) {
 
 // What comes from outside; the published method spreads mixed water between that and the sides.
 void plan_inflow(PlanBuilder b) {
+    if (b.has(EFFECT_SOURCES | EFFECT_WATER) && !b.has(EFFECT_PUBLISHED)) b.run("mix_source_momentum");
     if (b.has(EFFECT_SOURCES)) b.run("apply_sources");
     if (b.has(EFFECT_RAIN)) b.run("apply_rain");
     if (b.has(EFFECT_RAIN_MAP) && !b.has(EFFECT_PUBLISHED)) b.run("dilute_water_velocity");

@@ -174,6 +174,72 @@ TEST_CASE("rain brings no velocity: a stream that it falls on keeps its momentum
     }
 }
 
+TEST_CASE("sources bring no velocity, or their own: a stream keeps its momentum along x and y, and every quantum is counted") {
+    const auto stream = [](bool along_y, int order) {
+        auto scene = along_y ? flat_scene(1, 200, 0.5, 0.02) : flat_scene(200, 1, 0.5, 0.02);
+        scene.settings.method.water_transport_order = order;
+        Source source;
+        source.shape = SourceShape::box;
+        source.box = {-1, -1, 101, 101};
+        source.rate.samples = {{0, 0.1}};
+        scene.settings.sources = {source};
+        scene.fill(scene.fields.water, [](double, double) { return 1; });
+        scene.fill(along_y ? scene.fields.velocity_y : scene.fields.velocity_x, [](double, double) { return 1; });
+        return scene;
+    };
+    for (const bool along_y : {false, true})
+        for (const int order : {1, 2})
+            on_every_backend(stream(along_y, order), [&](World& world) {
+                step(world, 200); // 0.4 m; what the ends do has run 20 m
+                const int i = along_y ? 0 : 100, j = along_y ? 100 : 0;
+                const double h = cells_of(world, "water_height").at(i, j);
+                const double u = cells_of(world, along_y ? "water_velocity_y" : "water_velocity_x").at(i, j);
+                MESSAGE((along_y ? "y" : "x") << ", order " << order << ": momentum " << h * u << " m2/s");
+                CHECK(std::abs(h - 1.4) < 1e-3);
+                CHECK(std::abs(h * u - 1) < 0.01);
+                const auto stats = stats_of(world);
+                CHECK(stats.water_quanta == stats.water_initial + stats.ledger.water_in - stats.ledger.water_out);
+            });
+}
+
+TEST_CASE("a face that a source covers by half takes half of its momentum, mirrored in every bit") {
+    const auto scene_of = [](double sign) {
+        auto scene = flat_scene(21, 9, 1, 0.01);
+        scene.settings.gravity = 0;
+        Source jet;
+        jet.shape = SourceShape::box;
+        jet.box = {8.1, 3.1, 12.9, 5.9};
+        jet.rate.samples = {{0, 10}};
+        jet.set_velocity = true;
+        jet.velocity = {0.3 * sign, 0};
+        Source spring = jet; // within the jet's cells, without a velocity
+        spring.set_velocity = false;
+        spring.rate.samples = {{0, 20}};
+        scene.settings.sources = {jet, spring};
+        scene.fill(scene.fields.water, [](double, double) { return 0.5; });
+        return scene;
+    };
+    const auto west = make_world(scene_of(-1)), east = make_world(scene_of(1));
+    step(*west, 1);
+    step(*east, 1);
+    const auto u_west = cells_of(*west, "water_velocity_x"), u_east = cells_of(*east, "water_velocity_x");
+    // Cells have the mean of their two faces. At the outer face of the box half of the sources' water comes, a third of it the
+    // jet's.
+    const double added = 0.5 * 0.3, there = 0.5, face = 0.3 * 0.5 * 0.1 / (there + added);
+    MESSAGE("in the cell before " << u_east.at(7, 4) << " m/s of " << face / 2);
+    CHECK(u_east.at(7, 4) == doctest::Approx(face / 2).epsilon(0.01));
+    CHECK(u_east.at(8, 4) == doctest::Approx((face + 0.3) / 2).epsilon(0.01)); // its other face is held by the jet
+    CHECK(u_east.at(10, 4) == doctest::Approx(0.3));
+    CHECK(std::fabs(u_east.at(5, 4)) == 0);
+    for (int j = 0; j < 9; ++j)
+        for (int i = 0; i < 21; ++i) CHECK(u_east.at(i, j) == -u_west.at(20 - i, j));
+    on_every_backend(scene_of(1), [&](World& world) {
+        step(world, 50);
+        const auto stats = stats_of(world);
+        CHECK(stats.water_quanta == stats.water_initial + stats.ledger.water_in - stats.ledger.water_out);
+    });
+}
+
 TEST_CASE("a film that brings less than a quantum a step is as deep as Manning's law says, and all of it arrives") {
     const auto over_manning = [](double dt) {
         const double q = 1e-5, slope = 0.05, manning = 0.03;
