@@ -1,5 +1,6 @@
 // Advice on a level that loads but would not do what its author expects. Each message has the numbers and what to change.
 // Rules and constants: NUMERICS.md sections 2.4b, 2.4d, 2.7, 2.8 and 4.
+#include "engine/level/corner_streams.hpp"
 #include "engine/level/level.hpp"
 #include "engine/level/source_rates.hpp"
 #include "engine/level/stream_speeds.hpp"
@@ -403,6 +404,7 @@ std::vector<std::string> level_warnings(const Settings& settings, const InitialF
     warn_sand(settings, survey, warnings);
     warn_discharges(settings, warnings);
     warn_streams(settings, fields, warnings);
+    warn_corner_streams(settings, fields, warnings);
     warn_levels(settings, fields, warnings);
     for (std::size_t n = 0; n < settings.sources.size(); ++n)
         if (!covers_a_cell(settings.sources[n], settings.grid))
