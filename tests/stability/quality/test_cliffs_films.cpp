@@ -27,6 +27,29 @@ Scene lake_with_film(double film) {
     return scene;
 }
 
+/// Two cells beyond the foot of a slope (0: sheer) that a stream of q comes down: how fast it is, of the energy that it had, and
+/// how deep.
+struct Foot {
+    double speed, depth;
+};
+Foot foot_of(double slope, double high, double q, double clamp = 0.35) {
+    const double top = 15, run = slope > 0 ? high / slope : 0, critical = std::cbrt(q * q / 9.81), dx = 0.5;
+    auto scene = flat_scene(static_cast<int>((top + run + 15) / dx), 1, dx, 0.01);
+    scene.settings.method.largest_height = 32;
+    scene.settings.method.velocity_clamp = clamp;
+    const auto bed = [=](double x, double) { return x < top ? high : x < top + run ? (top + run - x) * slope : 0; };
+    scene.fill(scene.fields.terrain, bed);
+    scene.fill(scene.fields.water, [=](double x, double) { return x < top ? critical : 0; });
+    scene.settings.sides[SIDE_WEST] = {SideKind::discharge, 0, 1e30, {{{0, q * dx}}}};
+    scene.settings.sides[SIDE_EAST].kind = SideKind::outflow;
+    auto world = make_world(scene);
+    step(*world, 2500);
+    const int foot = static_cast<int>(std::lround((top + run) / dx)) + 1;
+    const double speed = cells_of(*world, "water_velocity_x").at(foot, 0);
+    return {speed / std::sqrt(2 * 9.81 * high + 3 * 9.81 * critical),
+            static_cast<double>(cells_of(*world, "water_height").at(foot, 0))};
+}
+
 double pond_checkerboard(World& world) {
     auto pond = cells_of(world, "water_height");
     const auto ground = cells_of(world, "terrain");
@@ -118,4 +141,18 @@ TEST_CASE("1 km of water beside dry ground gains no energy at any time step; wit
     }
     CHECK(energy_gain(*make_world(sea(2, 0)), 40) > 1.05);
     CHECK(energy_gain(*make_world(sea(20, 0)), 40) > 1.05);
+}
+
+TEST_CASE("a stream comes to the foot of a slope with the energy of its fall, and below a sheer one as deep as Rand measured") {
+    for (const double slope : {0.2, 1.0, 2.0}) {
+        const double speed = foot_of(slope, 10, 0.5).speed;
+        MESSAGE("slope " << slope << ": " << speed << " of the speed of its fall");
+        CHECK(speed == doctest::Approx(1).epsilon(0.1)); // 0.71 on a slope of 1 with g S/(1 + S^2)
+    }
+    for (const auto& [high, q, most] : {std::tuple{2.0, 0.5, 0.05}, {2.0, 2.0, 0.02}, {10.0, 0.5, 0.25}, {10.0, 2.0, 0.16}}) {
+        const double depth = foot_of(0, high, q).depth, rand = 0.54 * high * std::pow(q * q / (9.81 * std::pow(high, 3)), 0.425);
+        MESSAGE("fall of " << high << " m, " << q << " m2/s: " << depth << " m deep, by Rand " << rand);
+        CHECK(depth == doctest::Approx(rand).epsilon(most));
+    }
+    CHECK(foot_of(1, 10, 0.5, 0.15).speed < 0.7); // the control: held at its clamp it has lost its fall
 }
