@@ -1,9 +1,8 @@
-#include "engine/image/map.hpp"
-#include "engine/image/plausible.hpp"
 #include "engine/level/coverage.hpp"
 #include "engine/level/crests.hpp"
 #include "engine/level/draw_work.hpp"
 #include "engine/level/lakes.hpp"
+#include "engine/level/layer_map.hpp"
 #include "engine/level/layers.hpp"
 #include "engine/level/thin_lines.hpp"
 #include "engine/settings/data/quanta.hpp"
@@ -23,8 +22,6 @@
 namespace wadi {
 namespace {
 
-std::size_t cell_count(const LevelGrid& grid) { return static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny); }
-
 double value_at(const std::vector<float>& field, std::size_t cell) {
     return field.empty() ? 0 : static_cast<double>(field[cell]);
 }
@@ -43,57 +40,6 @@ inline double combined(double current, double value, Combine combine) {
         return current - value;
     }
     return current;
-}
-
-/// A layer's map as its file has it, stretched over a grid of that length [m]; of ground, odd values are noted.
-Result<Map> open_map(const MapSource& source, const std::string& path, LevelFiles& files, double length,
-                     std::vector<std::string>& warnings, bool ground = false) {
-    auto map = read_map(source.file, source.form, files.read, files.room);
-    if (!map) // a bad argument of ours is a bad field of the level's author
-        return error(map.status().code == Code::bad_argument ? Code::bad_file : map.status().code,
-                     path + ".file: " + map.status().message);
-    if (source.grey_range && !map->integer)
-        return error(Code::bad_file, path + ": min and max are for integer maps (PNG, r16); " + source.file +
-                                         " holds numbers as they are, use scale and offset");
-    if (map->integer && !source.grey_range && !source.scale_given)
-        return error(Code::bad_file,
-                     path + ": " + source.file + " holds grey values; give min and max, what black and white stand for");
-    const bool own_size = map->nx == files.own_nx && map->ny == files.own_ny;
-    map->corners = source.corners.value_or(!own_size && looks_like_corners(map->nx, map->ny));
-    if (map->corners && !source.corners)
-        map->notes.push_back(std::to_string(map->nx) + " x " + std::to_string(map->ny) +
-                             " samples are taken for the corners of cells, as engines have them; \"samples\": \"cells\" or "
-                             "\"corners\" says which they are");
-    if (ground) note_odd_ground(*map);
-    raise_holes(*map, source.holes, length / (map->corners ? map->nx - 1 : map->nx));
-    add_map_notes(*map, path + ".file: " + source.file, warnings);
-    return map;
-}
-
-std::pair<double, double> scale_and_offset(const MapSource& source) {
-    return source.grey_range ? std::pair(source.max - source.min, source.min) : std::pair(source.scale, source.offset);
-}
-
-/// What a map says at the middles of nx * ny cells; `path` names its layer in messages.
-Result<std::vector<float>> values_of(const Map& map, const MapSource& source, const std::string& path, int nx, int ny) {
-    std::vector<float> values = resample(map, nx, ny);
-    const auto [scale, offset] = scale_and_offset(source);
-    const MapMeaning& meaning = source.meaning;
-    const auto value_of = [&, scale = scale, offset = offset](std::size_t cell) {
-        return static_cast<double>(values[cell]) * scale + offset;
-    };
-    const std::size_t wrong = first_cell(values.size(), [&](std::size_t cell) {
-        const double value = value_of(cell);
-        return !(value >= meaning.least && value <= meaning.most);
-    });
-    if (wrong < values.size())
-        return error(Code::bad_file, outside_text(path + ": " + meaning.name, value_of(wrong), meaning.least, meaning.most) +
-                                         " in cell (" + std::to_string(wrong % static_cast<std::size_t>(nx)) + ", " +
-                                         std::to_string(wrong / static_cast<std::size_t>(nx)) + ")");
-    in_bands(values.size(), CELL_BAND, [&](std::size_t, std::size_t begin, std::size_t end) {
-        for (std::size_t cell = begin; cell < end; ++cell) values[cell] = static_cast<float>(value_of(cell));
-    });
-    return values;
 }
 
 /// What lies below a layer [m]. Surfaces count from the cell's means, so that they are flat whatever its parts hold.
@@ -418,13 +364,6 @@ class Drawing {
 
 } // namespace
 
-void add_map_notes(const Map& map, const std::string& path, std::vector<std::string>& warnings) {
-    if (map.filled > 0)
-        warnings.push_back(path + ": " + std::to_string(map.filled) + " of " + std::to_string(std::int64_t{map.nx} * map.ny) +
-                           " cells hold NODATA_value; they take the height of the nearest cell that has one");
-    for (const std::string& note : map.notes) warnings.push_back(path + ": " + note);
-}
-
 LevelGrid map_grid(const LevelGrid& grid, int nx, int ny) {
     LevelGrid own = grid;
     own.nx = nx;
@@ -432,12 +371,6 @@ LevelGrid map_grid(const LevelGrid& grid, int nx, int ny) {
     own.dx = grid.nx * grid.dx / nx;
     own.stretch_y = grid.stretch_y * (own.ny * own.dx) / (grid.ny * grid.dx);
     return own;
-}
-
-bool looks_like_corners(int nx, int ny) {
-    constexpr int least = 32; // cells: smaller maps are drawn by hand
-    const auto power = [](int n) { return n >= least && (n & (n - 1)) == 0; };
-    return power(nx - 1) && power(ny - 1);
 }
 
 Status draw_layers(const LayerLists& lists, const LevelGrid& grid, LevelFiles& files, InitialFields& fields,
@@ -466,51 +399,6 @@ Status draw_numbers(std::vector<Layer> layers, const LevelGrid& grid, LevelFiles
     Status status = draw_layers(lists, unrounded, files, drawn, warnings);
     numbers = std::move(drawn.terrain);
     return status;
-}
-
-Status draw_velocities(const std::vector<VelocityLayer>& layers, bool of_sand, const LevelGrid& grid, LevelFiles& files,
-                       std::vector<float>& x, std::vector<float>& y, std::vector<std::string>& warnings) {
-    for (const VelocityLayer& layer : layers) {
-        if (layer.of_sand != of_sand) continue;
-        if (Status status = files.take_work(static_cast<std::int64_t>(cell_count(grid))); !status) return status;
-        x.resize(cell_count(grid), 0.0f);
-        y.resize(cell_count(grid), 0.0f);
-        std::atomic<bool> changed = false;
-        const auto set = [&changed](float& velocity, float to) {
-            if (velocity != to) changed = true;
-            velocity = to;
-        };
-        if (layer.map) {
-            const auto map = open_map(*layer.map, layer.path, files, grid.nx * grid.dx, warnings);
-            if (!map) return map.status();
-            const auto values = values_of(*map, *layer.map, layer.path, grid.nx, grid.ny);
-            if (!values) return values.status();
-            std::vector<float>& along = layer.map_along_y ? y : x;
-            for (std::size_t cell = 0; cell < along.size(); ++cell) set(along[cell], (*values)[cell]);
-        } else {
-            const auto width = static_cast<std::size_t>(grid.nx);
-            std::vector<double> columns(width);
-            for (std::size_t i = 0; i < width; ++i) columns[i] = column_center(grid, static_cast<int>(i));
-            in_bands(static_cast<std::size_t>(grid.ny), row_band(width), [&](std::size_t, std::size_t begin, std::size_t end) {
-                files.did(static_cast<std::int64_t>((end - begin) * width));
-                std::vector<double> relative(width);
-                for (std::size_t j = begin; j < end; ++j) {
-                    relative_heights(layer.shape, columns, cell_center(grid, 0, static_cast<int>(j))[1], relative);
-                    for (std::size_t i = 0; i < width; ++i) {
-                        if (std::isinf(relative[i])) continue;
-                        set(x[j * width + i], static_cast<float>(layer.velocity[0]));
-                        set(y[j * width + i], static_cast<float>(layer.velocity[1]));
-                    }
-                }
-            });
-        }
-        const bool meant_as_nothing = !layer.map && layer.velocity == Point{0, 0};
-        if (!changed && !meant_as_nothing)
-            warnings.push_back(layer.path +
-                               ": changes no cell; it lies outside the grid or between cell centres, or says what is "
-                               "there already");
-    }
-    return ok_status();
 }
 
 } // namespace wadi

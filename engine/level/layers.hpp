@@ -26,6 +26,10 @@ struct LevelGrid {
     double quantum = 0; // fields are rounded to multiples of it, so that lakes are flat to the bit; 0 = not rounded [m]
 };
 
+inline std::size_t cell_count(const LevelGrid& grid) {
+    return static_cast<std::size_t>(grid.nx) * static_cast<std::size_t>(grid.ny);
+}
+
 enum class LayerTarget { terrain, sand, water, roughness, rain };
 enum class Combine { add, set, max, min, subtract };
 enum class Amount {
@@ -66,14 +70,8 @@ struct Layer {
     bool only_present = false; // only cells where the field is above zero
 };
 
-/// Advice for a map with cells of no known height, Map::filled, and its notes.
-void add_map_notes(const Map& map, const std::string& path, std::vector<std::string>& warnings);
-
 /// The grid of a map's own samples over the same ground.
 LevelGrid map_grid(const LevelGrid& grid, int nx, int ny);
-
-/// Maps of 2^n + 1 samples come from engines whose samples lie at the corners of cells.
-bool looks_like_corners(int nx, int ny);
 
 /// Where water or sand starts with a velocity: a shape has both components, a map one.
 struct VelocityLayer {

@@ -1,5 +1,6 @@
 #include "engine/image/map.hpp"
 #include "engine/image/plausible.hpp"
+#include "engine/level/layer_map.hpp"
 #include "engine/level/layers.hpp"
 #include "engine/level/level.hpp"
 #include "engine/level/overrides.hpp"

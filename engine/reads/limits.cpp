@@ -156,8 +156,8 @@ Status Limits::read(const Region& region, std::span<float> values) {
             return status;
         for (std::size_t i = 0; i < width; ++i) {
             const std::uint32_t marks = rows[i] | (rows[i + 1] & FACE_MARKS_x) | (rows[i + pitch] & FACE_MARKS_y);
-            values[static_cast<std::size_t>(j) * width + i] =
-                static_cast<float>(held_by(marks) | held_by(marks >> SAND_MARKS) << HELD_SAND);
+            values[static_cast<std::size_t>(j) * width + i] = static_cast<float>(
+                held_by(marks) | held_by(marks >> SAND_MARKS) << HELD_SAND | ((marks & MARK_HIGH) != 0 ? HELD_HIGH : 0u));
         }
     }
     return ok_status();

@@ -36,8 +36,8 @@ struct LimitCounts {
 /// where none does [s].
 double unlimited_dt(const Settings& settings, const LimitCounts& counts);
 
-/// What holds a cell, of water; of sand the same three bits higher.
-inline constexpr std::uint32_t HELD_SPEED = 1, HELD_GRAVITY = 2, HELD_OUTFLOW = 4;
+/// What holds a cell, of water; of sand the same three bits higher; of its whole column.
+inline constexpr std::uint32_t HELD_SPEED = 1, HELD_GRAVITY = 2, HELD_OUTFLOW = 4, HELD_HIGH = 64;
 inline constexpr int HELD_SAND = 3;
 
 class Limits {

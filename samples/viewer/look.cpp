@@ -42,7 +42,7 @@ const std::vector<View>& views() {
                                            {"saturation", "", 0, 0.5f}, {"froude", "", 0, 2},   {"sand", "m", 0, 4},
                                            {"sand-speed", "m/s", 0, 3}, {"foam", "", 0, 1},     {"height", "m", 0, 20},
                                            {"sky", "", 0, 1},           {"slope", "", 0, 1.5f}, {"strain", "", 0, 0.05f},
-                                           {"stress", "kPa", 0, 40},    {"active", "", 0, 1},   {"limits", "", 0, 3}};
+                                           {"stress", "kPa", 0, 40},    {"active", "", 0, 1},   {"limits", "", 0, 4}};
     return list;
 }
 

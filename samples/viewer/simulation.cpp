@@ -217,14 +217,15 @@ void Simulation::read_strain() {
     }
 }
 
-// The worst that holds a cell: 3 the speed limit, 2 capped gravity, 1 limited outflow, of water or sand.
+// The worst of a cell: 4 a column too high, 3 the speed limit, 2 capped gravity, 1 limited outflow, of water or sand.
 void Simulation::read_limits() {
     auto* to = static_cast<float*>(host_field_buffer_.mapped);
     const std::size_t cells = static_cast<std::size_t>(info.nx) * static_cast<std::size_t>(info.ny);
     check(wadi_world_read_field(world, WADI_FIELD_LIMITS, to, cells), "reading the limits");
     for (std::size_t n = 0; n < cells; ++n) {
         const auto held = static_cast<unsigned>(to[n]);
-        to[n] = (held & (WADI_LIMIT_WATER_SPEED | WADI_LIMIT_SAND_SPEED)) != 0       ? 3.0f
+        to[n] = (held & WADI_LIMIT_HEIGHT) != 0                                      ? 4.0f
+                : (held & (WADI_LIMIT_WATER_SPEED | WADI_LIMIT_SAND_SPEED)) != 0     ? 3.0f
                 : (held & (WADI_LIMIT_WATER_GRAVITY | WADI_LIMIT_SAND_GRAVITY)) != 0 ? 2.0f
                 : held != 0                                                          ? 1.0f
                                                                                      : 0.0f;

@@ -1,7 +1,7 @@
 // mark_limits by its definition: counts of faces beside wet cells, at the clamp and with capped gravity, and whether the outflow
-// of a cell's layers exceeds what they hold. Where a float may fall on either side of a limit, both answers pass. count_limits:
-// its counts are those of the marks, its floats by their definitions in double precision. fold_limits: what it folds, word by
-// word.
+// of a cell's layers exceeds what they hold, columns above the largest height. Where a float may fall on either side of a limit,
+// both answers pass. count_limits: its counts are those of the marks, its floats by their definitions in double precision.
+// fold_limits: what it folds, word by word.
 #include "shaders/physics/limit_marks.glsl"
 #include "tests/conformance/stage_checks.hpp"
 #include <algorithm>
@@ -92,7 +92,7 @@ struct LayerMarks {
     Marks::Range wet, clamped, capped, limited;
     bool holds(unsigned marks) const {
         return wet.holds(marks & 3u) && clamped.holds((marks >> 2 & 3u) + (marks >> 4 & 3u)) &&
-               capped.holds((marks >> 6 & 1u) + (marks >> 7 & 1u)) && limited.holds(marks >> 8);
+               capped.holds((marks >> 6 & 1u) + (marks >> 7 & 1u)) && limited.holds(marks >> 8 & 1u);
     }
     std::string text() const {
         return std::to_string(wet.least) + " wet, " + std::to_string(clamped.least) + " clamped, " +
@@ -110,6 +110,11 @@ Verdict check_marks(const StageRun& run) {
         for (int i = 0; i <= p.nx; ++i) {
             const bool cell = i < p.nx && j < p.ny;
             LayerMarks water, sand;
+            Marks::Range high;
+            if (cell)
+                high.add(marks.at("terrain", i, j) + marks.height('s', i, j) +
+                             (marks.has(EFFECT_WATER) ? marks.at("water_height", i, j) : 0),
+                         static_cast<double>(p.largest_height));
             if (marks.has(EFFECT_WATER)) {
                 marks.wet("water_height", i, j, water.wet);
                 marks.clamp('w', i, j, static_cast<double>(p.water_velocity_clamp), water.clamped);
@@ -127,9 +132,10 @@ Verdict check_marks(const StageRun& run) {
                 marks.gravity(i, j, true, sand.capped);
             }
             const std::uint32_t got = run.buffer("limit_marks").words()[layout.index(i, j)];
-            if (water.holds(got & 65535u) && sand.holds(got >> 16)) continue;
+            if (water.holds(got & 511u) && sand.holds(got >> 16) && high.holds(got >> 9 & 127u)) continue;
             return failed("limit_marks(" + std::to_string(i) + ", " + std::to_string(j) + ") is " + std::to_string(got) +
-                          "; expected of water " + water.text() + ", of sand " + sand.text());
+                          "; expected of water " + water.text() + ", of sand " + sand.text() + "; " + std::to_string(high.least) +
+                          " high");
         }
     }
     return {};
@@ -173,7 +179,6 @@ Verdict check_limit_counts(const StageRun& run) {
     for (int n = 0; n < (p.nx + 1) * layout.strips(); ++n) {
         std::array<std::uint32_t, LIMIT_SUMS> counts{};
         double driven2 = 0, wave = 0, top = -1e30, bottom = 1e30, deep_sand = 0, highest = -1e30;
-        std::uint32_t unsure = 0; // columns so near to the largest height that a float may tell either way
         const int i = n % (p.nx + 1), strip = n / (p.nx + 1);
         for (int j = strip * STRIP; j < std::min((strip + 1) * STRIP, p.ny + 1); ++j) {
             const auto marked = [&](int a, int b, std::size_t layer) { return marks[layout.index(a, b)] >> (16 * layer); };
@@ -196,10 +201,8 @@ Verdict check_limit_counts(const StageRun& run) {
                                                size("water_velocity_y", i, j), size("water_velocity_y", i, j + 1)});
                 wave = std::max(wave, speed + std::sqrt(static_cast<double>(p.gravity) * standing_water<double>(run, i, j)));
             }
-            const double column = limits.height("terrain", i, j) + s + w, most = static_cast<double>(p.largest_height);
-            counts[8] += column > most * (1 + 1e-6) ? 1 : 0;
-            unsure += std::abs(column - most) <= 1e-6 * most ? 1 : 0;
-            highest = std::max(highest, column);
+            counts[8] += marked(i, j, 0) >> 9 & 1u;
+            highest = std::max(highest, limits.height("terrain", i, j) + s + w);
             const double depth = std::max(standing_water<double>(run, i, j) - s, 0.0);
             if (!water || depth <= static_cast<double>(p.dry_threshold)) continue;
             top = std::max(top, limits.surface(i, j));
@@ -213,7 +216,7 @@ Verdict check_limit_counts(const StageRun& run) {
         for (std::size_t word = 0; word < got.size(); ++word)
             got[word] = all[word * plane + static_cast<std::size_t>(strip * layout.pitch() + i)];
         for (std::size_t word = 0; word < counts.size(); ++word) {
-            if (got[word] >= counts[word] && got[word] <= counts[word] + (word == 8 ? unsure : 0)) continue;
+            if (got[word] == counts[word]) continue;
             return failed("word " + std::to_string(word) + of_column + std::to_string(got[word]) + ", counted " +
                           std::to_string(counts[word]));
         }

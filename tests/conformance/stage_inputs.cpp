@@ -140,7 +140,7 @@ std::vector<std::uint32_t> point_words(const WorldParams& params) {
 // Marks of all kinds in a third of the places.
 std::vector<std::uint32_t> mark_words(std::size_t count) {
     std::vector<std::uint32_t> words(count);
-    for (std::size_t n = 0; n < count; n += 3) words[n] = static_cast<std::uint32_t>(n) * 2654435761u & 0x01FF01FFu;
+    for (std::size_t n = 0; n < count; n += 3) words[n] = static_cast<std::uint32_t>(n) * 2654435761u & 0x01FF03FFu;
     return words;
 }
 

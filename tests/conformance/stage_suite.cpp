@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 
@@ -156,6 +157,19 @@ std::vector<CaseSpec> list() {
     return cases;
 }
 
+/// Between the lowest and the highest column: some stand above it, which no world's first state may.
+float middle_column(const StageRun& run) {
+    float low = std::numeric_limits<float>::infinity(), high = -low;
+    for (int j = 0; j < run.params.ny; ++j) {
+        for (int i = 0; i < run.params.nx; ++i) {
+            const float column = run.before("terrain", i, j) + run.before("sand_height", i, j) + run.before("water_height", i, j);
+            low = std::min(low, column);
+            high = std::max(high, column);
+        }
+    }
+    return 0.5F * (low + high);
+}
+
 Verdict run(const CaseSpec& spec, Session& session) {
     auto device = session.device();
     return device ? run_stage_case(spec, **device, {}) : verdict_of(device.status());
@@ -172,10 +186,11 @@ Verdict run_stage_case(const CaseSpec& spec, compute::Device& device, const Tamp
     const auto& info = compute::stage_table()[static_cast<std::size_t>(stage)];
     Pilot pilot = make_pilot(*scene, spec.name);
     if (lists_active_tiles(spec.name)) add_active_tiles(*scene, pilot.input);
-    const WorldParams params = derive_params(scene->settings, scene->effects);
+    WorldParams params = derive_params(scene->settings, scene->effects);
     if (spec.name == "apply_edits") add_edits(*scene, pilot.input);
     if (spec.name == "write_values") add_values(*scene, pilot.input);
     auto buffers = stage_buffers(info, *scene, pilot, params);
+    if (spec.name == "mark_limits") params.largest_height = middle_column({info, *scene, pilot, params, buffers});
     if (auto status = run_bench(device, stage, *mask, params, pilot.input, {}, buffers); !status) return verdict_of(status);
     if (tamper) tamper(info, buffers);
     Verdict guards = check_guards(info, buffers, {params.nx, params.ny});

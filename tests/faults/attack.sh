@@ -8,8 +8,8 @@ if [ -n "$full" ] && [ "$full" != --full ]; then
     echo "usage: tests/faults/attack.sh BIN [--full]" >&2
     exit 2
 fi
-steps=16000 count=120 edits=150 seconds=5 gpu_steps=2048 gpu_count=8 failing=12
-if [ "$full" = --full ]; then steps=200000 count=1000 edits=5000 seconds=120 gpu_steps=10000 gpu_count=1000 failing=600; fi
+steps=16000 count=120 edits=150 seconds=5 gpu_steps=2048 gpu_count=8 failing=12 every=97
+if [ "$full" = --full ]; then steps=200000 count=1000 edits=5000 seconds=120 gpu_steps=10000 gpu_count=1000 failing=600 every=1; fi
 failed=0
 run() {
     local begin=$SECONDS
@@ -24,6 +24,8 @@ run "$attack" cost
 run "$attack" numbers
 run "$attack" edited "$edits"
 run "$attack" jobs
+run "$bin/wadi-test-faults" memory "$every" # one allocation of so many fails
+run "$bin/wadi-test-faults" load "$every"
 run "$attack" hosts "$seconds"
 run "$attack" soak cpu "$steps"
 run "$attack" cycles cpu "$count"
@@ -52,8 +54,6 @@ for backend in vulkan cuda; do
     run "$attack" cycles "$backend" "$gpu_count"
 done
 if [ "$full" = --full ]; then # ctest runs each of these by itself
-    run "$bin/wadi-test-faults" memory
-    run "$bin/wadi-test-faults" load 1
     for what in save disk; do run "$bin/wadi-test-faults" "$what"; done
     for what in snapshots rights savers memory; do run "$bin/wadi-test-files" "$what"; done
     for what in threads exit fork; do run "$bin/wadi-test-process" "$what"; done

@@ -1,12 +1,12 @@
 // wadi-test-cost: what a load allocates and how long it works, counted, against what its account says before: never more, and not
 // far less. Each level leans on a term of the sum, so that an account without it says too little.
+#include "tests/faults/own_new.hpp"
 #include "tests/unit/map_files.hpp"
 #include <algorithm>
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <malloc.h>
-#include <new>
 #include <string>
 #include <sys/resource.h>
 #include <vector>
@@ -16,8 +16,9 @@ namespace {
 
 std::atomic<long long> live{0}, most{0};
 
-// Not inlined: the compiler would take them for mismatched pairs.
-__attribute__((noinline)) void* allocate(std::size_t size) noexcept {
+} // namespace
+
+void* allocate(std::size_t size) noexcept {
     void* memory = std::malloc(size == 0 ? 1 : size);
     if (memory == nullptr) return nullptr;
     const long long now = live += static_cast<long long>(malloc_usable_size(memory));
@@ -25,25 +26,10 @@ __attribute__((noinline)) void* allocate(std::size_t size) noexcept {
     }
     return memory;
 }
-__attribute__((noinline)) void release(void* memory) noexcept {
+void release(void* memory) noexcept {
     if (memory != nullptr) live -= static_cast<long long>(malloc_usable_size(memory));
     std::free(memory);
 }
-
-} // namespace
-
-void* operator new(std::size_t size) {
-    void* memory = allocate(size);
-    if (memory == nullptr) throw std::bad_alloc();
-    return memory;
-}
-void* operator new[](std::size_t size) { return operator new(size); }
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return allocate(size); }
-void* operator new[](std::size_t size, const std::nothrow_t&) noexcept { return allocate(size); }
-void operator delete(void* memory) noexcept { release(memory); }
-void operator delete[](void* memory) noexcept { release(memory); }
-void operator delete(void* memory, std::size_t) noexcept { release(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { release(memory); }
 
 namespace {
 

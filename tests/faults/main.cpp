@@ -1,5 +1,6 @@
 // wadi-test-faults: a library whose host runs out of memory at every allocation in turn, is killed while it saves, or has a full
 // disk. Usage: wadi-test-faults memory [STRIDE] | load [STRIDE] | save | disk; "saver PATH" is the child that is killed.
+#include "tests/faults/own_new.hpp"
 #include <atomic>
 #include <chrono>
 #include <csignal>
@@ -7,7 +8,6 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <new>
 #include <string>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -22,33 +22,19 @@ namespace {
 std::atomic<long> allocations{0}, live{0}, fail_at{0};
 std::atomic<bool> for_ever{false};
 
-// Not inlined: the compiler would take them for mismatched pairs.
-__attribute__((noinline)) void* allocate(std::size_t size) noexcept {
+} // namespace
+
+void* allocate(std::size_t size) noexcept {
     const long number = ++allocations, at = fail_at;
     if (at > 0 && (number == at || (for_ever && number > at))) return nullptr;
     void* memory = std::malloc(size == 0 ? 1 : size);
     if (memory != nullptr) ++live;
     return memory;
 }
-__attribute__((noinline)) void release(void* memory) noexcept {
+void release(void* memory) noexcept {
     if (memory != nullptr) --live;
     std::free(memory);
 }
-
-} // namespace
-
-void* operator new(std::size_t size) {
-    void* memory = allocate(size);
-    if (memory == nullptr) throw std::bad_alloc();
-    return memory;
-}
-void* operator new[](std::size_t size) { return operator new(size); }
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return allocate(size); }
-void* operator new[](std::size_t size, const std::nothrow_t&) noexcept { return allocate(size); }
-void operator delete(void* memory) noexcept { release(memory); }
-void operator delete[](void* memory) noexcept { release(memory); }
-void operator delete(void* memory, std::size_t) noexcept { release(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { release(memory); }
 
 namespace {
 

@@ -174,6 +174,51 @@ def test_frames(recorder):
     assert names == ["contact_sheet.png", "frame_00000.png"], f"frames of the earlier recording are left: {names}"
 
 
+def test_first_picture(recorder):
+    """One command, and somebody's grid of heights is a picture to look at: shaded ground, a river where the valley is, its deepest
+    place as blue as colours go, dry ridges, a picture of each moment, and what to try next. Controls: no water is seen ahead of the
+    rain, and less of it is on the slopes than in the valley."""
+    columns, rows = 48, 40
+
+    def valley(j):  # its column in row j from the north
+        return 23.5 + 5 * math.sin(0.16 * j)
+
+    def height(i, j):
+        beside = i - valley(j)
+        rough = 9 * math.sin(0.55 * i) * math.cos(0.4 * j)
+        return 900 + 1.5 * (rows - j) + 60 * (1 - math.exp(-((beside / 9) ** 2))) + rough * (1 - math.exp(-((beside / 7) ** 2)))
+
+    lines = [" ".join("-9999" if i + j < 7 else f"{height(i, j):.2f}" for i in range(columns)) for j in range(rows)]
+    header = f"ncols {columns}\nnrows {rows}\nxllcorner 612000\nyllcorner 5180000\ncellsize 10\nNODATA_value -9999\n"
+    (recorder.folder / "valley.asc").write_text(header + "\n".join(lines) + "\n", encoding="utf-8")
+    done = recorder.run("--terrain", "valley.asc")
+    assert "28 cells without a height reach the map's rim: taken for outside" in done.stderr, done.stderr
+    assert "next: wadi-import MAP" in done.stdout, done.stdout
+    folder = recorder.folder / "out" / "valley"
+    names = sorted(path.name for path in folder.glob("frame_*.png"))
+    assert len(names) == 11, names
+
+    def look(name):
+        pixels = png_pixels(folder / name)
+        cell = len(pixels[0]) // columns
+        top = next(y for y, row in enumerate(pixels) if row[0] != (24, 27, 31))
+
+        def at(i, j):
+            return pixels[top + int((j + 0.5) * cell)][int((i + 0.5) * cell)]
+
+        cells = [at(i, j) for j in range(rows) for i in range(columns)]
+        wet = [blue > red + 20 for red, _, blue in cells]
+        greys = [sum(pixel) / 3 for pixel, water in zip(cells, wet) if not water]
+        river, slope = ([wet[j * columns + round(valley(j)) - beside] for j in range(rows)] for beside in (0, 9))
+        deep = sum(water and red < 60 for water, (red, _, _) in zip(wet, cells))
+        return sum(wet) / len(wet), sum(river) / rows, sum(slope) / rows, deep / len(wet), max(greys, default=0) - min(greys, default=0)
+
+    dry, *_, shades = look(names[0])
+    assert dry == 0 and shades > 80, (dry, shades)
+    wet, river, slope, deep, shades = look(names[5])
+    assert 0.05 < wet < 0.4 and river > 0.9 and slope < 0.3 and 0.01 < deep < 0.15 and shades > 80, (wet, river, slope, deep, shades)
+
+
 def test_default_folder(recorder):
     recorder.record("--seconds", "0")
     assert (recorder.folder / "out" / LEVEL / "frame_00000.png").exists()
@@ -445,7 +490,7 @@ def main():
     options = parser.parse_args()
     tests = [test_frames, test_dumps, test_points, test_gauge_beside_wall, test_check, test_until_calm, test_summary]
     if options.backend == "cpu":  # what meets no device
-        tests += [test_lists, test_plan, test_refusals, test_default_folder, test_video_refusals, test_video]
+        tests += [test_lists, test_plan, test_refusals, test_first_picture, test_default_folder, test_video_refusals, test_video]
     if os.name == "posix":
         tests.append(test_interrupt)
     for test in tests:

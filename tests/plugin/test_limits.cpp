@@ -245,3 +245,43 @@ TEST_CASE("deep water on too long a step is told to be slow, and how high column
     REQUIRE(wadi_world_read_field(id, WADI_FIELD_LIMITS, held.data(), held.size()) == WADI_OK);
     CHECK(std::count(held.begin(), held.end(), static_cast<float>(WADI_LIMIT_WATER_GRAVITY)) == 16 * 8);
 }
+
+TEST_CASE("the map of limits shows each column above the largest height, of water alone and on sand, and no other") {
+    const auto level = [](double largest, const std::string& more) {
+        return R"({ "format_version": 1, "name": "surge", "grid": { "nx": 33, "ny": 9, "dx": 0.5 }, "dt": 0.02,
+            "terrain": [ { "shape": "plane", "height": 0.25 } ], )" +
+               more + R"("water": [ { "shape": "plane", "height": 0.5 } ],
+            "velocities": [ { "shape": "plane", "of": "water", "velocity": [-4, 0] } ], "method": { "largest_height": )" +
+               std::to_string(largest) + " } }";
+    };
+    for (const std::string& more : {std::string(), std::string(R"("sand": [ { "shape": "plane", "height": 0.125 } ], )")}) {
+        for (const double largest : {1.0, 4.0}) { // 4: control
+            for (const auto& backend : abi_backends()) {
+                CAPTURE(more);
+                CAPTURE(largest);
+                CAPTURE(backend);
+                auto options = wadi_default_device_options();
+                options.backend = backend.c_str();
+                wadi_world_id id{};
+                REQUIRE_MESSAGE(wadi_create_world_from_level_text(level(largest, more).c_str(), nullptr, nullptr, nullptr,
+                                                                  &options, &id) == WADI_OK,
+                                std::string(wadi_get_last_error()));
+                const AbiWorld world(id);
+                REQUIRE(wadi_world_step(id, 12) == WADI_OK);
+                const std::size_t cells = 33 * 9;
+                std::vector<float> held(cells), water(cells), sand(cells);
+                REQUIRE(wadi_world_read_field(id, WADI_FIELD_LIMITS, held.data(), cells) == WADI_OK);
+                REQUIRE(wadi_world_read_field(id, WADI_FIELD_TOTAL_WATER_DEPTH, water.data(), cells) == WADI_OK);
+                REQUIRE(wadi_world_read_field(id, WADI_FIELD_SAND_DEPTH, sand.data(), cells) == WADI_OK);
+                std::uint64_t high = 0;
+                for (std::size_t n = 0; n < cells; ++n) {
+                    const bool above = 0.25F + sand[n] + water[n] > static_cast<float>(largest);
+                    CHECK(((static_cast<int>(held[n]) & WADI_LIMIT_HEIGHT) != 0) == above);
+                    high += above ? 1 : 0;
+                }
+                CHECK(high == limit_stats(world).high_columns);
+                CHECK((high > 0) == (largest == 1.0));
+            }
+        }
+    }
+}

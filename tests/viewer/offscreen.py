@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """Pictures of wadi-viewer without a window: against stored ones, and for what must be in them.
 Usage: offscreen.py VIEWER [--store]   --store writes the stored pictures anew, after a look at them."""
+import json
 import subprocess
 import sys
 import tempfile
@@ -104,9 +105,18 @@ def test_views(viewer):
         assert (share(south_west, above_lowest) > 0.9) == (view == "active") # water
         assert share(east, above_lowest) > 0.05 # two heaps of sand
     held = viewer.picture("limits", "dam_break", "--variant", "paper", "--backend", "cpu", "--camera", "top", "--size", "120x120", "--grid", "96x96", "--start", 1, "--view", "limits")
-    fronts, rock = share(held, lambda r, g, b: r > 120 and g < 110 and b < 100), share(part(held, 0.1, 0.1, 0.3, 0.3), above_lowest)
+    red = lambda r, g, b: r > 120 and g < 110 and b < 100
+    fronts, rock = share(held, lambda r, g, b: r > 120 and g > 110 and b < 120), share(part(held, 0.1, 0.1, 0.3, 0.3), above_lowest)
     print(f"view limits: {fronts:.3f} of the picture at the speed limit, {rock:.3f} of dry rock")
-    assert 0.01 < fronts < 0.5 and rock == 0
+    assert 0.01 < fronts < 0.5 and rock == 0 and share(held, red) == 0
+    for largest in (1, 4): # water that runs against a side stands above 1 m there, and nowhere above 4 m
+        level = viewer.folder / f"surge_{largest}.json"
+        level.write_text(json.dumps({"format_version": 1, "name": "surge", "grid": {"nx": 48, "ny": 48, "dx": 0.5}, "dt": 0.02,
+                                     "water": [{"shape": "plane", "height": 0.75}], "method": {"largest_height": largest},
+                                     "velocities": [{"shape": "plane", "of": "water", "velocity": [-4, 0]}]}), encoding="utf-8")
+        high = viewer.picture(level.stem, str(level), "--backend", "cpu", "--camera", "top", "--size", "120x120", "--start", 1, "--view", "limits")
+        print(f"view limits: {share(high, red):.3f} of the picture above a largest height of {largest} m")
+        assert share(part(high, 0.5, 0, 1, 1), red) == 0 and (share(high, red) > 0.01) == (largest == 1)
     plain = viewer.picture("plain", "dam_break", "--backend", "cpu", "--camera", "top", "--size", "120x120", "--grid", "96x96", "--start", 2)
     arrows = viewer.picture("arrows", "dam_break", "--backend", "cpu", "--camera", "top", "--size", "120x120", "--grid", "96x96", "--start", 2, "--arrows")
     changed = sum(1 for p, q in zip(pixels(plain), pixels(arrows)) if p != q)

@@ -169,7 +169,7 @@ namespace Wadi
         StretchXX = 12,
         StretchXY = 13,
         StretchYY = 14,
-        /// <summary>which guards hold the cell back in the next step: a sum of wadi_limit bits, 0 = none</summary>
+        /// <summary>which limits hold the cell in the next step: a sum of wadi_limit bits, 0 = none</summary>
         Limits = 15,
         Count = 16,
     }
@@ -188,6 +188,8 @@ namespace Wadi
         SandSpeed = 8,
         SandGravity = 16,
         SandOutflow = 32,
+        /// <summary>the column stands above method.largest_height: its heights are rounded, the books drift</summary>
+        Height = 64,
     }
 
     public enum BodyShape

@@ -538,7 +538,7 @@ typedef enum wadi_field WADI_ENUM {
     WADI_FIELD_STRETCH_XX = 12,      /* left stretch V - I of the sand */
     WADI_FIELD_STRETCH_XY = 13,
     WADI_FIELD_STRETCH_YY = 14,
-    WADI_FIELD_LIMITS = 15,          /* which guards hold the cell back in the next step: a sum of wadi_limit bits, 0 = none */
+    WADI_FIELD_LIMITS = 15,          /* which limits hold the cell in the next step: a sum of wadi_limit bits, 0 = none */
     WADI_FIELD_COUNT = 16
 } wadi_field;
 /** Bits of WADI_FIELD_LIMITS, of a cell or any of its four faces. wadi_world_stats counts the same, by faces. */
@@ -548,7 +548,8 @@ typedef enum wadi_limit WADI_ENUM {
     WADI_LIMIT_WATER_OUTFLOW = 4, /* more water would leave than there is */
     WADI_LIMIT_SAND_SPEED = 8,
     WADI_LIMIT_SAND_GRAVITY = 16,
-    WADI_LIMIT_SAND_OUTFLOW = 32
+    WADI_LIMIT_SAND_OUTFLOW = 32,
+    WADI_LIMIT_HEIGHT = 64        /* the column stands above method.largest_height: its heights are rounded, the books drift */
 } wadi_limit;
 /** Short name used by tools: "H", "hs", "W", "hw", "surface", "phi", "uw", "vw", "us", "vs", "um", "vm", "Vxx", "Vxy", "Vyy", "limits";
  *  NULL if unknown. */

@@ -8,9 +8,12 @@
 #include <vulkan/vulkan.h>
 
 atomic_int failing_vulkan_calls, failing_vulkan_at, failing_vulkan_more, failing_vulkan_code;
+/* By the kind of call: the number of the last one; 0 where there was none, and behind all kinds. */
+atomic_int failing_vulkan_last[64];
 
-static VkResult fault(void) {
+static VkResult fault(int kind) {
     const int number = atomic_fetch_add(&failing_vulkan_calls, 1) + 1, at = failing_vulkan_at;
+    failing_vulkan_last[kind] = number;
     return at > 0 && number >= at && number <= at + failing_vulkan_more ? (VkResult)failing_vulkan_code : VK_SUCCESS;
 }
 
@@ -63,10 +66,15 @@ static VkResult fault(void) {
     CALL(CreateQueryPool, (VkDevice a, const VkQueryPoolCreateInfo* b, const VkAllocationCallbacks* c, VkQueryPool* d),          \
          (a, b, c, d))
 
+#define CALL(name, parameters, arguments) KIND_##name,
+enum { EACH_CALL(CALL) KINDS };
+#undef CALL
+_Static_assert(KINDS < sizeof failing_vulkan_last / sizeof *failing_vulkan_last, "a place for each kind, and one behind");
+
 #define CALL(name, parameters, arguments)                                                                                        \
     static PFN_vk##name real_##name;                                                                                             \
     static VKAPI_ATTR VkResult VKAPI_CALL call_##name parameters {                                                               \
-        const VkResult result = fault();                                                                                         \
+        const VkResult result = fault(KIND_##name);                                                                              \
         return result == VK_SUCCESS ? real_##name arguments : result;                                                            \
     }
 EACH_CALL(CALL)

@@ -4,18 +4,22 @@
 #include <algorithm>
 #include <cstdio>
 #include <dlfcn.h>
+#include <span>
 #include <unistd.h>
 #include <vector>
 
 namespace attack {
 namespace {
 
-std::atomic<int>& number(const char* name) {
-    static std::atomic<int> none{0};
+constexpr int most_kinds = 64; // of calls, in failing_vulkan.c
+
+std::atomic<int>* numbers(const char* name) {
+    static std::atomic<int> none[most_kinds];
     static void* loader = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_GLOBAL);
     auto* found = loader != nullptr ? static_cast<std::atomic<int>*>(dlsym(loader, name)) : nullptr;
-    return found != nullptr ? *found : none;
+    return found != nullptr ? found : none;
 }
+std::atomic<int>& number(const char* name) { return *numbers(name); }
 
 struct Answers {
     int failed = 0;
@@ -64,21 +68,31 @@ int failing_vulkan(int count) {
     backend = "vulkan";
     int calls[2] = {-1, -1};
     if (pipe(calls) != 0) return 1;
-    std::uint64_t expected[2] = {};
+    std::uint64_t expected[2 + most_kinds] = {};
     const auto usual = run_child([&] {
         const auto answers = use();
-        const std::uint64_t said[2] = {static_cast<std::uint64_t>(number("failing_vulkan_calls").load()), answers.hash};
+        std::uint64_t said[2 + most_kinds] = {static_cast<std::uint64_t>(number("failing_vulkan_calls").load()), answers.hash};
+        for (int kind = 0; kind < most_kinds; ++kind)
+            said[2 + kind] = static_cast<std::uint64_t>(numbers("failing_vulkan_last")[kind].load());
         return write(calls[1], said, sizeof said) == sizeof said && answers.failed == 0 && wrong == 0 ? 0 : 1;
     });
     if (!expect(usual.code == 0 && read(calls[0], expected, sizeof expected) == sizeof expected, "a session where nothing fails"))
         return wrong;
     const int all = static_cast<int>(expected[0]);
     expect(all > 100, "the loader that fails is in place");
+    // The last call of each kind, those of running worlds first, and as many places between the first call and the last.
+    std::vector<int> places;
+    for (const std::uint64_t last : std::span(expected).subspan(2))
+        if (last > 0) places.push_back(static_cast<int>(last));
+    std::sort(places.rbegin(), places.rend());
+    places.resize(std::min(places.size(), static_cast<std::size_t>(count - count / 2)));
+    const int spread = count - static_cast<int>(places.size());
+    for (int n = 0; n < spread; ++n)
+        places.push_back(1 + static_cast<int>(static_cast<long>(all - 1) * n / std::max(1, spread - 1)));
     constexpr int codes[] = {-1, -2}; // memory of the host, of the device. A loss told of a device that works on would be none
     int told = 0;
     for (int n = 0; n < count; ++n) {
-        const int at = 1 + static_cast<int>(static_cast<long>(all - 1) * n / std::max(1, count - 1)), code = codes[n / 2 % 2],
-                  more = n % 2 == 0 ? 0 : 1 << 20;
+        const int at = places[static_cast<std::size_t>(n)], code = codes[n / 2 % 2], more = n % 2 == 0 ? 0 : 1 << 20;
         const auto ran = run_child([&] {
             number("failing_vulkan_code") = code;
             number("failing_vulkan_more") = more;

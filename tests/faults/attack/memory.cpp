@@ -1,5 +1,6 @@
 // What a process or its control group cannot give is told.
 #include "tests/faults/attack/attack.hpp"
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -19,6 +20,21 @@ int worlds_until_refused(int cells) {
         if (!expect(stepped == WADI_OK, "a world too many is told as a lack of memory")) return 1;
     }
     return 2;
+}
+
+/// A grid that takes 19/20 of what there is, which is too much: what is said tells the share that counts.
+void refuse_a_grid(std::uint64_t bytes) {
+    constexpr double drawn = 36; // bytes per cell
+    wadi_world_id world{};
+    const int cells = static_cast<int>(std::sqrt(0.95 * static_cast<double>(bytes) / drawn));
+    expect(make(cells, world) == WADI_ERROR_OUT_OF_MEMORY, "a grid of 19/20 of the memory is refused");
+    const std::string said = wadi_get_last_error();
+    const auto at = said.find("cells need ");
+    unsigned long need = 0, there = 0;
+    const bool numbers =
+        at != std::string::npos &&
+        std::sscanf(said.c_str() + at, "cells need %lu MiB while they are drawn; 9/10 of the %lu MiB", &need, &there) == 2;
+    expect(numbers && 10 * (need + 1) > 9 * there, "the text says less than it refuses for: " + said);
 }
 
 /// A group of processes that may take so many bytes; its folder, empty where the machine allows none.
@@ -83,7 +99,8 @@ int memory() {
         }
         const auto ran = run_child([&] {
             std::ofstream(group + "/cgroup.procs") << getpid() << std::flush;
-            return worlds_until_refused(700);
+            refuse_a_grid(mebibytes << 20);
+            return worlds_until_refused(700) + wrong;
         });
         const std::string name = "a control group of " + std::to_string(mebibytes) + " MiB";
         const double most = most_used(group);
