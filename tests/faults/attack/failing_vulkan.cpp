@@ -86,13 +86,14 @@ int failing_vulkan(int count) {
         if (last > 0) places.push_back(static_cast<int>(last));
     std::sort(places.rbegin(), places.rend());
     places.resize(std::min(places.size(), static_cast<std::size_t>(count - count / 2)));
-    const int spread = count - static_cast<int>(places.size());
+    const int kinds = static_cast<int>(places.size()); // one call alone fails there: later ones would tell in its place
+    const int spread = count - kinds;
     for (int n = 0; n < spread; ++n)
         places.push_back(1 + static_cast<int>(static_cast<long>(all - 1) * n / std::max(1, spread - 1)));
     constexpr int codes[] = {-1, -2}; // memory of the host, of the device. A loss told of a device that works on would be none
     int told = 0;
     for (int n = 0; n < count; ++n) {
-        const int at = places[static_cast<std::size_t>(n)], code = codes[n / 2 % 2], more = n % 2 == 0 ? 0 : 1 << 20;
+        const int at = places[static_cast<std::size_t>(n)], code = codes[n / 2 % 2], more = n < kinds || n % 2 == 0 ? 0 : 1 << 20;
         const auto ran = run_child([&] {
             number("failing_vulkan_code") = code;
             number("failing_vulkan_more") = more;
