@@ -1,3 +1,4 @@
+#include "engine/level/coverage.hpp"
 #include "engine/level/layer_map.hpp"
 #include "engine/threads/bands.hpp"
 #include <atomic>
