@@ -50,15 +50,11 @@ double unlimited_dt(const Settings& settings, const LimitCounts& counts) {
 }
 
 Status Limits::prepare() {
-    const auto& layout = state_.layout();
-    const std::uint64_t tiles = std::uint64_t{LIMIT_WORDS} * sizeof(std::uint32_t) *
-                                static_cast<std::uint64_t>(layout.tile_columns()) * static_cast<std::uint64_t>(layout.strips());
-    const std::uint64_t columns = std::uint64_t{LIMIT_WORDS} * sizeof(std::uint32_t) *
-                                  static_cast<std::uint64_t>(layout.pitch()) * static_cast<std::uint64_t>(layout.strips());
-    const compute::BufferDesc wanted[] = {{layout.size() * sizeof(std::uint32_t), "limits marks"},
-                                          {columns, "limits of columns"},
-                                          {tiles, "limits of tiles"},
-                                          {tiles, "limits readback", compute::HostAccess::readback}};
+    const LimitBytes bytes = limit_bytes(state_.layout());
+    const compute::BufferDesc wanted[] = {{bytes.marks, "limits marks"},
+                                          {bytes.columns, "limits of columns"},
+                                          {bytes.tiles, "limits of tiles"},
+                                          {bytes.tiles, "limits readback", compute::HostAccess::readback}};
     for (std::size_t n = 0; n < buffers_.size(); ++n) {
         if (buffers_[n].id != 0) continue;
         auto made = state_.device().create_buffer(wanted[n]);
@@ -66,12 +62,12 @@ Status Limits::prepare() {
         buffers_[n] = *made;
     }
     if (!program_) {
-        const auto build = [this, tiles](compute::ProgramBuilder& builder, const Parity& parity) {
+        const auto build = [this, bytes](compute::ProgramBuilder& builder, const Parity& parity) {
             const Slots slots = {{"limit_marks", buffers_[0]}, {"limit_columns", buffers_[1]}, {"limit_counts", buffers_[2]}};
             Status status;
             for (const char* stage : looking_stages)
                 if (status) status = state_.append_stage(builder, stage, parity, slots);
-            builder.copy({buffers_[2], buffers_[3], 0, 0, tiles});
+            builder.copy({buffers_[2], buffers_[3], 0, 0, bytes.tiles});
             return status;
         };
         program_ = std::make_unique<StateProgram>(state_, "limits", build);

@@ -44,8 +44,13 @@ std::uint64_t bytes_of(const PlanField& field, const Settings& settings) {
            static_cast<std::uint64_t>(layout.pitch()) * 4;
 }
 
+LimitBytes limit_bytes(const FieldLayout& layout) {
+    const std::uint64_t strips = std::uint64_t{LIMIT_WORDS} * 4 * static_cast<std::uint64_t>(layout.strips());
+    return {layout.size() * 4, strips * static_cast<std::uint64_t>(layout.pitch()),
+            strips * static_cast<std::uint64_t>(layout.tile_columns())};
+}
+
 std::uint64_t most_device_bytes(const Settings& settings, std::uint32_t effects) {
-    constexpr std::uint64_t small = 64 << 10; // counts of limits
     std::uint64_t most = 0;
     for (const bool tiles : {false, true}) {
         if (tiles && settings.active_tiles == 0) continue;
@@ -62,7 +67,7 @@ std::uint64_t most_device_bytes(const Settings& settings, std::uint32_t effects)
             most = std::max(most, bytes);
         }
     }
-    return most + layout_of(settings).size() * 4 + small;
+    return most + limit_bytes(layout_of(settings)).all();
 }
 
 void fill_row(const FieldLayout& layout, const std::vector<float>& cells, bool repeat_edges, int j, std::span<float> row) {

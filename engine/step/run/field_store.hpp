@@ -39,6 +39,14 @@ inline bool tiles_are_cheap(const StepPlan& tiled, int without) { return 8 * til
 /// Bytes of a field of a world with these settings.
 std::uint64_t bytes_of(const PlanField& field, const Settings& settings);
 
+/// Bytes of the buffers by which a world looks for limits at work (engine/reads/limits.hpp): marks of cells, counts of columns,
+/// counts of tiles, which are read back into as many.
+struct LimitBytes {
+    std::uint64_t marks, columns, tiles;
+    std::uint64_t all() const { return marks + columns + 2 * tiles; }
+};
+LimitBytes limit_bytes(const FieldLayout& layout);
+
 /// Bytes of all buffers that a world with this mask of effects has on its device before it is given anything to do, whichever way
 /// of running its device gains from; at most, and with those that look for limits.
 std::uint64_t most_device_bytes(const Settings& settings, std::uint32_t effects);
