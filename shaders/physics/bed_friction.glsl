@@ -27,10 +27,10 @@ FN float size_of(float x, float y) { return lean_root((x * x + y * y) + 1.0e-28f
 // face's and the cross velocity from before the step, rate = dt c/h [s/m]. V* across is taken as what friction would hold at `across`,
 // so that a steady flow is the same for any time step.
 FN float bed_friction(float pushed, float own, float across, float rate) {
-    float push = wclamp(pushed, -1.0e14f, 1.0e14f);
+    float push = flush(wclamp(pushed, -1.0e14f, 1.0e14f)); // in the range of lean_quotient, or 0
     float held = wclamp(across * (1.0f + wmin(rate * size_of(own, across), 1.0e29f)), -1.0e14f, 1.0e14f);
     float root = lean_root(1.0f + wmin(4.0f * rate * size_of(push, held), 1.0e29f)); // of an infinity it is undefined on some GPUs
-    return lean_quotient(2.0f * push, 1.0f + root); // next to nothing is flushed behind it
+    return lean_quotient(2.0f * push, 1.0f + root);
 }
 
 #endif

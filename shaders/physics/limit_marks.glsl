@@ -8,7 +8,7 @@
 #define MARK_CAPPED_x 64u  // its gravity is capped
 #define MARK_CAPPED_y 128u
 #define MARK_LIMITED 256u  // what leaves the cell is limited
-#define MARK_HIGH 512u    // the column stands above the largest height
+#define MARK_HIGH 512u     // the column stands above the largest height
 #define SAND_MARKS 16      // bits from those of water to those of sand
 #define FACE_MARKS_x ((3u * MARK_CLAMPED_x + MARK_CAPPED_x) * 65537u) // all of a west face
 #define FACE_MARKS_y ((3u * MARK_CLAMPED_y + MARK_CAPPED_y) * 65537u)
