@@ -1,6 +1,7 @@
 /* A Vulkan loader that hands every call on to the real one, but for a call that fails: number failing_vulkan_at of those that may
- * fail, with failing_vulkan_code, and with it each of the next failing_vulkan_more. Built and put in the real one's place by
- * attack.sh, which names that in FAILING_VULKAN_REAL. */
+ * fail, with failing_vulkan_code, and with it each of the next failing_vulkan_more. With VK_SUCCESS for a code it lies: nothing is
+ * done, as if the library had not looked at the code. Built and put in the real one's place by attack.sh, which names that in
+ * FAILING_VULKAN_REAL. */
 #include <dlfcn.h>
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -8,13 +9,14 @@
 #include <vulkan/vulkan.h>
 
 atomic_int failing_vulkan_calls, failing_vulkan_at, failing_vulkan_more, failing_vulkan_code;
-/* By the kind of call: the number of the last one; 0 where there was none, and behind all kinds. */
+/* By the kind of call: the number of the last one; 0 where there was none, and behind all kinds. And what each kind is called. */
 atomic_int failing_vulkan_last[64];
+extern const char* const failing_vulkan_names[64];
 
-static VkResult fault(int kind) {
+static int fails(int kind) {
     const int number = atomic_fetch_add(&failing_vulkan_calls, 1) + 1, at = failing_vulkan_at;
     failing_vulkan_last[kind] = number;
-    return at > 0 && number >= at && number <= at + failing_vulkan_more ? (VkResult)failing_vulkan_code : VK_SUCCESS;
+    return at > 0 && number >= at && number <= at + failing_vulkan_more;
 }
 
 #define EACH_CALL(CALL)                                                                                                          \
@@ -69,13 +71,15 @@ static VkResult fault(int kind) {
 #define CALL(name, parameters, arguments) KIND_##name,
 enum { EACH_CALL(CALL) KINDS };
 #undef CALL
+#define CALL(name, parameters, arguments) #name,
+const char* const failing_vulkan_names[64] = {EACH_CALL(CALL)};
+#undef CALL
 _Static_assert(KINDS < sizeof failing_vulkan_last / sizeof *failing_vulkan_last, "a place for each kind, and one behind");
 
 #define CALL(name, parameters, arguments)                                                                                        \
     static PFN_vk##name real_##name;                                                                                             \
     static VKAPI_ATTR VkResult VKAPI_CALL call_##name parameters {                                                               \
-        const VkResult result = fault(KIND_##name);                                                                              \
-        return result == VK_SUCCESS ? real_##name arguments : result;                                                            \
+        return fails(KIND_##name) ? (VkResult)failing_vulkan_code : real_##name arguments;                                       \
     }
 EACH_CALL(CALL)
 #undef CALL
