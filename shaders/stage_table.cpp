@@ -22,6 +22,8 @@ Range2 extent_range(Extent extent, const WorldParams& p, int most_points) {
         return {0, 0, p.nx + 1, p.strips};
     case Extent::source_pieces:
         return {0, 0, POINT_ROW, (p.source_pieces + POINT_ROW - 1) / POINT_ROW};
+    case Extent::source_cells:
+        return {0, 0, POINT_ROW, (p.source_pieces * p.source_rows + POINT_ROW - 1) / POINT_ROW};
     case Extent::tiles:
         return {0, 0, p.tile_columns, p.tile_rows};
     case Extent::tile_rows:

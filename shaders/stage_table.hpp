@@ -17,11 +17,11 @@ enum class Scalar : std::uint8_t { f32, u32, i32, vec2, vec4, uvec2 };
 /// Which (i, j) a stage runs over.
 /// cells: nx x ny. faces: (nx+1) x (ny+1). rim: 2(nx+ny) x 1, the outer faces in the order west, east, south, north.
 /// strips: nx+1 columns x ceil((ny+1)/STRIP). source_pieces: no grid, the pieces of the sources' boxes
-/// in rows of POINT_ROW.
+/// in rows of POINT_ROW. source_cells: the cells of those pieces, first the first one of each.
 /// tiles: tile_columns x tile_rows active tiles. tile_rows: 1 x tile_rows. tile_lines: tile_columns x (ny+1), a tile's line of
 /// cells. points: no grid, a list; point n is i = n % POINT_ROW, j = n / POINT_ROW. StepInput::point_count says how many there
 /// are.
-enum class Extent : std::uint8_t { cells, faces, rim, strips, source_pieces, points, tiles, tile_rows, tile_lines };
+enum class Extent : std::uint8_t { cells, faces, rim, strips, source_pieces, source_cells, points, tiles, tile_rows, tile_lines };
 
 struct StageBinding {
     std::string_view name;

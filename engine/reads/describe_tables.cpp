@@ -157,7 +157,8 @@ std::string wrapped(const std::string& begin, const Strings& words) {
 
 std::string describe_stages() {
     using namespace compute;
-    const char* extents[] = {"cells", "faces", "rim", "strips", "source_pieces", "points", "tiles", "tile_rows", "tile_lines"};
+    const char* extents[] = {"cells",        "faces",  "rim",   "strips",    "source_pieces",
+                             "source_cells", "points", "tiles", "tile_rows", "tile_lines"};
     const char* accesses[] = {"    reads  ", "    writes ", "    updates"};
     std::string text;
     for (const StageInfo& stage : stage_table()) {

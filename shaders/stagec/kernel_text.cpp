@@ -5,7 +5,9 @@
 namespace stagec {
 
 std::string length(const std::string& extent) {
-    return extent == "POINTS" ? "S.point_count" : extent == "SOURCE_PIECES" ? "P.source_pieces" : "";
+    if (extent == "POINTS") return "S.point_count";
+    if (extent == "SOURCE_PIECES") return "P.source_pieces";
+    return extent == "SOURCE_CELLS" ? "P.source_pieces * P.source_rows" : "";
 }
 
 std::string guard(const std::string& extent) {

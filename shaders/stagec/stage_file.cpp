@@ -10,8 +10,8 @@
 namespace stagec {
 namespace {
 
-const std::set<std::string> extents = {"CELLS",  "FACES", "RIM",       "STRIPS",    "SOURCE_PIECES",
-                                       "POINTS", "TILES", "TILE_ROWS", "TILE_LINES"};
+const std::set<std::string> extents = {"CELLS",        "FACES",  "RIM",   "STRIPS",    "SOURCE_PIECES",
+                                       "SOURCE_CELLS", "POINTS", "TILES", "TILE_ROWS", "TILE_LINES"};
 const std::set<std::string> types = {"float", "uint", "int", "vec2", "vec4", "uvec2"};
 
 std::string joined(const std::set<std::string>& words) {
