@@ -3,9 +3,13 @@
 find_package(Vulkan QUIET)
 find_program(WADI_GLSLANG glslangValidator)
 find_program(WADI_SPIRV_VAL spirv-val)
+find_program(WADI_SPIRV_OPT spirv-opt)
 find_path(WADI_VOLK_INCLUDE volk.h)
+# A driver makes pipelines of inlined functions and values in place of variables three to seven times as quickly. No pass touches arithmetic.
+set(WADI_SPIRV_PASSES --merge-return --inline-entry-points-exhaustive --eliminate-dead-functions --scalar-replacement=0 --convert-local-access-chains
+    --eliminate-local-single-block --eliminate-local-single-store --ssa-rewrite --eliminate-dead-code-aggressive)
 set(missing "")
-foreach(need "Vulkan_INCLUDE_DIR:libvulkan-dev" "WADI_GLSLANG:glslang-tools" "WADI_SPIRV_VAL:spirv-tools" "WADI_VOLK_INCLUDE:libvulkan-volk-dev")
+foreach(need "Vulkan_INCLUDE_DIR:libvulkan-dev" "WADI_GLSLANG:glslang-tools" "WADI_SPIRV_VAL:spirv-tools" "WADI_SPIRV_OPT:spirv-tools" "WADI_VOLK_INCLUDE:libvulkan-volk-dev")
   string(REPLACE ":" ";" pair ${need})
   list(GET pair 0 variable)
   list(GET pair 1 package)
