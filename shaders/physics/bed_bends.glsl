@@ -81,9 +81,10 @@ FN BedRide bed_ride(BedInflow all, float rise_along, float rise_across, float in
 FN bool beyond_head(float u, float height_low, float height_high, float top_low, float top_high, float head2, float gravity, float dry) {
     bool dry_low = height_low <= dry;
     bool dry_high = height_high <= dry;
-    float rise = 2.0f * gravity * (top_high - top_low);
-    bool up = both(u > 0.0f, either(both(dry_low, either(dry_high, rise <= 0.0f)), both(dry_high, head2 <= rise)));
-    bool down = both(u < 0.0f, either(both(dry_high, either(dry_low, rise >= 0.0f)), both(dry_low, head2 <= -rise)));
+    float rise = top_high - top_low;
+    float head2_up = 2.0f * gravity * rise;
+    bool up = both(u > 0.0f, either(both(dry_low, either(dry_high, rise <= 0.0f)), both(dry_high, head2 <= head2_up)));
+    bool down = both(u < 0.0f, either(both(dry_high, either(dry_low, rise >= 0.0f)), both(dry_low, head2 <= -head2_up)));
     return either(up, down);
 }
 

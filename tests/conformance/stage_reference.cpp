@@ -124,8 +124,8 @@ References::References(const Scene& scene)
 
 void References::run_stage(const std::string& stage) {
     const auto run = [&](auto& solver) {
-        if (stage == "diffuse_mixed_velocity" || stage == "diffuse_mixed_water" || stage == "limit_water_outflow")
-            solver.split_water();
+        const bool splits = stage == "limit_water_outflow" && !solver.has(EFFECT_PUBLISHED);
+        if (splits || stage == "diffuse_mixed_velocity" || stage == "diffuse_mixed_water") solver.split_water();
         if (stage == "start_water_velocity") return solver.start_water_velocity();
         run_reference_stage(solver, stage);
     };

@@ -22,6 +22,10 @@ void Solver<Real>::update_types(Height height, Surface surface, Faces<Real>& typ
 }
 
 template <class Real> void Solver<Real>::update_water_boundary_types() {
+    for (std::size_t c = 0; has(EFFECT_DIFFUSION) && c < cells(); ++c) { // 2.21: h_m may pass hs until the split is taken anew
+        mixed[c] = mixed_diffused[c];
+        pure[c] = water[c] - mixed_diffused[c];
+    }
     const auto eta = [&](std::size_t c) { return terrain[c] + water[c]; };
     update_types([&](std::size_t c) { return pure[c]; }, eta, pure_type);
     if (has(EFFECT_MIXTURE)) update_types([&](std::size_t c) { return mixed[c]; }, eta, mixed_type);

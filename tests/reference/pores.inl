@@ -14,7 +14,7 @@ template <class Real> Real Solver<Real>::pore_room(Real depth) const {
 /// How deep such water stands, from the ground to its surface: in n of the sand up to its top, then above it.
 template <class Real> Real Solver<Real>::standing(Real held, Real depth) const {
     const Real room = pore_room(depth);
-    if (held <= Real(0)) return Real(0);
+    if (held == Real(0)) return Real(0); // below 0 where diffusion of 2.21 took more than there was: so does the surface stand
     return held < room ? std::min(held / P.porosity, depth) : held + (depth - room);
 }
 

@@ -81,8 +81,11 @@ template <class Real> void Solver<Real>::bound_balance() {
                                real(0.8) * P.dx * mean(clings(c), clings(n));
             const Real balanced = unit / Real(2) * (weight(c) * sand[c] * sand[c] - weight(n) * sand[n] * sand[n]);
             const Real allowed = std::max(most[n] + std::max(borne, balanced), Real(0));
-            if (allowed < most[c]) changed = true;
-            most[c] = std::min(most[c], allowed);
+            // What rounding makes of the balance once round some cells would lower them for ever.
+            const Real sums = most[n] + unit / Real(2) * (weight(c) * sand[c] * sand[c] + weight(n) * sand[n] * sand[n]);
+            if (allowed >= most[c] - Real(8) * std::numeric_limits<Real>::epsilon() * sums) return;
+            changed = true;
+            most[c] = allowed;
         };
         for (int j = 0; j < x.ny; ++j) {
             for (int i = 0; i < x.nx; ++i) {

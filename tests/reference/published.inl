@@ -18,6 +18,7 @@ template <class Real> void Solver<Real>::diffuse_mixed_height() {
 
 template <class Real> void Solver<Real>::spread_mixed_water() {
     for (std::size_t c = 0; c < cells(); ++c) water[c] += mixed[c] - std::min(water[c], sand[c]);
+    mixed_diffused = mixed;
 }
 
 template <class Real> void Solver<Real>::measure_layer_exchange() {
@@ -260,12 +261,8 @@ template <class Real> void Solver<Real>::apply_frictional_force() {
     });
 }
 
-template <class Real> void Solver<Real>::step_published_water(const Field<Real>& spread) {
+template <class Real> void Solver<Real>::step_published_water() {
     split_water();
-    for (std::size_t c = 0; has(EFFECT_DIFFUSION) && c < cells(); ++c) {
-        mixed[c] = spread[c];
-        pure[c] = water[c] - spread[c];
-    }
     update_water_boundary_types();
     limit_water_outflow();
     compute_water_flux();
@@ -313,9 +310,8 @@ template <class Real> void Solver<Real>::step_published() {
         diffuse_mixed_height();
         spread_mixed_water();
     }
-    const Field<Real> spread = mixed;
     update_open_sides();
-    if (has(EFFECT_WATER)) step_published_water(spread);
+    if (has(EFFECT_WATER)) step_published_water();
     for (int substep = 0; has(EFFECT_SAND) && substep < P.substeps; ++substep) step_published_sand();
 }
 

@@ -125,7 +125,8 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
                                &wedge_depth,
                                &pore_water,
                                &open_sand,
-                               &felt_water})
+                               &felt_water,
+                               &mixed_diffused})
         field->assign(nx * ny, Real(0));
     Vxx.assign(nx * ny, Real(1));
     Vyy.assign(nx * ny, Real(1));
@@ -274,6 +275,7 @@ template <class Real> template <class Other> void Solver<Real>::copy_from(const 
     field(&A::pore_water, &B::pore_water);
     field(&A::open_sand, &B::open_sand);
     field(&A::felt_water, &B::felt_water);
+    field(&A::mixed_diffused, &B::mixed_diffused);
     rained = static_cast<Real>(other.rained);
     water_added = other.water_added;
     sand_added = other.sand_added;

@@ -157,6 +157,7 @@ template <class Real> class Solver {
     Faces<Real> extrapolated;                     // velocity of one layer
     Field<Real> saturation;                       // phibar
     Field<Real> open_sand, felt_water;            // 2.24: what the stages of water and sand take for hs and W
+    Field<Real> mixed_diffused;                   // 2.21: mixed water that has spread ahead of transport [m]
     Field<Real> sand_before, mixed_before;        // hs^n and min(W, P^n)
     Field<Real> sxx, sxy, syy;                    // Cauchy stress [Pa]
     Field<Real> cohesive_share;                   // R of 2.18, 0 without elastoplastic
@@ -292,7 +293,7 @@ template <class Real> class Solver {
     void set_right_stretch(std::size_t cell, const Stretch& stretch, Real cs, Real sn);
     void step_robust();
     void step_published();
-    void step_published_water(const Field<Real>& spread); // the mixed heights that diffusion left
+    void step_published_water();
     void step_published_sand();
 
     double quanta(double& total, double amount) const;

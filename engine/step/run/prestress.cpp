@@ -14,6 +14,7 @@ struct Column {
     double sand = 0;    // hs [m]
     double weight = 0;  // what pushes, as a share of the sand's own
     double clings = 0;  // cohesion on the ground [Pa]
+    double balance = 0; // what pushes, times half the depth [Pa m]
     double pull = 0;    // depth times tension [Pa m]
     double allowed = 0; // of it
 };
@@ -24,7 +25,7 @@ Column column_of(const WorldParams& p, double ground, double sand, double water,
     column.surface = ground + sand;
     column.sand = sand;
     const double tr = 2 * std::log1p(stretch);
-    column.pull = column.allowed = sand * static_cast<double>(p.lambda + p.shear) * tr * std::exp(-tr);
+    column.pull = sand * static_cast<double>(p.lambda + p.shear) * tr * std::exp(-tr);
     if (sand <= static_cast<double>(p.dry_threshold)) return column;
     const double retained = static_cast<double>(p.retained), drainable = static_cast<double>(p.inv_drainable);
     const double porosity = static_cast<double>(p.porosity), buoyancy = static_cast<double>(p.buoyancy);
@@ -32,6 +33,7 @@ Column column_of(const WorldParams& p, double ground, double sand, double water,
     const double full = retained > 0 ? std::clamp((stands - retained * sand) * drainable, 0.0, sand) : std::min(stands, sand);
     const double held = std::min(water, room) - porosity * full;
     column.weight = std::max(0.0, 1 - static_cast<double>(p.density_ratio) * (buoyancy * full - held) / sand);
+    column.balance = 0.5 * static_cast<double>(p.sand_density) * static_cast<double>(p.gravity) * column.weight * sand * sand;
     const auto phi = static_cast<float>(stands / (stands + sand));
     float c = phi < p.phi1   ? p.cohesion0 + phi * p.slope01
               : phi < p.phi2 ? p.cohesion1 + (phi - p.phi1) * p.slope12
@@ -41,16 +43,29 @@ Column column_of(const WorldParams& p, double ground, double sand, double water,
     return column;
 }
 
+// Whole multiples of what it returns have exact sums here, and so the balance of cells once round any of them is exactly 0.
+// Rounded otherwise, it can be less: each bound would then lower the next one for ever.
+double make_exact(std::vector<Column>& columns) {
+    double largest = 0;
+    for (const Column& column : columns) largest = std::max({largest, column.balance, column.pull});
+    const double grain = largest > 0 ? std::ldexp(1.0, std::ilogb(largest) - 50) : 1;
+    for (Column& column : columns) {
+        column.balance = std::nearbyint(column.balance / grain) * grain;
+        column.pull = column.allowed = std::nearbyint(column.pull / grain) * grain;
+    }
+    return grain;
+}
+
 // The most that sand beside `other` may pull with: what that does, and what push and friction of the face bear, or what balance
 // itself wants of two columns on level ground.
-double allowed_beside(const WorldParams& p, const Column& own, const Column& other) {
+double allowed_beside(const WorldParams& p, const Column& own, const Column& other, double grain) {
     const double weight = static_cast<double>(p.sand_density) * static_cast<double>(p.gravity);
     const double dx = static_cast<double>(p.dx), friction = static_cast<double>(p.friction);
     const double mean_weight = 0.5 * (own.weight + other.weight), mean_depth = 0.5 * (own.sand + other.sand);
     const double borne = weight * mean_weight * mean_depth * (own.surface - other.surface + 0.8 * friction * dx) +
                          0.4 * dx * (own.clings + other.clings);
-    const double balance = 0.5 * weight * (own.weight * own.sand * own.sand - other.weight * other.sand * other.sand);
-    return std::max(0.0, other.allowed + std::max(borne, balance));
+    const double rises = std::max(std::nearbyint(std::min(borne, own.pull) / grain) * grain, own.balance - other.balance);
+    return std::max(0.0, other.allowed + rises);
 }
 
 // NUMERICS 2.20: where cohesion ends, tension does within a few cells, each bounded by its neighbours. A free face bounds
@@ -75,10 +90,11 @@ Status bound_balance(WorldState& state) {
             columns[j * nx + i] = column_of(p, value(ground), value(sand), value(water), value(xx));
         }
     }
+    const double grain = make_exact(columns);
     bool changed = false;
     const auto bound = [&](std::size_t c, std::size_t other) {
         if (columns[other].sand <= static_cast<double>(p.dry_threshold)) return;
-        const double most = allowed_beside(p, columns[c], columns[other]);
+        const double most = allowed_beside(p, columns[c], columns[other], grain);
         if (most >= columns[c].allowed) return;
         columns[c].allowed = most;
         changed = true;
