@@ -181,6 +181,17 @@ double moved_by_nudges(const reference::Solver<double>& start, int steps,
     return moved;
 }
 
+// Whether strain has grown until a float says another one than a double, as the paper's method lets it without its clamps: F of
+// 3e7.
+bool other_strain(const reference::Solver<float>& narrow, const reference::Solver<double>& wide) {
+    const auto parts = [](const auto& f, const auto& d) {
+        for (std::size_t n = 0; n < d.size(); ++n)
+            if (std::fabs(static_cast<double>(f[n]) - d[n]) > 1e-2 * std::max(1.0, std::fabs(d[n]))) return true;
+        return false;
+    };
+    return parts(narrow.Vxx, wide.Vxx) || parts(narrow.Vxy, wide.Vxy) || parts(narrow.Vyy, wide.Vyy);
+}
+
 // The first steps against the second solver in double. Where that one in float differs from it much, another branch was taken
 // somewhere and the case says nothing. Nor does it where quanta more or less move the second solver as far: what truncation
 // leaves in a drained cell may lie on either side of a dry threshold of a few quanta, and sand passes the cell or not.
@@ -203,6 +214,7 @@ std::string check_reference(const Case& c, Session& session) {
         step(run, 1);
         narrow.step();
         wide.step();
+        if (s.method.published() && other_strain(narrow, wide)) return {};
         for (const auto& [name, mine, theirs, depth] :
              {std::tuple{"sand_height", &narrow.sand, &wide.sand, &reference::Solver<double>::sand},
               std::tuple{"water_height", &narrow.water, &wide.water, &reference::Solver<double>::water}}) {
