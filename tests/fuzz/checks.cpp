@@ -192,6 +192,13 @@ bool other_strain(const reference::Solver<float>& narrow, const reference::Solve
     return parts(narrow.Vxx, wide.Vxx) || parts(narrow.Vxy, wide.Vxy) || parts(narrow.Vyy, wide.Vyy);
 }
 
+// Whether a cell was drained without quanta: what is left of its depth is rounding, which says whether a layer is there.
+bool drained(const reference::Solver<double>& solver) {
+    const auto left = [](double h) { return h > 0 && h < 1e-10; };
+    return std::any_of(solver.sand.begin(), solver.sand.end(), left) ||
+           std::any_of(solver.water.begin(), solver.water.end(), left);
+}
+
 // The first steps against the second solver in double. Where that one in float differs from it much, another branch was taken
 // somewhere and the case says nothing. Nor does it where quanta more or less move the second solver as far: what truncation
 // leaves in a drained cell may lie on either side of a dry threshold of a few quanta, and sand passes the cell or not.
@@ -215,6 +222,7 @@ std::string check_reference(const Case& c, Session& session) {
         narrow.step();
         wide.step();
         if (s.method.published() && other_strain(narrow, wide)) return {};
+        if (s.method.quantum == 0 && drained(wide)) return {};
         for (const auto& [name, mine, theirs, depth] :
              {std::tuple{"sand_height", &narrow.sand, &wide.sand, &reference::Solver<double>::sand},
               std::tuple{"water_height", &narrow.water, &wide.water, &reference::Solver<double>::water}}) {
