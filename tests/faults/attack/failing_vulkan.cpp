@@ -78,7 +78,6 @@ void lies(std::span<const std::uint64_t> last, std::uint64_t hash, bool all) {
                                            "EnumeratePhysicalDevices",
                                            "AllocateMemory",
                                            "MapMemory",
-
                                            "CreatePipelineLayout",
                                            "CreateDescriptorPool",
                                            "CreateDescriptorSetLayout",
