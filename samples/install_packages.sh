@@ -18,12 +18,14 @@ packages_of[windows]="g++-mingw-w64-x86-64-posix wine64"
 packages_of[aarch64]="g++-aarch64-linux-gnu qemu-user"
 packages_of[wasm]="emscripten node-acorn chromium"
 packages_of[swiftshader]="chromium-common"
+# What plugin/packaging/release.sh makes environments with and runs other systems' programs in, beside the tests.
+packages_of[packaging]="python3-venv debootstrap qemu-user wine64 unzip reuse"
 
 [[ $# -ne 0 ]] || set -- tests
 packages=()
 for purpose in "$@"; do
     if [[ -z $purpose || -z ${packages_of[$purpose]:-} ]]; then
-        echo "install_packages.sh: no purpose \"$purpose\"; the purposes are: demo viewer import tests contributing docs windows aarch64 wasm swiftshader" >&2
+        echo "install_packages.sh: no purpose \"$purpose\"; the purposes are: demo viewer import tests contributing docs windows aarch64 wasm swiftshader packaging" >&2
         exit 2
     fi
     # shellcheck disable=SC2206 # words

@@ -106,7 +106,7 @@ def check_zip(folder):
     expect(len(tops) == 1, f"the zip has one folder, not {tops}")
     inner = {name.split("/", 1)[1] for name in names}
     expect({name.split("/")[0] for name in inner} == {"plugin"}, "the zip holds plugin/ alone")
-    expect({name.split("/")[1] for name in inner} == {"include", "lib", "levels", "examples", "cmake", "wadi_api.json", "README.md", "NOTICE.md"}, f"plugin/ holds {inner}")
+    expect({name.split("/")[1] for name in inner} == {"bin", "include", "lib", "levels", "examples", "cmake", "wadi_api.json", "README.md", "NOTICE.md", "THIRD_PARTY.txt"}, f"plugin/ holds {inner}")
     size = sum(file.compress_size for file in archive.infolist())
     expect(size < 10e6, f"the zip is below 10 MB; it has {size / 1e6:.1f}")
     headers = {f"plugin/include/wadi/{path.name}" for path in (source / "plugin/include/wadi").iterdir()}
@@ -115,6 +115,8 @@ def check_zip(folder):
     plugin = folder / "engine" / tops.pop() / "plugin"
     check_pages(plugin)
     library = next((plugin / "lib").iterdir())
+    shown = run(plugin / "bin/wadi-hello", plugin / "levels/dam_break/level.json")
+    expect(shown.count("#") > 20 and len(set(shown.splitlines())) == 13, f"the program in the zip shows water that moves: {shown}")
     run("cc", "-std=c99", host, "-o", folder / "zipped", "-I", plugin / "include", library)
     environment = dict(os.environ, LD_LIBRARY_PATH=str(library.parent))
     check_host(folder / "zipped", env=environment)

@@ -20,9 +20,9 @@ ROOT = HERE.parents[2]
 FOLDERS = ("engine", "backends", "shaders", "plugin", "samples", "tests")
 INCLUDES = [f"-I{ROOT / 'plugin/include'}"]
 WARNINGS = ["-Wall", "-Wextra", "-Werror", "-Wno-unused"]
-LEFT = {"text", "glsl", "gdscript"}  # prose in columns; excerpts of stages; scripts of an engine that is not installed
+LEFT = {"text", "glsl", "gdscript", "bat"}  # prose in columns; excerpts of stages; scripts of an engine that is not installed; Windows (release.sh runs them)
 # Tools of others, whose options are theirs.
-TOOLS = {"cmake", "ctest", "cpack", "cc", "cp", "mcs", "git", "godot", "python3", "pre-commit", "mkdir", "echo", "sed", "cat"}
+TOOLS = {"cmake", "ctest", "cpack", "cc", "cp", "mcs", "git", "godot", "python3", "pre-commit", "mkdir", "echo", "sed", "cat", "cd", "unzip"}
 FENCE = re.compile(r"^( *)```(\w*)\s*$")
 PRINTS = re.compile(r"(<!-- hello.c prints from here -->\n```text\n)(.*?)(```\n<!-- to here -->)", re.DOTALL)
 
@@ -138,6 +138,8 @@ class Repository:
             if preset not in self.presets:
                 return f"there is no preset {preset}"
             command = pathlib.Path(command).name
+        elif command.startswith("bin/"):  # of an unpacked zip
+            command = command[4:]
         elif "/" in command or command.endswith((".sh", ".py")):
             if not script.is_file():
                 return f"there is no script {command}"

@@ -1,0 +1,215 @@
+#!/usr/bin/env bash
+# Makes all that a version consists of and tries each part where nothing of it was built; --help says what, how long, and what it needs.
+set -euo pipefail
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(cd "$here/../.." && pwd)
+cd "$root"
+
+systems=(linux-x86_64 linux-aarch64 windows-x86_64 macos-x86_64 macos-arm64)
+all=("${systems[@]}" godot unity)
+out=$root/build/release-$(sed -nE 's/^project\(wadi VERSION ([0-9.]+).*/\1/p' CMakeLists.txt)
+tag=
+usage() {
+    cat <<EOT
+Usage: release.sh [--out FOLDER] [--tag] [PART ...]; all parts where none is named: ${all[*]}
+  --out FOLDER   where the files of the version go (build/release-VERSION)
+  --tag          when all parts are good and nothing is changed in the tree: git tag vVERSION here (nothing is published)
+
+part            what it makes                 tried
+linux-*         wadi-VERSION-PART.zip         golden hashes; the smallest host in Debian 11, 12, sid, and beside nothing but glibc 2.31
+                                              (ARM under QEMU, in Debian 11)
+windows-x86_64  the same                      golden hashes and the smallest host under Wine
+macos-*         the same                      that a host links it, that it is signed for itself: BUILT, NOT RUN
+godot           wadi-godot-VERSION.zip        the extension under a stand-in engine, on Windows by Wine; download to moving water in Godot
+unity           com.wadi.terrain-VERSION.tgz  compiled and run over a stand-in of Unity: NOT RUN IN UNITY
+Beside them SIZES.txt, wadi-VERSION.spdx.json, SHA256SUMS. "godot" and "unity" take the libraries of the systems that are there, and want all
+of them unless --partial is given.
+
+Needs Debian 12, root (debootstrap), 6 GB, and of the network Debian's packages and PyPI: requirements.txt is the compiler. Without a compiler cache
+all parts take about an hour and a half on two processors.
+EOT
+}
+
+partial=
+parts=()
+while [ $# -gt 0 ]; do
+    case $1 in
+    -h | --help) usage && exit ;;
+    --tag) tag=yes ;;
+    --partial) partial=yes ;;
+    --out)
+        [ $# -gt 1 ] || { echo "release.sh: --out needs a folder" >&2; exit 2; }
+        out=$(realpath -m "$2")
+        shift
+        ;;
+    *)
+        [[ " ${all[*]} " == *" $1 "* ]] || { echo "release.sh: no part \"$1\"; the parts are: ${all[*]}" >&2; exit 2; }
+        parts+=("$1")
+        ;;
+    esac
+    shift
+done
+[ ${#parts[@]} -ne 0 ] || parts=("${all[@]}")
+version=$(sed -nE 's/^project\(wadi VERSION ([0-9.]+).*/\1/p' CMakeLists.txt)
+work=$root/build/packaging
+tools=$work/tools
+headers=$work/headers
+expected=$(cat tests/platforms/minimal_host_hash.txt)
+mkdir -p "$work" "$out"
+ziglang=
+say() { printf '\n== %s (%d s)\n' "$1" "$SECONDS"; }
+
+declare -A zig_target=([linux-x86_64]=x86_64-linux-gnu.2.28 [linux-aarch64]=aarch64-linux-gnu.2.28 [windows-x86_64]=x86_64-windows-gnu
+    [macos-x86_64]=x86_64-macos [macos-arm64]=aarch64-macos)
+declare -A library_of=([linux-x86_64]=libwadi.so.1 [linux-aarch64]=libwadi.so.1 [windows-x86_64]=libwadi.dll [macos-x86_64]=libwadi.1.dylib [macos-arm64]=libwadi.1.dylib)
+zip_of() { echo "$out/wadi-$version-$1.zip"; }
+
+prepare() {
+    samples/install_packages.sh tests packaging
+    "$here/zig.sh" "$work/zig" "$tools" "${zig_target[@]}"
+    ziglang=$(echo "$work"/zig/lib/python3*/site-packages/ziglang)
+    "$here/header_libraries.sh" "$headers"
+    python3 "$here/third_party.py" texts --zig "$ziglang" "$work/THIRD_PARTY.txt"
+    python3 "$here/third_party.py" texts --zig "$ziglang" --windows "$work/THIRD_PARTY.windows.txt"
+}
+
+# The library with all masks, the smallest host and the golden test beside it, and its zip.
+build() { # PART
+    local folder=$work/$1 texts=$work/THIRD_PARTY.txt
+    [[ $1 != windows* ]] || texts=$work/THIRD_PARTY.windows.txt
+    # ccache guesses a compiler's kind from its name
+    export CCACHE_BASEDIR=$root CCACHE_NOHASHDIR=1 CCACHE_COMPILERTYPE=clang CCACHE_COMPILERCHECK="string:$(cat "$here/requirements.txt") ${zig_target[$1]}"
+    cmake -S . -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_TOOLCHAIN_FILE="$here/zig.cmake" -DWADI_ZIG_TOOLS="$tools" \
+        -DWADI_ZIG_TARGET="${zig_target[$1]}" -DCMAKE_PREFIX_PATH="$headers" -DCMAKE_FIND_ROOT_PATH="$headers" -DWADI_CUDA=OFF \
+        -DWADI_OPTIMISE_VECTOR=-O2 -DWADI_THIRD_PARTY="$texts" -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >"$folder.log" 2>&1 &&
+        ninja -C "$folder" wadi wadi-hello wadi-minimal-host wadi-test-golden >>"$folder.log" 2>&1 &&
+        (cd "$folder" && cpack -G ZIP -B "$folder/zip" >>"$folder.log" 2>&1) ||
+        { tail -n 20 "$folder.log"; echo "$1: cannot be built, see $folder.log"; return 1; }
+    local made=("$folder"/zip/wadi-*.zip)
+    cp "${made[0]}" "$(zip_of "$1")"
+    # What a user unpacks, and a host compiled against that alone.
+    rm -rf "$folder/unpacked"
+    mkdir "$folder/unpacked"
+    python3 -m zipfile -e "$(zip_of "$1")" "$folder/unpacked"
+    mv "$folder"/unpacked/wadi-*/plugin "$folder/unpacked/plugin"
+    local plugin=$folder/unpacked/plugin link=${library_of[$1]}
+    [[ $1 != windows* ]] || link=libwadi.dll.a
+    "$tools/${zig_target[$1]}/cc" -std=c99 -O1 -Wall -Wextra -Werror "$plugin/examples/main.c" -I"$plugin/include" "$plugin/lib/$link" -o "$folder/unpacked/host" &&
+        local bytes most=10000000 && bytes=$(stat -c %s "$(zip_of "$1")") && echo "$1: $bytes bytes" &&
+        { [ "$bytes" -lt $most ] || { echo "$1: the zip has $bytes bytes, $most are allowed"; return 1; }; }
+}
+
+same() { # WHERE COMMAND ...: the smallest host gives its hash there
+    local found
+    found=$(timeout 600 "${@:2}" 2>&1) || { echo "$1: the smallest host failed: $found"; return 1; }
+    found=$(sed -n 's/.*hash \([0-9a-f]*\).*/\1/p' <<<"$found" | tr -d '\r')
+    [ "$found" = "$expected" ] || { echo "$1: hash ${found:-none}, not $expected"; return 1; }
+    echo "$1: hash $found"
+}
+
+golden() { # PART COMMAND ...: all of the golden test
+    timeout 1800 "${@:2}" >"$work/$1.golden.log" 2>&1 || { tail -n 20 "$work/$1.golden.log"; echo "$1: golden hashes FAILED"; return 1; }
+    echo "$1: golden hashes equal"
+}
+
+# A system's own libraries as they are unpacked, nothing else of it: that is what a program that needs no more finds.
+environment() { # SUITE ARCHITECTURE; prints its folder
+    local folder=$work/environments/$1-$2
+    if [ ! -e "$folder/.ready" ]; then
+        rm -rf "$folder"
+        mkdir -p "$folder"
+        debootstrap --foreign --variant=minbase --arch="$2" "$1" "$folder" >"$folder.log" 2>&1 || { tail -n 5 "$folder.log" >&2; return 1; }
+        touch "$folder/.ready"
+    fi
+    echo "$folder"
+}
+
+in_environment() { # PART SUITE
+    local folder
+    folder=$(environment "$2" amd64) || return 1
+    rm -rf "$folder/wadi" && cp -r "$work/$1/unpacked" "$folder/wadi" && same "$1, Debian $2" chroot "$folder" /usr/bin/env LD_LIBRARY_PATH=/wadi/plugin/lib /wadi/host
+}
+
+# glibc of Debian 11 alone: no C++ library, no shell. A program's loader is asked for by its path.
+beside_glibc() { # PART
+    local from folder=$work/environments/glibc
+    from=$(environment bullseye amd64) || return 1
+    rm -rf "$folder" && mkdir -p "$folder/lib64" "$folder/lib" && cp -r "$work/$1/unpacked" "$folder/wadi"
+    cp -L "$from"/lib/x86_64-linux-gnu/{libc.so.6,libm.so.6,libdl.so.2,libpthread.so.0,librt.so.1} "$folder/lib/" && cp -L "$from/lib64/ld-linux-x86-64.so.2" "$folder/lib64/"
+    same "$1, glibc 2.31 alone" chroot "$folder" /lib64/ld-linux-x86-64.so.2 --library-path /lib:/wadi/plugin/lib /wadi/host
+}
+
+# The widest set that this processor has, not the one that runs everywhere.
+fast() { # PART
+    ! grep -qw avx2 /proc/cpuinfo || "$work/$1/bin/wadi-minimal-host" | grep -q "(avx" || { echo "$1: runs the base set where AVX2 is there"; return 1; }
+}
+
+# What the site's first page says, word for word.
+first_steps() { python3 "$here/first_steps.py" plugin/docs/hello.md "$(zip_of "$1")" "${@:2}"; } # PART [OPTION ...]
+
+try_linux-x86_64() {
+    fast linux-x86_64 && first_steps linux-x86_64 && golden linux-x86_64 "$work/linux-x86_64/bin/wadi-test-golden" && in_environment linux-x86_64 bullseye && in_environment linux-x86_64 bookworm &&
+        in_environment linux-x86_64 sid && beside_glibc linux-x86_64
+}
+try_linux-aarch64() {
+    local folder
+    folder=$(environment bullseye arm64) && rm -rf "$folder/wadi" && cp -r "$work/linux-aarch64/unpacked" "$folder/wadi" &&
+        golden linux-aarch64 qemu-aarch64 -L "$folder" "$work/linux-aarch64/bin/wadi-test-golden" &&
+        same "linux-aarch64, Debian bullseye (QEMU)" qemu-aarch64 -L "$folder" -E LD_LIBRARY_PATH=/wadi/plugin/lib "$folder/wadi/host"
+}
+try_windows-x86_64() {
+    local wine folder=$work/windows-x86_64
+    wine=$(command -v wine64 || echo /usr/lib/wine/wine64)
+    export WINEDEBUG=-all WINEPREFIX=$work/wine
+    cp "$folder/unpacked/plugin/bin/libwadi.dll" "$folder/unpacked/" && cp "$folder/unpacked/host" "$folder/unpacked/host.exe" &&
+        golden windows-x86_64 "$wine" "$folder/bin/wadi-test-golden.exe" && same "windows-x86_64, Wine" "$wine" "$folder/unpacked/host.exe" &&
+        first_steps windows-x86_64 --wine "$wine"
+}
+try_macos() { "$work/zig/bin/python3" "$here/mach_o.py" "$work/$1/unpacked/plugin/lib/${library_of[$1]}" "$work/$1/unpacked/host" && echo "$1: built, linked, NOT RUN"; }
+try_macos-x86_64() { try_macos macos-x86_64; }
+try_macos-arm64() { try_macos macos-arm64; }
+
+# Every file of the tree has an author and a licence, if only that none has been chosen (REUSE 3.0). The tool wants LICENSES at the top.
+licences() {
+    local folder=$work/reuse
+    rm -rf "$folder" && mkdir -p "$folder" && git ls-files -z | xargs -0 cp --parents -t "$folder" && cp -r .reuse/licences "$folder/LICENSES" &&
+        reuse --root "$folder" lint >"$work/reuse.log" 2>&1 || { tail -n 20 "$work/reuse.log"; echo "licences: reuse lint FAILED"; return 1; }
+    echo "licences: every file has one (REUSE 3.0)"
+}
+
+# What is beside the parts: of all that lie there.
+finish() {
+    local files=()
+    mapfile -t files < <(find "$out" -maxdepth 1 \( -name '*.zip' -o -name '*.tgz' \) -printf '%p\n' | sort)
+    python3 "$here/sizes.py" "${files[@]}" >"$out/SIZES.txt"
+    local options=()
+    for file in "${files[@]}"; do options+=(--file "$file"); done
+    python3 "$here/third_party.py" sbom --version "$version" --commit "$commit" --zig "$ziglang" --windows "${options[@]}" "$out/wadi-$version.spdx.json"
+    (cd "$out" && sha256sum -- *.zip *.tgz *.json SIZES.txt >SHA256SUMS 2>/dev/null) || (cd "$out" && sha256sum -- *.zip *.json SIZES.txt >SHA256SUMS)
+    cat "$out/SIZES.txt"
+}
+
+commit=$(git rev-parse --short HEAD)$(git diff --quiet HEAD || echo "-changed")
+[ -z "$tag" ] || [ ${#parts[@]} -eq ${#all[@]} ] || { echo "release.sh: --tag is for all parts" >&2; exit 2; }
+[ -z "$tag" ] || [ -z "$(git status --porcelain)" ] || { echo "release.sh: --tag: the tree has changes; commit them, or take a clean clone" >&2; exit 2; }
+[ -z "$tag" ] || ! git rev-parse -q --verify "refs/tags/v$version" >/dev/null || { echo "release.sh: --tag: there is a tag v$version" >&2; exit 2; }
+say packages
+prepare
+failed=()
+for part in licences "${parts[@]}"; do
+    say "$part"
+    start=$SECONDS
+    case $part in
+    licences) licences || failed+=("$part") ;;
+    godot | unity) "make_$part" || failed+=("$part") ;;
+    *) { build "$part" && "try_$part"; } || failed+=("$part") ;;
+    esac
+    echo "$part: $((SECONDS - start)) s"
+done
+say "sizes and checksums"
+finish
+[ ${#failed[@]} -eq 0 ] || { echo "FAILED: ${failed[*]}"; exit 1; }
+if [ -n "$tag" ]; then
+    git tag -a "v$version" -m "Wadi $version" && echo "tagged v$version"
+fi
+echo "good: ${parts[*]}, in $out"
