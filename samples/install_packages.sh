@@ -11,7 +11,7 @@ packages_of[viewer]="${packages_of[demo]} ffmpeg" # for its videos
 packages_of[import]="${packages_of[demo]} libtiff-dev libtinyexr-dev" # TIFFs and EXRs in wadi-import
 packages_of[docs]="mkdocs mkdocs-material python3-pymdownx doxygen nodejs libjs-katex fonts-katex" # the site: plugin/docs
 # To run all tests: the site, the viewer in a window, validation layers, the C# binding, arrays in Python.
-packages_of[tests]="${packages_of[viewer]} ${packages_of[docs]} libtiff-dev libtinyexr-dev doctest-dev python3-numpy pkg-config vulkan-validationlayers xvfb twm xdotool mono-mcs mono-runtime"
+packages_of[tests]="${packages_of[viewer]} ${packages_of[docs]} libtiff-dev libtinyexr-dev doctest-dev python3-numpy pkg-config vulkan-validationlayers xvfb twm xdotool mono-mcs mono-runtime unzip"
 packages_of[contributing]="clang-format-14 pre-commit" # beside the tests: CONTRIBUTING.md
 # Lanes of tests/platforms, beside the tests.
 packages_of[windows]="g++-mingw-w64-x86-64-posix wine64"
@@ -19,7 +19,7 @@ packages_of[aarch64]="g++-aarch64-linux-gnu qemu-user"
 packages_of[wasm]="emscripten node-acorn chromium"
 packages_of[swiftshader]="chromium-common"
 # What plugin/packaging/release.sh makes environments with and runs other systems' programs in, beside the tests.
-packages_of[packaging]="python3-venv debootstrap qemu-user wine64 unzip reuse"
+packages_of[packaging]="python3-venv debootstrap qemu-user wine64 reuse"
 
 [[ $# -ne 0 ]] || set -- tests
 packages=()

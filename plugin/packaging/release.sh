@@ -185,7 +185,7 @@ finish() {
     local options=()
     for file in "${files[@]}"; do options+=(--file "$file"); done
     python3 "$here/third_party.py" sbom --version "$version" --commit "$commit" --zig "$ziglang" --windows "${options[@]}" "$out/wadi-$version.spdx.json"
-    (cd "$out" && sha256sum -- *.zip *.tgz *.json SIZES.txt >SHA256SUMS 2>/dev/null) || (cd "$out" && sha256sum -- *.zip *.json SIZES.txt >SHA256SUMS)
+    (cd "$out" && find . -maxdepth 1 -type f ! -name SHA256SUMS -printf '%P\n' | sort | xargs sha256sum >SHA256SUMS)
     cat "$out/SIZES.txt"
 }
 
