@@ -46,9 +46,9 @@ std::string select_function(const Stage& s, const CpuSet& set, unsigned tested, 
         const auto has = [](const std::vector<unsigned>& list, unsigned mask) {
             return std::find(list.begin(), list.end(), mask) != list.end();
         };
-        std::erase_if(masks, [&](unsigned mask) {
+        std::erase_if(masks, [&, common = chosen == "common"](unsigned mask) {
             const bool of_default = (mask & choices & ~usual) == 0 && ((mask & usual) != 0 || !has(all, mask | usual));
-            return !(chosen == "common" && of_default) && !has(kept, mask);
+            return !(common && of_default) && !has(kept, mask);
         });
     }
     std::ostringstream o;
