@@ -36,9 +36,10 @@ def blocks_of(text):
         if written or code or not bare or bare.startswith(("#", "|", "![", "<!--")):
             end()
             continue
-        if ITEM.match(line):
+        item = ITEM.match(line)
+        if item:
             end()
-        current.append(ITEM.sub("", line, count=1).strip())
+        current.append(line[item.end() if item else 0:].strip())
     end()
     return found
 
