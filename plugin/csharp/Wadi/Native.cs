@@ -5,10 +5,10 @@ using System.Runtime.InteropServices;
 namespace Wadi
 {
     /// <summary>
-    /// Gets what the library has to tell: advice on a level (warning), each world made and each change of its effects (information),
-    /// where a running world is held back by a limit, with the time step or setting that would end it (warning, once for each kind),
-    /// a lost device (error), messages of drivers and validation layers. Called during a call of the library, or from a driver's
-    /// thread; it must not call the library; what it throws is lost.
+    /// Gets what the library has to tell. Warnings are advice on a level, and limits that hold a running world back, each kind once,
+    /// with the time step or setting that would end it. Information is each world made and each change of its effects. An error is a
+    /// lost device. Messages of drivers and validation layers come here, too. Called during a call of the library, or from a driver's
+    /// thread. It must not call the library; what it throws is lost.
     /// </summary>
     [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
     public unsafe delegate void LogCallback(void* user, LogLevel level, byte* message);
@@ -41,10 +41,10 @@ namespace Wadi
     public unsafe delegate void FreeCallback(void* user, void* memory, UIntPtr bytes);
 
     /// <summary>
-    /// Hears how far the call that makes a world is, as a share from 0 to 1 that never falls, and says whether to go on: 1, or 0 to
-    /// end it with WADI_CANCELLED. Called on that call's thread alone, at least once for each layer of a level, before the device is
-    /// opened and before the world is handed out; not while a file is decoded or a driver compiles. It must not call the library.
-    /// Should not throw: whatever it throws ends the call.
+    /// Hears how far the call that makes a world is, as a share from 0 to 1 that never falls. Returns 1 to go on, or 0 to end the
+    /// call with WADI_CANCELLED. Called on that call's thread alone, at least once for each layer of a level, and also before the
+    /// device is opened and before the world is handed out. It is not called while a file is decoded or a driver compiles. It must
+    /// not call the library. Should not throw: whatever it throws ends the call.
     /// </summary>
     [UnmanagedFunctionPointer(CallingConvention.Cdecl)]
     public unsafe delegate int ProgressCallback(void* user, double share);
@@ -148,9 +148,9 @@ namespace Wadi
 
         /// <summary>
         /// Advances by `host_nanoseconds` of host time since the last update (0 is allowed), then publishes the outputs: the call of
-        /// each frame. Steps are fixed: after a total of t nanoseconds, less those dropped, floor(t / dt) water steps are done (dt as
-        /// the double dt * 1e9, the quotient exact), so the same total gives the same bits in frames of any length. wadi_world_step
-        /// may be called between updates: its steps are beside this clock, which goes on where it was. Every call that reads or
+        /// each frame. Steps are fixed. After a total of t nanoseconds, less those dropped, floor(t / dt) water steps are done (dt as
+        /// the double dt * 1e9, the quotient exact). So the same total gives the same bits in frames of any length. You may call
+        /// wadi_world_step between updates. Its steps are beside this clock, which goes on where it was. Every call that reads or
         /// changes the state first finishes a step that `spread` began; the update in which it falls due does not repeat it. Waits:
         /// nothing, unless max_steps_in_flight is 0; a step ahead of which an edit brings a new material may (wadi_world_edit).
         /// Errors: OUT_OF_MEMORY (a new material). One that fails has not taken the time: repeated, it takes what steps are left of
@@ -301,16 +301,16 @@ namespace Wadi
         public static extern Result wadi_buoyancy_force(Body* body, QueryResult* results, uint count, float* force, float* torque);
 
         /// <summary>
-        /// Queues `count` edits. Those of one step act by rising `player`, those of one player in the order of the calls, ahead of
-        /// that step: in lockstep give each player a number, and it does not matter whose edits reach a machine first. In the middle
-        /// of a step that runs in parts "the next one" is the one after it. Depths change by whole quanta and every quantum is in the
-        /// ledger; what finds no room below method.largest_height is refused and counted (wadi_world_stats.refused); no more is taken
-        /// than there is. Sand and water keep their depth where terrain changes, added sand is unstrained, or in balance with
-        /// method.prestress. An edit that adds a material the world has not held so far promotes it when its step comes: buffers are
-        /// allocated and programs recorded anew, once, and that step may wait for the device. Edits of the level itself act ahead of
-        /// these and are no part of the command log. wadi_world_load and every other way back in time drops the edits that wait:
-        /// queue those of later steps again. Errors: BAD_ARGUMENT, naming edit, field and range, or `effects` when the level forces
-        /// off what an edit adds; none is queued.
+        /// Queues `count` edits. Ahead of a step its edits act by rising `player`, and those of one player in the order of the calls.
+        /// In lockstep give each player a number, and it does not matter whose edits reach a machine first. In the middle of a step
+        /// that runs in parts "the next one" is the one after it. Depths change by whole quanta and every quantum is in the ledger.
+        /// What finds no room below method.largest_height is refused and counted (wadi_world_stats.refused). No more is taken than
+        /// there is. Sand and water keep their depth where terrain changes. Added sand is unstrained, or in balance with
+        /// method.prestress. An edit that adds a material the world has not held so far promotes it when its step comes. Buffers are
+        /// then allocated and programs recorded anew, once, and that step may wait for the device. Edits of the level itself act
+        /// ahead of these and are no part of the command log. Going back in time, by wadi_world_load or in another way, drops the
+        /// edits that wait: queue those of later steps again. Errors: BAD_ARGUMENT, naming edit, field and range, or `effects` when
+        /// the level forces off what an edit adds; none is queued.
         /// </summary>
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         public static extern Result wadi_world_edit(WorldId world, Edit* edits, uint count);
@@ -338,9 +338,9 @@ namespace Wadi
         /// twice method.largest_height: that) is counted in wadi_world_stats.refused; NaN or infinite the cell stays as it is, and
         /// method.largest_height is counted there. SAND_DEPTH and TOTAL_WATER_DEPTH promote the world whatever the values are. Device
         /// memory is read behind all that the host put on the world's queue and points of wadi_vulkan_wait, with CUDA behind events
-        /// of wadi_cuda_wait; until that is done (behind wadi_vulkan_signal, wadi_cuda_signal, or on the queue) it must stay as it
-        /// is. Waits: room for a larger region than before, and for compilers of drivers at first; of HOST_POINTER the fifth write
-        /// for the first; while the device's queue is full. Errors: BAD_ARGUMENT (another field, a region outside, a field of
+        /// of wadi_cuda_wait. It must stay as it is until that is done (behind wadi_vulkan_signal, wadi_cuda_signal, or on the
+        /// queue). Waits: room for a larger region than before, and for compilers of drivers at first; of HOST_POINTER the fifth
+        /// write for the first; while the device's queue is full. Errors: BAD_ARGUMENT (another field, a region outside, a field of
         /// `values`: the message says what is allowed; `effects` forced off), NOT_SUPPORTED (while the command log is on; device
         /// memory where the world knows none of the host's), NOT_READY (recorded work would be overtaken), OUT_OF_MEMORY.
         /// </summary>
@@ -373,14 +373,15 @@ namespace Wadi
         /// Makes source `index`, 0 ... 31, another one: moves it, opens or closes it, or adds one. It waits for its step like an
         /// edit, with edits' rule of players, and acts ahead of them. To close a tap give it one sample of 0; sources are never taken
         /// out. Those below `index` that the world lacks come along, closed. Series are copied. What the ledger has of the source
-        /// stays. The command log has it, snapshots and kept steps hold the sources of their moment; like edits, those that wait are
-        /// in none, and every way back in time drops them. Other values of the series cost a look at them. Another place, shape or
-        /// number of sources records the step anew once its own comes: some milliseconds, so move taps seldom, or pour with a brush
-        /// that follows. The first source of a material promotes the world, as an edit does. Waits: nothing; ahead of a step at which
-        /// a source comes to another place wadi_world_step and _update wait for the steps before. Errors: BAD_ARGUMENT, naming the
-        /// field and its range (a shape outside the grid, a rate beside a discharge, times that do not rise, a step that is done,
-        /// `effects` that the level forces off), NOT_SUPPORTED (the command log is on and full for that step); nothing is changed.
-        /// What only shows at its step, OUT_OF_MEMORY or NOT_READY (inside a recording), is an error of wadi_world_step or _update.
+        /// stays. The command log has the change. Snapshots and kept steps hold the sources of their moment. Like edits, changes that
+        /// wait are in no snapshot and no kept step, and every way back in time drops them. Other values of the series cost a look at
+        /// them. Another place, shape or number of sources records the step anew once its own comes: some milliseconds, so move taps
+        /// seldom, or pour with a brush that follows. The first source of a material promotes the world, as an edit does. Waits:
+        /// nothing; ahead of a step at which a source comes to another place wadi_world_step and _update wait for the steps before.
+        /// Errors: BAD_ARGUMENT, naming the field and its range (a shape outside the grid, a rate beside a discharge, times that do
+        /// not rise, a step that is done, `effects` that the level forces off), NOT_SUPPORTED (the command log is on and full for
+        /// that step); nothing is changed. What only shows at its step, OUT_OF_MEMORY or NOT_READY (inside a recording), is an error
+        /// of wadi_world_step or _update.
         /// </summary>
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         public static extern Result wadi_world_set_source(WorldId world, uint index, RawSource* source);
@@ -390,15 +391,15 @@ namespace Wadi
         public static extern Result wadi_world_get_material(WorldId world, MaterialInfo* infos, uint* count);
 
         /// <summary>
-        /// Changes one of them from the next whole step on, in the level's units. Effects follow as for a level with that value: 0 in
-        /// young_modulus, exchange_rate, diffusion_rate, bed_friction and manning, or bed_shear drops its effect (and the strain of
-        /// the sand with elastoplastic), a value above 0 brings it, which allocates. Where effects stay, no pipeline is made: the
-        /// step is recorded anew, once per change. Ahead of the first step the world becomes that of a level with the value, in every
-        /// bit; later, sand keeps the strain that it has (with method.prestress, that in balance with the material it was drawn
-        /// with). The command log has it; snapshots and kept steps hold the values of their moment and bring them back. The level's
-        /// warnings are not asked again. Waits: nothing, but the steps ahead of the first step, and where young_modulus was 0.
-        /// Errors: NOT_FOUND (name), BAD_ARGUMENT (out of range, NaN, saturations out of order, or a number of an effect that the
-        /// level forces off: the message says which), OUT_OF_MEMORY, NOT_READY (inside a recording).
+        /// Changes one of them from the next whole step on, in the level's units. Effects follow as for a level with that value. 0 in
+        /// young_modulus, exchange_rate, diffusion_rate, bed_friction and manning, or bed_shear drops its effect, and with
+        /// elastoplastic the strain of the sand. A value above 0 brings the effect, which allocates. Where effects stay, no pipeline
+        /// is made: the step is recorded anew, once per change. Ahead of the first step the world becomes that of a level with the
+        /// value, in every bit. Later, sand keeps the strain that it has (with method.prestress, that in balance with the material it
+        /// was drawn with). The command log has the change. Snapshots and kept steps hold the values of their moment and bring them
+        /// back. The level's warnings are not checked again. Waits: nothing, but the steps if it is called ahead of the first step,
+        /// or if young_modulus was 0. Errors: NOT_FOUND (name), BAD_ARGUMENT (out of range, NaN, saturations out of order, or a
+        /// number of an effect that the level forces off: the message says which), OUT_OF_MEMORY, NOT_READY (inside a recording).
         /// </summary>
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         public static extern Result wadi_world_set_material(WorldId world, byte* name, double value);
@@ -414,7 +415,7 @@ namespace Wadi
         /// <summary>
         /// Goes to a saved state: the world continues as the saved one would have, in every bit, on any backend that passes the
         /// exact-float test. The snapshot must be of a world of the same level settings (grid, dt, material, method, sides, sources,
-        /// rain); its material and sources are taken as they were changed by then; initial fields may differ; effects that only this
+        /// rain). Its material and sources are taken as they were changed by then. Initial fields may differ. Effects that only this
         /// world has start from zero, and the world is promoted to those that only the snapshot has. Edits and sources that wait and
         /// steps kept for roll-back are forgotten. Waits: the steps. Errors, the world as it was, also where the host's own memory
         /// ends: BAD_FILE (no snapshot, a newer version, truncated, changed), BAD_ARGUMENT (of another level, or with effects that
@@ -432,7 +433,7 @@ namespace Wadi
 
         /// <summary>
         /// wadi_world_save to a file. Written beside it under a name that ends in ".part" and that no other call has, brought to the
-        /// disk and renamed when it is whole: also of several savers to one path each leaves a whole file. A process that is killed
+        /// disk and renamed when it is whole. So several savers to one path each leave a whole file. A process that is killed
         /// meanwhile leaves its part. Waits: the steps, the disk. Errors, an earlier file unchanged: NOT_FOUND (the folder cannot be
         /// written to), BAD_FILE (writing failed, or path is a folder, pipe or device).
         /// </summary>
@@ -456,9 +457,9 @@ namespace Wadi
         public static extern Result wadi_world_begin_save(WorldId world, ulong* ticket);
 
         /// <summary>
-        /// Fetches it: NOT_READY until the snapshot lies in `data`, then OK, once. A worker thread fills `data`, so from the first
-        /// call on that memory must stay where it is, and the same pointer must be passed, until a call returns OK or the world is
-        /// destroyed; an error does not end that. *size as in wadi_world_save; data may be NULL to ask the number. Where the system
+        /// Fetches it: NOT_READY until the snapshot lies in `data`, then OK, once. A worker thread fills `data`. From the first call
+        /// on that memory must stay where it is, and you must pass the same pointer, until a call returns OK or the world is
+        /// destroyed. An error does not end that. *size as in wadi_world_save; data may be NULL to ask the number. Where the system
         /// refuses that thread a call fills `data` itself. Errors: BAD_ARGUMENT (another ticket, another data, size too small),
         /// DEVICE_LOST (before the copy aside was done).
         /// </summary>
@@ -504,7 +505,7 @@ namespace Wadi
 
         /// <summary>
         /// wadi_world_get_commands, of the commands that count ahead of `step` or a later one and are of one player alone, with the
-        /// stamps that they use: what a lockstep game sends each turn, where every player queues for the steps of the turn after
+        /// stamps that they use. A lockstep game sends this each turn, where every player queues for the steps of the turn after
         /// next. Commands other than edits and sources are of player 0. Played commands are in the log, too: ask for your own player,
         /// and none goes round twice. Errors: BAD_ARGUMENT (size too small; player above 4294967295 but WADI_EVERY_PLAYER).
         /// </summary>
@@ -564,11 +565,11 @@ namespace Wadi
         public static extern Result wadi_world_get_stage_timings(WorldId world, StageTiming* timings, uint* count);
 
         /// <summary>
-        /// 1 = after every step the whole state is read and verified: every number is finite, no depth is negative, no speed is above
-        /// its clamp, and every quantum is in the books (the last three not of method "published", the books not of columns near
-        /// method.largest_height); off at first. The call that takes a step which breaks one returns WADI_ERROR_INTERNAL, and
-        /// wadi_get_last_error() names step, field and cell. For who looks for a fault: each step is waited for, and takes many times
-        /// as long.
+        /// 1 = after every step the whole state is read and verified; off at first. Every number is finite, no depth is negative, no
+        /// speed is above its clamp, and every quantum is in the books. The last three are not checked with method "published", and
+        /// the books not of columns near method.largest_height. The call that takes a step which breaks one returns
+        /// WADI_ERROR_INTERNAL, and wadi_get_last_error() names step, field and cell. Use it to look for a fault: each step is waited
+        /// for, and takes many times as long.
         /// </summary>
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         public static extern Result wadi_world_set_checking(WorldId world, int on);

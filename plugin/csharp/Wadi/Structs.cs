@@ -83,8 +83,8 @@ namespace Wadi
         /// <summary>index from wadi_list_devices, -1 = the backend's best</summary>
         public int Device;
         /// <summary>
-        /// of the CPU backend, and for any to load levels and to count and hash states; 0 = all cores, of which the CPU backend's
-        /// steps leave one to the host's frame
+        /// of the CPU backend, and for any to load levels and to count and hash states. 0 = all cores; the CPU backend's steps then
+        /// leave one to the host's frame
         /// </summary>
         public int Threads;
         int validate;
@@ -104,18 +104,18 @@ namespace Wadi
         public IntPtr RunJobs;
         public IntPtr JobsUser;
         /// <summary>
-        /// both NULL, or with the CPU backend all that wadi_world_get_memory lists comes from here, and goes back until
-        /// wadi_destroy_world returns: fields, outputs, copies for the host, snapshots under way, kept states, queries. A refusal is
-        /// OUT_OF_MEMORY of the call, and the world as it was, but that kept states go where a promotion finds no room for theirs.
-        /// Not from here: what a call needs while it lasts (level files, statistics), edits that wait, the command log, programs,
-        /// threads; and GPU backends, whose memory is the driver's
+        /// set both callbacks or neither (NULL). With the CPU backend all that wadi_world_get_memory lists comes from here: fields,
+        /// outputs, copies for the host, snapshots under way, kept states, queries. All of it is freed before wadi_destroy_world
+        /// returns. If it refuses, the call fails with OUT_OF_MEMORY and the world is as it was, except that kept states are dropped
+        /// where a promotion finds no room for theirs. Not from here: what a call needs while it lasts (level files, statistics),
+        /// edits that wait, the command log, programs, threads. Nor is the memory of GPU backends, which is the driver's
         /// </summary>
         public IntPtr AllocateMemory;
         public IntPtr FreeMemory;
         public IntPtr MemoryUser;
         /// <summary>
-        /// NULL, or limits of the host's own: asked before a level, and later a snapshot or log of this world, is read further than
-        /// its header; what passes one is BAD_FILE, with the sum and the limit
+        /// NULL, or limits of the host's own. They are checked before a level, and later a snapshot or log of this world, is read
+        /// further than its header. What passes one is BAD_FILE, with the sum and the limit
         /// </summary>
         public IntPtr Most;
         /// <summary>NULL, or hears how far the making of the world is, and may end it</summary>
@@ -160,8 +160,8 @@ namespace Wadi
         /// <summary>one of the level's variants; NULL = the level as it is. Not for terrain maps</summary>
         public IntPtr Variant;
         /// <summary>
-        /// "draft", "balanced" or "accurate": half, all or twice the level's cells along x and y (nx, ny win) and two sand steps per
-        /// water step, "accurate" also second order for water; NULL = what the level says
+        /// "draft", "balanced" or "accurate": half, all or twice the level's cells along x and y (nx, ny win), and two sand steps per
+        /// water step. "accurate" has second order for water, too. NULL = what the level says
         /// </summary>
         public IntPtr Accuracy;
         public ActiveTiles ActiveTiles;
@@ -199,8 +199,8 @@ namespace Wadi
     }
 
     /// <summary>
-    /// A world from arrays: settings as the text of a level file without its "terrain", "sand", "water", "velocities", "roughness"
-    /// and "rain_map" entries, which may name no files, and fields of nx * ny floats. NULL = zero everywhere.
+    /// A world from arrays: settings, and fields of nx * ny floats. NULL = zero everywhere. The settings are the text of a level file
+    /// without its "terrain", "sand", "water", "velocities", "roughness" and "rain_map" entries. They may name no files.
     /// </summary>
     [StructLayout(LayoutKind.Sequential)]
     public struct RawWorldArrays
@@ -269,13 +269,13 @@ namespace Wadi
         public bool ExactFloat { get { return exactFloat != 0; } set { exactFloat = value ? 1 : 0; } }
         public uint WarningCount;
         /// <summary>
-        /// of the grid's south-west corner in the coordinates of the map that the level was cut from, 0 where none was: what a host
-        /// shows; every call counts from the corner [m]
+        /// of the grid's south-west corner in the coordinates of the map that the level was cut from, for a host to show [m]; 0
+        /// without a map. Every call counts from the corner
         /// </summary>
         public double OriginX;
         /// <summary>
-        /// of the grid's south-west corner in the coordinates of the map that the level was cut from, 0 where none was: what a host
-        /// shows; every call counts from the corner [m]
+        /// of the grid's south-west corner in the coordinates of the map that the level was cut from, for a host to show [m]; 0
+        /// without a map. Every call counts from the corner
         /// </summary>
         public double OriginY;
         /// <summary>sources and drains that the world has now: wadi_world_get_source</summary>
@@ -301,13 +301,13 @@ namespace Wadi
         public uint MaxStepsPerUpdate;
         /// <summary>
         /// 0 ... 64, default 8: once the device has this many unfinished water steps (or its queue of submissions is full), time is
-        /// dropped; 0 = drop nothing for that reason, the call may wait
+        /// dropped. 0 = drop nothing for that reason; the call may wait
         /// </summary>
         public uint MaxStepsInFlight;
         int spread;
         /// <summary>
-        /// 1 = a water step is submitted as 1 water part and T sand parts, evenly over its dt; the bits are the same, the load has no
-        /// peak every dt; default 0
+        /// 1 = a water step is submitted as 1 water part and T sand parts, evenly over its dt. The bits are the same, and the load
+        /// has no peak every dt. Default 0
         /// </summary>
         public bool Spread { get { return spread != 0; } set { spread = value ? 1 : 0; } }
         int interpolateOutputs;
@@ -350,8 +350,8 @@ namespace Wadi
         /// <summary>and since the world was created</summary>
         public ulong DroppedNanosecondsTotal;
         /// <summary>
-        /// a world with a log callback looks every 64 steps where limits are at work, told below as wadi_world_stats does; the step
-        /// of the newest look that has arrived, UINT64_MAX = none yet
+        /// the step of the newest look for limits that has arrived; UINT64_MAX = none yet. A world with a log callback looks every 64
+        /// steps where limits are at work, told below as wadi_world_stats does
         /// </summary>
         public ulong LimitsStep;
         public ulong WetFaces;
@@ -490,13 +490,13 @@ namespace Wadi
         /// <summary>cells whose outflow the next step limits</summary>
         public ulong LimitedCells;
         /// <summary>
-        /// of the world, and of those the ones that the newest step ran over, in the longer of its two lists where water and sand
-        /// have one each; 0 without active tiles
+        /// of the world, and of those the ones that the newest step ran over; 0 without active tiles. Where water and sand have a
+        /// list each, those in the longer one
         /// </summary>
         public ulong Tiles;
         /// <summary>
-        /// of the world, and of those the ones that the newest step ran over, in the longer of its two lists where water and sand
-        /// have one each; 0 without active tiles
+        /// of the world, and of those the ones that the newest step ran over; 0 without active tiles. Where water and sand have a
+        /// list each, those in the longer one
         /// </summary>
         public ulong ActiveTiles;
         /// <summary>64-bit state hash, ghosts excluded</summary>

@@ -1,19 +1,20 @@
-/* Wadi: sand, water and wet sand on a height field. The plugin's whole interface, C99, in the order of use:
+/* Wadi: sand, water and wet sand on a height field. This is the plugin's whole interface, C99, in the order of use:
  *
  *   versions, errors . devices . worlds . steps and frames . outputs . reading . points and bodies . edits . sources
  *   material . saving and going back . command log . looking inside
  *
- * Units: metres, seconds, kilograms. Fields are row-major, nx * ny floats, x fastest; row 0 is the south side (y = 0), column 0 the west
- * side (x = 0); z is up. "Elevation" and "surface" are heights above the level's zero, "depth" is how thick a layer is. H is the
+ * Units: metres, seconds, kilograms. Fields are row-major, nx * ny floats, x fastest. Row 0 is the south side (y = 0), column 0 the west
+ * side (x = 0); z is up. "Elevation" and "surface" are heights above the level's zero. "Depth" is how thick a layer is. H is the
  * elevation of the ground, hs the depth of sand, W the depth of all water, above the sand and inside it.
  *
  * Each call says what it does, then its limits, then what it waits for and which errors it has of its own:
  *   Waits   Nothing, where it does not say. "The steps": those asked for so far must be done. "Room": where memory must be made or freed
  *           it waits for the device. Everything else runs beside the host.
- *   Errors  Every call that can fail returns a wadi_result; wadi_get_last_error() then has one line of text for this thread. Not
- *           repeated at each call: BAD_ARGUMENT (a null or destroyed world; a struct, array or result that is NULL and may not be; a wrong
- *           struct_size), BUSY, INTERNAL, DEVICE_LOST (from calls that use a device), and OUT_OF_MEMORY of the host's own memory, after
- *           which, but for calls that say so, the world must be destroyed. An error changes nothing where the call does not say more.
+ *   Errors  Every call that can fail returns a wadi_result; wadi_get_last_error() then has one line of text for this thread. Some errors
+ *           are not repeated at each call: BAD_ARGUMENT (a null or destroyed world; a struct, array or result that is NULL and may not
+ *           be; a wrong struct_size), BUSY, INTERNAL, and DEVICE_LOST (from calls that use a device). Nor is OUT_OF_MEMORY of the host's
+ *           own memory. After it you must destroy the world, unless the call says otherwise. An error changes nothing where the call
+ *           does not say more.
  *   Counts  *count: room in elements in, their number out; the array may be NULL to ask the number.
  * No call aborts, throws or prints. A world is used by one thread at a time: a call that meets another one inside the same world does
  * nothing and returns BUSY. Different worlds are independent. A forked child cannot use its parent's worlds. No call may come from a
@@ -21,9 +22,9 @@
  * nothing and is as it was after every call.
  *
  * A struct that begins with struct_size grows at its end in later versions: start from its wadi_default_*() function, then change what
- * you need. A host and a library of different versions understand each other as long as WADI_ABI_VERSION is the same: what a host's
- * struct lacks has its default; a field that a library does not know must be 0, or it refuses the call and says so. In arrays of such
- * structs all have the size of the first. Structs without struct_size, and what enums mean, never change.
+ * you need. A host and a library of different versions understand each other as long as WADI_ABI_VERSION is the same. What a host's
+ * struct lacks has its default. A field that a library does not know must be 0, or the library refuses the call and says so. In arrays
+ * of such structs all have the size of the first. Structs without struct_size, and what enums mean, never change.
  */
 #ifndef WADI_H
 #define WADI_H
@@ -104,10 +105,11 @@ typedef enum wadi_log_level WADI_ENUM {
     WADI_LOG_WARNING = 1,
     WADI_LOG_INFORMATION = 2
 } wadi_log_level;
-/** Gets what the library has to tell: advice on a level (warning), each world made and each change of its effects (information), where a
- *  running world is held back by a limit, with the time step or setting that would end it (warning, once for each kind), a lost device
- *  (error), messages of drivers and validation layers. Called during a call of the library, or from a driver's thread;
- *  it must not call the library; what it throws is lost. */
+/** Gets what the library has to tell.
+ *  Warnings are advice on a level, and limits that hold a running world back, each kind once, with the time step or setting that would
+ *  end it. Information is each world made and each change of its effects. An error is a lost device. Messages of drivers and validation
+ *  layers come here, too.
+ *  Called during a call of the library, or from a driver's thread. It must not call the library; what it throws is lost. */
 typedef void (*wadi_log_callback)(void* user, wadi_log_level level, const char* message);
 
 /* ---- Devices ---- */
@@ -161,10 +163,10 @@ static inline wadi_cost wadi_default_cost(void) {
     WADI_ZERO_STRUCT(wadi_cost);
     return value;
 }
-/** Hears how far the call that makes a world is, as a share from 0 to 1 that never falls, and says whether to go on: 1, or 0 to end it
- *  with WADI_CANCELLED. Called on that call's thread alone, at least once for each layer of a level, before the device is opened and
- *  before the world is handed out; not while a file is decoded or a driver compiles. It must not call the library. Should not throw:
- *  whatever it throws ends the call. */
+/** Hears how far the call that makes a world is, as a share from 0 to 1 that never falls. Returns 1 to go on, or 0 to end the call with
+ *  WADI_CANCELLED. Called on that call's thread alone, at least once for each layer of a level, and also before the device is opened and
+ *  before the world is handed out. It is not called while a file is decoded or a driver compiles. It must not call the library. Should
+ *  not throw: whatever it throws ends the call. */
 typedef wadi_bool (*wadi_progress_callback)(void* user, double share);
 
 /** Where and how a world runs. */
@@ -172,8 +174,8 @@ typedef struct wadi_device_options {
     uint32_t struct_size;
     const char* backend;       /* "auto" (a real GPU first, else the CPU), or one that wadi_list_devices names: "cpu", "vulkan" ... */
     int32_t device;            /* index from wadi_list_devices, -1 = the backend's best */
-    int32_t threads;           /* of the CPU backend, and for any to load levels and to count and hash states; 0 = all cores, of which
-                                  the CPU backend's steps leave one to the host's frame */
+    int32_t threads;           /* of the CPU backend, and for any to load levels and to count and hash states. 0 = all cores; the CPU
+                                  backend's steps then leave one to the host's frame */
     wadi_bool validate;        /* 1 = Vulkan validation layers; messages go to the log callback */
     wadi_log_callback log;     /* may be NULL */
     void* log_user;
@@ -182,16 +184,17 @@ typedef struct wadi_device_options {
     wadi_run_jobs_callback run_jobs; /* NULL, or: the CPU backend has no threads of its own but the one that takes steps in order; a
                                         pass has `threads` parts. Every bit stays, whatever the number */
     void* jobs_user;
-    wadi_allocate_callback allocate_memory; /* both NULL, or with the CPU backend all that wadi_world_get_memory lists comes from here,
-                                               and goes back until wadi_destroy_world returns: fields, outputs, copies for the host,
-                                               snapshots under way, kept states, queries. A refusal is OUT_OF_MEMORY of the call, and the
-                                               world as it was, but that kept states go where a promotion finds no room for theirs. Not
-                                               from here: what a call needs while it lasts (level files, statistics), edits that wait, the
-                                               command log, programs, threads; and GPU backends, whose memory is the driver's */
+    wadi_allocate_callback allocate_memory; /* set both callbacks or neither (NULL). With the CPU backend all that wadi_world_get_memory
+                                               lists comes from here: fields, outputs, copies for the host, snapshots under way, kept
+                                               states, queries. All of it is freed before wadi_destroy_world returns. If it refuses, the
+                                               call fails with OUT_OF_MEMORY and the world is as it was, except that kept states are
+                                               dropped where a promotion finds no room for theirs. Not from here: what a call needs while
+                                               it lasts (level files, statistics), edits that wait, the command log, programs, threads.
+                                               Nor is the memory of GPU backends, which is the driver's */
     wadi_free_callback free_memory;
     void* memory_user;
-    const wadi_cost* most;     /* NULL, or limits of the host's own: asked before a level, and later a snapshot or log of this world, is
-                                  read further than its header; what passes one is BAD_FILE, with the sum and the limit */
+    const wadi_cost* most;     /* NULL, or limits of the host's own. They are checked before a level, and later a snapshot or log of this
+                                  world, is read further than its header. What passes one is BAD_FILE, with the sum and the limit */
     wadi_progress_callback progress; /* NULL, or hears how far the making of the world is, and may end it */
     void* progress_user;
 } wadi_device_options;
@@ -234,8 +237,8 @@ typedef struct wadi_level_overrides {
     double dt;                 /* [s] */
     const char* method;        /* "robust" or "published" */
     const char* variant;       /* one of the level's variants; NULL = the level as it is. Not for terrain maps */
-    const char* accuracy;      /* "draft", "balanced" or "accurate": half, all or twice the level's cells along x and y (nx, ny win) and
-                                  two sand steps per water step, "accurate" also second order for water; NULL = what the level says */
+    const char* accuracy;      /* "draft", "balanced" or "accurate": half, all or twice the level's cells along x and y (nx, ny win), and
+                                  two sand steps per water step. "accurate" has second order for water, too. NULL = what the level says */
     wadi_active_tiles active_tiles;
     wadi_choice fused_stages;  /* ON = several stages in one pass wherever the effects allow, OFF = one by one. Every bit stays */
     wadi_bool any_files;       /* 1 = maps and series may lie anywhere that the process can read; 0 = in the level's folder and below it
@@ -282,8 +285,8 @@ WADI_API wadi_result wadi_get_level_cost(const char* path, const wadi_level_over
 WADI_API wadi_result wadi_get_level_text_cost(const char* json, wadi_read_file_callback read_file, void* user,
                                               const wadi_level_overrides* overrides, wadi_cost* cost);
 
-/** A world from arrays: settings as the text of a level file without its "terrain", "sand", "water", "velocities",
- *  "roughness" and "rain_map" entries, which may name no files, and fields of nx * ny floats. NULL = zero everywhere. */
+/** A world from arrays: settings, and fields of nx * ny floats. NULL = zero everywhere. The settings are the text of a level file without
+ *  its "terrain", "sand", "water", "velocities", "roughness" and "rain_map" entries. They may name no files. */
 typedef struct wadi_world_arrays {
     uint32_t struct_size;
     const char* settings_json; /* must not be NULL; texts may stand in single quotes: "{'grid': {'nx': 64, 'ny': 64, 'dx': 0.5}, ...}" */
@@ -325,8 +328,8 @@ typedef struct wadi_world_info {
     char device_name[256];
     wadi_bool exact_float;        /* 1 = the device passed the exact-float self-test */
     uint32_t warning_count;
-    double origin_x, origin_y;    /* of the grid's south-west corner in the coordinates of the map that the level was cut from, 0 where
-                                     none was: what a host shows; every call counts from the corner [m] */
+    double origin_x, origin_y;    /* of the grid's south-west corner in the coordinates of the map that the level was cut from, for a host
+                                     to show [m]; 0 without a map. Every call counts from the corner */
     uint64_t source_count;        /* sources and drains that the world has now: wadi_world_get_source */
 } wadi_world_info;
 static inline wadi_world_info wadi_default_world_info(void) {
@@ -345,9 +348,9 @@ typedef struct wadi_update_settings {
     uint32_t struct_size;
     uint32_t max_steps_per_update; /* 1 ... 1024, default 8: time beyond it is dropped */
     uint32_t max_steps_in_flight;  /* 0 ... 64, default 8: once the device has this many unfinished water steps (or its queue of
-                                      submissions is full), time is dropped; 0 = drop nothing for that reason, the call may wait */
-    wadi_bool spread;              /* 1 = a water step is submitted as 1 water part and T sand parts, evenly over its dt; the bits are
-                                      the same, the load has no peak every dt; default 0 */
+                                      submissions is full), time is dropped. 0 = drop nothing for that reason; the call may wait */
+    wadi_bool spread;              /* 1 = a water step is submitted as 1 water part and T sand parts, evenly over its dt. The bits are
+                                      the same, and the load has no peak every dt. Default 0 */
     wadi_bool interpolate_outputs; /* 1 = every update also writes the interpolated set of the outputs; default 0 */
 } wadi_update_settings;
 static inline wadi_update_settings wadi_default_update_settings(void) {
@@ -372,8 +375,8 @@ typedef struct wadi_frame {
     uint64_t published_step;       /* of the outputs' current set; UINT64_MAX = none yet */
     uint64_t dropped_nanoseconds;       /* host time that became no step in this update; steps is then less than it asks for */
     uint64_t dropped_nanoseconds_total; /* and since the world was created */
-    uint64_t limits_step;          /* a world with a log callback looks every 64 steps where limits are at work, told below as
-                                      wadi_world_stats does; the step of the newest look that has arrived, UINT64_MAX = none yet */
+    uint64_t limits_step;          /* the step of the newest look for limits that has arrived; UINT64_MAX = none yet. A world with a log
+                                      callback looks every 64 steps where limits are at work, told below as wadi_world_stats does */
     uint64_t wet_faces, clamped_water_faces, capped_water_faces;
     uint64_t sand_faces, clamped_sand_faces, capped_sand_faces;
     uint64_t high_columns;
@@ -384,9 +387,9 @@ static inline wadi_frame wadi_default_frame(void) {
     return value;
 }
 /** Advances by `host_nanoseconds` of host time since the last update (0 is allowed), then publishes the outputs: the call of each frame.
- *  Steps are fixed: after a total of t nanoseconds, less those dropped, floor(t / dt) water steps are done (dt as the double dt * 1e9,
- *  the quotient exact), so the same total gives the same bits in frames of any length. wadi_world_step may be called between updates:
- *  its steps are beside this clock, which goes on where it was. Every call that reads or changes the state first finishes a step that
+ *  Steps are fixed. After a total of t nanoseconds, less those dropped, floor(t / dt) water steps are done (dt as the double dt * 1e9,
+ *  the quotient exact). So the same total gives the same bits in frames of any length. You may call wadi_world_step between updates. Its
+ *  steps are beside this clock, which goes on where it was. Every call that reads or changes the state first finishes a step that
  *  `spread` began; the update in which it falls due does not repeat it.
  *  Waits: nothing, unless max_steps_in_flight is 0; a step ahead of which an edit brings a new material may (wadi_world_edit).
  *  Errors: OUT_OF_MEMORY (a new material). One that fails has not taken the time: repeated, it takes what steps are left of it. */
@@ -589,8 +592,8 @@ typedef struct wadi_world_stats {
     uint64_t clamped_faces;       /* faces at the velocity clamp */
     uint64_t capped_faces;        /* faces whose gravity the next step caps */
     uint64_t limited_cells;       /* cells whose outflow the next step limits */
-    uint64_t tiles, active_tiles; /* of the world, and of those the ones that the newest step ran over, in the longer of its two lists
-                                     where water and sand have one each; 0 without active tiles */
+    uint64_t tiles, active_tiles; /* of the world, and of those the ones that the newest step ran over; 0 without active tiles. Where water
+                                     and sand have a list each, those in the longer one */
     uint64_t hash;                /* 64-bit state hash, ghosts excluded */
     uint64_t high_columns;        /* columns of terrain, sand and water above method.largest_height, which flow and pushes can pile up:
                                      there heights are rounded like any float, and the books drift */
@@ -734,14 +737,16 @@ static inline wadi_edit wadi_default_edit(void) {
 }
 
 /** Queues `count` edits.
- *  Those of one step act by rising `player`, those of one player in the order of the calls, ahead of that step: in lockstep give each
- *  player a number, and it does not matter whose edits reach a machine first. In the middle of a step that runs in parts "the next one"
- *  is the one after it. Depths change by whole quanta and every quantum is in the ledger; what finds no room below method.largest_height is
- *  refused and counted (wadi_world_stats.refused); no more is taken than there is. Sand and water keep their depth where terrain changes,
- *  added sand is unstrained, or in balance with method.prestress. An edit that adds a material the world has not held so far promotes it
- *  when its step comes: buffers are allocated and programs recorded anew, once, and that step may wait for the device. Edits of the
- *  level itself act ahead of these and are no part of the command log. wadi_world_load and every other way back in time drops the edits
- *  that wait: queue those of later steps again.
+ *  Ahead of a step its edits act by rising `player`, and those of one player in the order of the calls. In lockstep give each player a
+ *  number, and it does not matter whose edits reach a machine first. In the middle of a step that runs in parts "the next one" is the one
+ *  after it.
+ *  Depths change by whole quanta and every quantum is in the ledger. What finds no room below method.largest_height is refused and
+ *  counted (wadi_world_stats.refused). No more is taken than there is. Sand and water keep their depth where terrain changes. Added sand
+ *  is unstrained, or in balance with method.prestress.
+ *  An edit that adds a material the world has not held so far promotes it when its step comes. Buffers are then allocated and programs
+ *  recorded anew, once, and that step may wait for the device.
+ *  Edits of the level itself act ahead of these and are no part of the command log. Going back in time, by wadi_world_load or in another
+ *  way, drops the edits that wait: queue those of later steps again.
  *  Errors: BAD_ARGUMENT, naming edit, field and range, or `effects` when the level forces off what an edit adds; none is queued. */
 WADI_API wadi_result wadi_world_edit(wadi_world_id world, const wadi_edit* edits, uint32_t count);
 
@@ -780,8 +785,8 @@ static inline wadi_device_values wadi_default_device_values(void) {
  *                        wadi_world_stats.refused;
  *  NaN or infinite       the cell stays as it is, and method.largest_height is counted there.
  *  SAND_DEPTH and TOTAL_WATER_DEPTH promote the world whatever the values are. Device memory is read behind all that the host put on
- *  the world's queue and points of wadi_vulkan_wait, with CUDA behind events of wadi_cuda_wait; until that is done (behind
- *  wadi_vulkan_signal, wadi_cuda_signal, or on the queue) it must stay as it is.
+ *  the world's queue and points of wadi_vulkan_wait, with CUDA behind events of wadi_cuda_wait. It must stay as it is until that is done
+ *  (behind wadi_vulkan_signal, wadi_cuda_signal, or on the queue).
  *  Waits: room for a larger region than before, and for compilers of drivers at first; of HOST_POINTER the fifth write for the first;
  *  while the device's queue is full.
  *  Errors: BAD_ARGUMENT (another field, a region outside, a field of `values`: the message says what is allowed; `effects` forced off),
@@ -842,8 +847,9 @@ static inline wadi_source wadi_default_source(void) {
 WADI_API wadi_result wadi_world_get_source(wadi_world_id world, uint32_t index, wadi_source* source);
 /** Makes source `index`, 0 ... 31, another one: moves it, opens or closes it, or adds one. It waits for its step like an edit, with edits'
  *  rule of players, and acts ahead of them. To close a tap give it one sample of 0; sources are never taken out. Those below `index` that
- *  the world lacks come along, closed. Series are copied. What the ledger has of the source stays. The command log has it, snapshots and
- *  kept steps hold the sources of their moment; like edits, those that wait are in none, and every way back in time drops them.
+ *  the world lacks come along, closed. Series are copied. What the ledger has of the source stays. The command log has the change.
+ *  Snapshots and kept steps hold the sources of their moment. Like edits, changes that wait are in no snapshot and no kept step, and
+ *  every way back in time drops them.
  *  Other values of the series cost a look at them. Another place, shape or number of sources records the step anew once its own comes:
  *  some milliseconds, so move taps seldom, or pour with a brush that follows. The first source of a material promotes the world, as an
  *  edit does.
@@ -864,13 +870,14 @@ typedef struct wadi_material_info {
 /** Lists the numbers of the material and their present values. */
 WADI_API wadi_result wadi_world_get_material(wadi_world_id world, wadi_material_info* infos, uint32_t* count);
 /** Changes one of them from the next whole step on, in the level's units.
- *  Effects follow as for a level with that value: 0 in young_modulus, exchange_rate, diffusion_rate, bed_friction and manning, or
- *  bed_shear drops its effect (and the strain of the sand with elastoplastic), a value above 0 brings it, which allocates. Where effects
- *  stay, no pipeline is made: the step is recorded anew, once per change. Ahead of the first step the world becomes that of a level with
- *  the value, in every bit; later, sand keeps the strain that it has (with method.prestress, that in balance with the material it was
- *  drawn with). The command log has it; snapshots and kept steps hold the values of their moment and bring them back. The level's
- *  warnings are not asked again.
- *  Waits: nothing, but the steps ahead of the first step, and where young_modulus was 0.
+ *  Effects follow as for a level with that value. 0 in young_modulus, exchange_rate, diffusion_rate, bed_friction and manning, or
+ *  bed_shear drops its effect, and with elastoplastic the strain of the sand. A value above 0 brings the effect, which allocates. Where
+ *  effects stay, no pipeline is made: the step is recorded anew, once per change.
+ *  Ahead of the first step the world becomes that of a level with the value, in every bit. Later, sand keeps the strain that it has (with
+ *  method.prestress, that in balance with the material it was drawn with).
+ *  The command log has the change. Snapshots and kept steps hold the values of their moment and bring them back. The level's warnings
+ *  are not checked again.
+ *  Waits: nothing, but the steps if it is called ahead of the first step, or if young_modulus was 0.
  *  Errors: NOT_FOUND (name), BAD_ARGUMENT (out of range, NaN, saturations out of order, or a number of an effect that the level forces
  *  off: the message says which), OUT_OF_MEMORY, NOT_READY (inside a recording). */
 WADI_API wadi_result wadi_world_set_material(wadi_world_id world, const char* name, double value);
@@ -884,8 +891,8 @@ WADI_API wadi_result wadi_world_set_material(wadi_world_id world, const char* na
 WADI_API wadi_result wadi_world_save(wadi_world_id world, void* data, size_t* size);
 /** Goes to a saved state: the world continues as the saved one would have, in every bit, on any backend that passes the exact-float
  *  test.
- *  The snapshot must be of a world of the same level settings (grid, dt, material, method, sides, sources, rain); its material and
- *  sources are taken as they were changed by then; initial fields may differ; effects that only this world has start from zero, and the
+ *  The snapshot must be of a world of the same level settings (grid, dt, material, method, sides, sources, rain). Its material and
+ *  sources are taken as they were changed by then. Initial fields may differ. Effects that only this world has start from zero, and the
  *  world is promoted to those that only the snapshot has. Edits and sources that wait and steps kept for roll-back are forgotten.
  *  Waits: the steps.
  *  Errors, the world as it was, also where the host's own memory ends: BAD_FILE (no snapshot, a newer version, truncated, changed),
@@ -895,8 +902,8 @@ WADI_API wadi_result wadi_world_load(wadi_world_id world, const void* data, size
  *  Errors: those of wadi_world_load that the snapshot's header shows. */
 WADI_API wadi_result wadi_world_get_snapshot_cost(wadi_world_id world, const void* data, size_t size, wadi_cost* cost);
 /** wadi_world_save to a file.
- *  Written beside it under a name that ends in ".part" and that no other call has, brought to the disk and renamed when it is whole: also
- *  of several savers to one path each leaves a whole file. A process that is killed meanwhile leaves its part.
+ *  Written beside it under a name that ends in ".part" and that no other call has, brought to the disk and renamed when it is whole. So
+ *  several savers to one path each leave a whole file. A process that is killed meanwhile leaves its part.
  *  Waits: the steps, the disk.
  *  Errors, an earlier file unchanged: NOT_FOUND (the folder cannot be written to), BAD_FILE (writing failed, or path is a folder, pipe or
  *  device). */
@@ -912,8 +919,8 @@ WADI_API wadi_result wadi_world_load_file(wadi_world_id world, const char* path)
  *  Errors: NOT_READY (the device or a worker is still at an earlier one), OUT_OF_MEMORY. */
 WADI_API wadi_result wadi_world_begin_save(wadi_world_id world, uint64_t* ticket);
 /** Fetches it: NOT_READY until the snapshot lies in `data`, then OK, once.
- *  A worker thread fills `data`, so from the first call on that memory must stay where it is, and the same pointer must be passed, until a
- *  call returns OK or the world is destroyed; an error does not end that. *size as in wadi_world_save; data may be NULL to ask the number.
+ *  A worker thread fills `data`. From the first call on that memory must stay where it is, and you must pass the same pointer, until a
+ *  call returns OK or the world is destroyed. An error does not end that. *size as in wadi_world_save; data may be NULL to ask the number.
  *  Where the system refuses that thread a call fills `data` itself.
  *  Errors: BAD_ARGUMENT (another ticket, another data, size too small), DEVICE_LOST (before the copy aside was done). */
 WADI_API wadi_result wadi_world_end_save(wadi_world_id world, uint64_t ticket, void* data, size_t* size);
@@ -946,7 +953,7 @@ WADI_API wadi_result wadi_world_get_commands(wadi_world_id world, void* data, si
 /** Every player, for wadi_world_get_commands_since. */
 #define WADI_EVERY_PLAYER 0xFFFFFFFFFFFFFFFFu
 /** wadi_world_get_commands, of the commands that count ahead of `step` or a later one and are of one player alone, with the stamps that
- *  they use: what a lockstep game sends each turn, where every player queues for the steps of the turn after next. Commands other than
+ *  they use. A lockstep game sends this each turn, where every player queues for the steps of the turn after next. Commands other than
  *  edits and sources are of player 0. Played commands are in the log, too: ask for your own player, and none goes round twice.
  *  Errors: BAD_ARGUMENT (size too small; player above 4294967295 but WADI_EVERY_PLAYER). */
 WADI_API wadi_result wadi_world_get_commands_since(wadi_world_id world, uint64_t step, uint64_t player, void* data, size_t* size);
@@ -1000,10 +1007,10 @@ typedef struct wadi_stage_timing {
  *  Waits: the steps that are timed. */
 WADI_API wadi_result wadi_world_get_stage_timings(wadi_world_id world, wadi_stage_timing* timings, uint32_t* count);
 
-/** 1 = after every step the whole state is read and verified: every number is finite, no depth is negative, no speed is above its clamp,
- *  and every quantum is in the books (the last three not of method "published", the books not of columns near method.largest_height);
- *  off at first. The call that takes a step which breaks one returns WADI_ERROR_INTERNAL, and wadi_get_last_error() names step, field and
- *  cell. For who looks for a fault: each step is waited for, and takes many times as long. */
+/** 1 = after every step the whole state is read and verified; off at first. Every number is finite, no depth is negative, no speed is
+ *  above its clamp, and every quantum is in the books. The last three are not checked with method "published", and the books not of
+ *  columns near method.largest_height. The call that takes a step which breaks one returns WADI_ERROR_INTERNAL, and wadi_get_last_error()
+ *  names step, field and cell. Use it to look for a fault: each step is waited for, and takes many times as long. */
 WADI_API wadi_result wadi_world_set_checking(wadi_world_id world, wadi_bool on);
 
 /** OK, or what broke the world for good (DEVICE_LOST) with wadi_get_last_error() saying how.
