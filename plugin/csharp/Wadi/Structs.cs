@@ -33,7 +33,7 @@ namespace Wadi
     }
 
     /// <summary>
-    /// What a level, a snapshot or a command log asks for: sums that are known before the work begins; 0 where one has no such. As a
+    /// What a level, a snapshot or a command log needs. All sums are known before the work begins; 0 where one has no such sum. As a
     /// host's limits: the most of each, 0 = no limit but the library's own.
     /// </summary>
     [StructLayout(LayoutKind.Sequential)]
@@ -42,24 +42,26 @@ namespace Wadi
         uint structSize;
         /// <summary>of the grid</summary>
         public ulong Cells;
-        /// <summary>that are read: a level's text, its maps and series; a snapshot; a log</summary>
+        /// <summary>bytes that are read: a level's text, its maps and series; a snapshot; a log</summary>
         public ulong FileBytes;
-        /// <summary>that maps and series hold once they are decoded</summary>
+        /// <summary>numbers that maps and series hold once they are decoded</summary>
         public ulong MapValues;
         /// <summary>of drawing a level: looks at shapes, some nanoseconds of one thread each</summary>
         public ulong Work;
         /// <summary>of the host's memory while it loads, at most, beside those of the device</summary>
         public ulong HostBytes;
         /// <summary>
-        /// that the world holds on its device once it is loaded, at most; with the backend "cpu" they are the host's. A log: those of
-        /// its stamps
+        /// that the world holds on its device once it is loaded, at most; with the backend "cpu" they are the host's. Of a log: the
+        /// bytes of its stamps
         /// </summary>
         public ulong DeviceBytes;
-        /// <summary>a level: those of its duration (0 of a map alone); a snapshot: that it is of; a log: its last</summary>
+        /// <summary>
+        /// of a level: the steps of its duration (0 for a map alone); of a snapshot: the step that it is of; of a log: its last step
+        /// </summary>
         public ulong Steps;
-        /// <summary>that a level or a log brings into one step</summary>
+        /// <summary>the most edits that a level or a log brings into one step</summary>
         public ulong EditsPerStep;
-        /// <summary>of a log, beside edits</summary>
+        /// <summary>the most other commands that a log brings into one step</summary>
         public ulong CommandsPerStep;
         /// <summary>A struct with the size that the library asks for and the header's defaults.</summary>
         public static unsafe Cost Default
@@ -395,8 +397,8 @@ namespace Wadi
         public ulong Step;
         int finished;
         /// <summary>
-        /// 1 = the device has written it. 0 = it will have, ahead of anything that is submitted behind it; a host that reads
-        /// elsewhere (the CPU backend's address) must wait for 1
+        /// 1 = the device has written it. 0 = it will have, ahead of anything that you submit after it. A host that reads elsewhere
+        /// (the CPU backend's address) must wait for 1
         /// </summary>
         public bool Finished { get { return finished != 0; } set { finished = value ? 1 : 0; } }
         /// <summary>A struct with the size that the library asks for and the header's defaults.</summary>
@@ -438,8 +440,7 @@ namespace Wadi
         /// <summary>elevation of the visible surface H + max(W, hs) [m]</summary>
         public float FreeMax;
         /// <summary>
-        /// step of the newest publish in which a cell's surface, solid or visible, was another than in the publish before; at first
-        /// that of the first publish
+        /// step of the newest publish that changed the solid or visible surface of a cell; at first that of the first publish
         /// </summary>
         public long ChangedStep;
     }

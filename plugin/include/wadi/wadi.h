@@ -8,8 +8,8 @@
  * elevation of the ground, hs the depth of sand, W the depth of all water, above the sand and inside it.
  *
  * Each call says what it does, then its limits, then what it waits for and which errors it has of its own:
- *   Waits   Nothing, where it does not say. "The steps": those asked for so far must be done. "Room": where memory must be made or freed
- *           it waits for the device. Everything else runs beside the host.
+ *   Waits   A call without this line waits for nothing. "The steps": it waits until the steps asked for so far are done. "Room": it waits
+ *           for the device if memory must be made or freed. Everything else runs beside the host.
  *   Errors  Every call that can fail returns a wadi_result; wadi_get_last_error() then has one line of text for this thread. Some errors
  *           are not repeated at each call: BAD_ARGUMENT (a null or destroyed world; a struct, array or result that is NULL and may not
  *           be; a wrong struct_size), BUSY, INTERNAL, and DEVICE_LOST (from calls that use a device). Nor is OUT_OF_MEMORY of the host's
@@ -18,8 +18,8 @@
  *   Counts  *count: room in elements in, their number out; the array may be NULL to ask the number.
  * No call aborts, throws or prints. A world is used by one thread at a time: a call that meets another one inside the same world does
  * nothing and returns BUSY. Different worlds are independent. A forked child cannot use its parent's worlds. No call may come from a
- * signal handler: it may wait for a lock that the interrupted thread holds. The calling thread's floating-point environment counts for
- * nothing and is as it was after every call.
+ * signal handler: it may wait for a lock that the interrupted thread holds. Calls ignore the calling thread's floating-point environment,
+ * and leave it as it was.
  *
  * A struct that begins with struct_size grows at its end in later versions: start from its wadi_default_*() function, then change what
  * you need. A host and a library of different versions understand each other as long as WADI_ABI_VERSION is the same. What a host's
@@ -144,20 +144,21 @@ typedef void* (*wadi_allocate_callback)(void* user, size_t bytes, size_t alignme
  *  once; they must not call the library; what they throw counts as a refusal. */
 typedef void (*wadi_free_callback)(void* user, void* memory, size_t bytes);
 
-/** What a level, a snapshot or a command log asks for: sums that are known before the work begins; 0 where one has no such.
+/** What a level, a snapshot or a command log needs. All sums are known before the work begins; 0 where one has no such sum.
  *  As a host's limits: the most of each, 0 = no limit but the library's own. */
 typedef struct wadi_cost {
     uint32_t struct_size;
     uint64_t cells;               /* of the grid */
-    uint64_t file_bytes;          /* that are read: a level's text, its maps and series; a snapshot; a log */
-    uint64_t map_values;          /* that maps and series hold once they are decoded */
+    uint64_t file_bytes;          /* bytes that are read: a level's text, its maps and series; a snapshot; a log */
+    uint64_t map_values;          /* numbers that maps and series hold once they are decoded */
     uint64_t work;                /* of drawing a level: looks at shapes, some nanoseconds of one thread each */
     uint64_t host_bytes;          /* of the host's memory while it loads, at most, beside those of the device */
     uint64_t device_bytes;        /* that the world holds on its device once it is loaded, at most; with the backend "cpu" they are the
-                                     host's. A log: those of its stamps */
-    uint64_t steps;               /* a level: those of its duration (0 of a map alone); a snapshot: that it is of; a log: its last */
-    uint64_t edits_per_step;      /* that a level or a log brings into one step */
-    uint64_t commands_per_step;   /* of a log, beside edits */
+                                     host's. Of a log: the bytes of its stamps */
+    uint64_t steps;               /* of a level: the steps of its duration (0 for a map alone); of a snapshot: the step that it is of;
+                                     of a log: its last step */
+    uint64_t edits_per_step;      /* the most edits that a level or a log brings into one step */
+    uint64_t commands_per_step;   /* the most other commands that a log brings into one step */
 } wadi_cost;
 static inline wadi_cost wadi_default_cost(void) {
     WADI_ZERO_STRUCT(wadi_cost);
@@ -469,8 +470,8 @@ typedef struct wadi_output_view {
     int32_t nx, ny;
     wadi_format format;
     uint64_t step;                 /* water steps done in the state it shows; INTERPOLATED: in the current set */
-    wadi_bool finished;            /* 1 = the device has written it. 0 = it will have, ahead of anything that is submitted behind it;
-                                      a host that reads elsewhere (the CPU backend's address) must wait for 1 */
+    wadi_bool finished;            /* 1 = the device has written it. 0 = it will have, ahead of anything that you submit after it. A
+                                      host that reads elsewhere (the CPU backend's address) must wait for 1 */
 } wadi_output_view;
 static inline wadi_output_view wadi_default_output_view(void) {
     WADI_ZERO_STRUCT(wadi_output_view);
@@ -510,8 +511,8 @@ typedef struct wadi_tile {
     int32_t i, j, nx, ny;
     float solid_min, solid_max;    /* elevation of the solid surface H + hs [m] */
     float free_min, free_max;      /* elevation of the visible surface H + max(W, hs) [m] */
-    int64_t changed_step;          /* step of the newest publish in which a cell's surface, solid or visible, was another than in the
-                                      publish before; at first that of the first publish */
+    int64_t changed_step;          /* step of the newest publish that changed the solid or visible surface of a cell; at first that of
+                                      the first publish */
 } wadi_tile;
 /** The newest tiles that have arrived from the device, in rows from south to north.
  *  Needs WADI_OUTPUT_TILES_BIT. *step (may be NULL): of the publish.
