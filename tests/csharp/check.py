@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """The C# binding (plugin/csharp) under Mono against the library and against the C compiler. Exit status 77 where Mono or its compiler is
 missing. Usage: check.py LIBRARY SOURCE_DIR [PART ...]; parts: layout session behaviour collector missing unity
-readme; all where none is named."""
+unity_package unity_shaders readme; all where none is named."""
 import json
 import os
 import pathlib
@@ -12,10 +12,10 @@ import sys
 import tempfile
 
 library, source = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2]).resolve()
-sys.path[:0] = [str(source / "plugin/csharp"), str(source / "plugin/csharp/unity")]
-import make_package
-import write_csharp
 here = pathlib.Path(__file__).resolve().parent
+sys.path[:0] = [str(source / "plugin/csharp"), str(here / "unity")]
+import checks
+import write_csharp
 binding = sorted((source / "plugin/csharp/Wadi").glob("*.cs"))
 failures = []
 
@@ -209,27 +209,23 @@ def readme(work, dll):
 
 
 def unity(work, _):
-    package = work / "package"
-    make_package.make(package, library, None)
-    names = {p.relative_to(package).as_posix() for p in package.rglob("*")}
-    for name in sorted(n for n in names if not n.endswith(".meta")):
-        if name + ".meta" not in names:
-            fail(f"unity: {name} has no .meta file")
-    json.loads((package / "package.json").read_text()), json.loads((package / "Runtime/Wadi.asmdef").read_text())
-    sources = sorted((package / "Runtime").rglob("*.cs"))
-    stand_in = compile_program(work, "UnityEngine", here / "UnityEngineStub.cs", library_file=True)
-    runtime = compile_program(work, "WadiUnity", *sources, references=[stand_in], library_file=True)
-    program = compile_program(work, "UnityHost", here / "UnityHost.cs", references=[stand_in, runtime])
-    shutil.copytree(source / "samples/levels/castle", work / "StreamingAssets/castle")
-    ends_well("unity", mono(work, program, work / "StreamingAssets"))
+    checks.scripts(work, library, compile_program, mono, ends_well)
+
+
+def unity_package(work, _):
+    checks.package(work, library, fail)
+
+
+def unity_shaders(work, _):
+    checks.shaders(work, fail)
 
 
 def main():
-    absent = [name for name in ("mcs", "mono", "cc") if shutil.which(name) is None]
+    absent = [name for name in ("mcs", "mono", "cc", "glslangValidator") if shutil.which(name) is None]
     if absent:
-        print(f"skipped: no {', '.join(absent)} here (packages mono-mcs, mono-runtime, gcc)")
+        print(f"skipped: no {', '.join(absent)} here (packages mono-mcs, mono-runtime, gcc, glslang-tools)")
         return 77
-    parts = {"session": session, "behaviour": behaviour, "collector": collector, "missing": missing, "unity": unity, "readme": readme}
+    parts = {"session": session, "behaviour": behaviour, "collector": collector, "missing": missing, "unity": unity, "unity_package": unity_package, "unity_shaders": unity_shaders, "readme": readme}
     wanted = sys.argv[3:] or ["layout", *parts]
     with tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)

@@ -21,9 +21,9 @@ namespace Wadi
             }
             catch (DllNotFoundException e)
             {
-                throw new DllNotFoundException("Wadi's library was not found. libwadi.so (Linux) or libwadi.dll (Windows), for this "
+                throw new DllNotFoundException("Wadi's library was not found. libwadi.so (Linux), libwadi.dll (Windows) or libwadi.dylib (macOS), for this "
                     + "process's " + (IntPtr.Size * 8) + " bits, must lie beside the program, in a folder that LD_LIBRARY_PATH (Windows: "
-                    + "PATH) names, or in Plugins/x86_64 of the Unity package. The system says: " + e.Message, e);
+                    + "PATH) names, or in Runtime/Plugins of the Unity package. The system says: " + e.Message, e);
             }
             catch (EntryPointNotFoundException e)
             {

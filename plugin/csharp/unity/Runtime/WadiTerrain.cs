@@ -7,10 +7,15 @@ namespace Wadi
     /// <summary>A world of sand and water. Steps in FixedUpdate, fills textures ahead of each drawn frame. The south-west corner of the grid
     /// lies at this object's origin, x runs east, z north, y up, in metres. Row 0 of a texture is the south, so v grows with z.</summary>
     [AddComponentMenu("Wadi/Terrain")]
+    [DefaultExecutionOrder(-100)]
     public sealed class WadiTerrain : MonoBehaviour
     {
         [Tooltip("Level file or terrain map; relative paths begin in StreamingAssets.")]
         public string level = "canyon/level.json";
+        [Tooltip("A level as an asset in place of the file; may be none.")]
+        public TextAsset levelAsset;
+        [Tooltip("Files that the level asset names: sand.png is an asset of the file sand.png.bytes.")]
+        public TextAsset[] levelFiles = new TextAsset[0];
         [Tooltip("\"auto\" takes a real GPU where there is one, else the CPU; \"cpu\", \"vulkan\", \"cuda\".")]
         public string backend = "auto";
         [Tooltip("Threads of the CPU backend; 0 = all cores but one.")]
@@ -18,6 +23,7 @@ namespace Wadi
         [Tooltip("May be none: gets the surface texture copied, for shaders and effect graphs that are wired to an asset.")]
         public RenderTexture surfaceTarget;
 
+        OutputMask outputs = OutputMask.Packed | OutputMask.Flow;
         bool published;
         ulong shownStep;
         float[] surfaceTexels, flowTexels;
@@ -36,8 +42,9 @@ namespace Wadi
             var options = new DeviceOptions { Backend = backend, Threads = threads, Log = Log };
             try
             {
-                World = World.FromLevel(Path.Combine(Application.streamingAssetsPath, level), null, options);
-                World.SetHostOutputs(OutputMask.Packed | OutputMask.Flow);
+                World = levelAsset != null ? World.FromText(levelAsset.text, ReadFile, null, options)
+                    : World.FromLevel(Path.Combine(Application.streamingAssetsPath, level), null, options);
+                World.SetHostOutputs(outputs);
             }
             catch (Exception e)
             {
@@ -45,11 +52,10 @@ namespace Wadi
                 enabled = false;
                 return;
             }
-            Surface = Make(TextureFormat.RGBAFloat, "Wadi surface");
-            Flow = Make(TextureFormat.RGFloat, "Wadi flow");
+            Surface = MakeTexture(TextureFormat.RGBAFloat, "Wadi surface");
+            Flow = MakeTexture(TextureFormat.RGFloat, "Wadi flow");
             surfaceTexels = new float[4 * World.Nx * World.Ny];
             flowTexels = new float[2 * World.Nx * World.Ny];
-            published = false;
         }
 
         void OnDisable()
@@ -59,6 +65,7 @@ namespace Wadi
             if (Surface != null) Destroy(Surface);
             if (Flow != null) Destroy(Flow);
             Surface = Flow = null;
+            published = false;
         }
 
         void FixedUpdate()
@@ -82,6 +89,14 @@ namespace Wadi
             if (surfaceTarget != null) Graphics.Blit(Surface, surfaceTarget);
         }
 
+        /// <summary>Publishes more in host memory, for World.TryGetHostOutput, beside Packed and Flow; at any time.</summary>
+        public void Publish(OutputMask more)
+        {
+            if ((outputs | more) == outputs) return;
+            outputs |= more;
+            if (World != null) World.SetHostOutputs(outputs);
+        }
+
         /// <summary>Adds to a layer, or takes from it, within a disc round a point of the scene.</summary>
         /// <param name="amount">change of depth or elevation at the centre [m]</param>
         public void Pour(Vector3 where, Layer layer, float radius, float amount)
@@ -96,7 +111,47 @@ namespace Wadi
             World.Edit(edit);
         }
 
-        Texture2D Make(TextureFormat format, string title)
+        /// <summary>Where a ray of the scene meets what is seen, water or ground, to a hundredth of a cell; false where it does not.</summary>
+        /// <param name="reach">how far to look [m]</param>
+        public bool Raycast(Ray ray, float reach, out Vector3 where)
+        {
+            where = ray.origin;
+            if (!published) return false;
+            float step = 0.5f * (float)World.Dx, before = 0;
+            bool wasAbove = false;
+            for (float along = 0; along <= reach; along += step)
+            {
+                float height;
+                bool inside = HeightAbove(transform.InverseTransformPoint(ray.GetPoint(along)), out height);
+                if (inside && height <= 0 && wasAbove)
+                {
+                    for (float half = 0.5f * step; half > 0.01f * step; half *= 0.5f)
+                        if (HeightAbove(transform.InverseTransformPoint(ray.GetPoint(before + half)), out height) && height > 0) before += half;
+                    where = ray.GetPoint(before);
+                    return true;
+                }
+                wasAbove = inside && height > 0;
+                before = along;
+            }
+            return false;
+        }
+
+        /// <summary>How far a point of the terrain's space lies above the surface of its cell [m]; false outside the grid.</summary>
+        bool HeightAbove(Vector3 local, out float height)
+        {
+            int i = (int)Math.Floor(local.x / World.Dx), j = (int)Math.Floor(local.z / World.Dx);
+            bool inside = i >= 0 && j >= 0 && i < World.Nx && j < World.Ny;
+            height = inside ? local.y - surfaceTexels[4 * (j * World.Nx + i)] : 0;
+            return inside;
+        }
+
+        byte[] ReadFile(string file)
+        {
+            var asset = Array.Find(levelFiles, one => one != null && one.name == Path.GetFileName(file));
+            return asset != null ? asset.bytes : null;
+        }
+
+        Texture2D MakeTexture(TextureFormat format, string title)
         {
             return new Texture2D(World.Nx, World.Ny, format, false, true)
             {

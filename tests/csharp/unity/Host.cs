@@ -5,7 +5,7 @@ using System.Reflection;
 using UnityEngine;
 using Wadi;
 
-static class UnityHost
+static partial class UnityHost
 {
     static int failures;
 
@@ -16,9 +16,30 @@ static class UnityHost
         Console.WriteLine("not so: " + what);
     }
 
-    static void Call(WadiTerrain terrain, string message)
+    static void Call(MonoBehaviour component, string message)
     {
-        typeof(WadiTerrain).GetMethod(message, BindingFlags.Instance | BindingFlags.NonPublic).Invoke(terrain, null);
+        component.GetType().GetMethod(message, BindingFlags.Instance | BindingFlags.NonPublic).Invoke(component, null);
+    }
+
+    static T On<T>(GameObject owner, Action<T> set) where T : MonoBehaviour, new()
+    {
+        var made = owner.AddComponent<T>();
+        set(made);
+        Call(made, "OnEnable");
+        return made;
+    }
+
+    // Frames with a step of physics each, in Unity's order; the outputs of each have come before they are looked at.
+    static void Play(WadiTerrain terrain, int frames, params MonoBehaviour[] others)
+    {
+        for (int n = 0; n < frames; ++n)
+        {
+            Call(terrain, "FixedUpdate");
+            terrain.World.WaitForOutputs();
+            foreach (var other in others.Where(o => !(o is WadiSurface))) Call(other, "FixedUpdate");
+            Call(terrain, "Update");
+            foreach (var other in others.OfType<WadiSurface>()) Call(other, "LateUpdate");
+        }
     }
 
     static bool Near(Vector3 a, Vector3 b)
@@ -60,12 +81,16 @@ static class UnityHost
         Expect(back.x == q.x && back.y == q.y && back.z == q.z && back.w == q.w, "orientations come back");
     }
 
-    static int Main(string[] arguments)
+    static void Terrain(string streamingAssets)
     {
-        Axes();
-        Application.streamingAssetsPath = arguments[0];
-        var terrain = new WadiTerrain { level = "castle/level.json", backend = "cpu", threads = 2, surfaceTarget = new RenderTexture() };
-        Call(terrain, "OnEnable");
+        Application.streamingAssetsPath = streamingAssets;
+        var terrain = On<WadiTerrain>(new GameObject("terrain"), t =>
+        {
+            t.level = "castle/level.json";
+            t.backend = "cpu";
+            t.threads = 2;
+            t.surfaceTarget = new RenderTexture();
+        });
         Expect(terrain.enabled && Debug.Lines.Any(line => line.StartsWith("log Wadi: ")), "it starts and logs: " + string.Join("|", Debug.Lines));
         var world = terrain.World;
         var pace = UpdateSettings.Default;
@@ -108,10 +133,18 @@ static class UnityHost
         catch (ObjectDisposedException)
         {
         }
-        var wrong = new WadiTerrain { level = "castle/none.json", backend = "cpu" };
-        Call(wrong, "OnEnable");
+        var wrong = On<WadiTerrain>(new GameObject("terrain"), t => t.level = "castle/none.json");
         Expect(!wrong.enabled && Debug.Lines.Any(line => line.StartsWith("exception ") && line.Contains("none.json")), "a level that is not there switches it off and is logged");
         Call(wrong, "OnDisable");
+    }
+
+    static int Main(string[] arguments)
+    {
+        Axes();
+        Terrain(arguments[0]);
+        Surface();
+        Solid();
+        Sample(arguments[1]);
         Console.WriteLine(failures + " failures");
         return failures == 0 ? 0 : 1;
     }
