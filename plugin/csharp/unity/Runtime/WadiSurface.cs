@@ -25,7 +25,8 @@ namespace Wadi
         bool drawn;
         ulong drawnStep;
         int columns, rows;
-        float[] seen, solid, sand;
+        float[] seen, solid, sand, levels;
+        bool[] wetColumn;
         Vector3[] groundPoints, waterPoints;
         GameObject groundObject, waterObject;
         Texture2D sandTexture;
@@ -74,8 +75,10 @@ namespace Wadi
             depth.CopyTo(sand);
             sandTexture.SetPixelData(sand, 0);
             sandTexture.Apply(false);
-            Lift(Ground, groundPoints, false);
-            if (Water != null) Lift(Water, waterPoints, true);
+            Lift(Ground, groundPoints, solid);
+            if (Water == null) return;
+            FindLevels();
+            Lift(Water, waterPoints, levels);
         }
 
         void Make()
@@ -100,6 +103,8 @@ namespace Wadi
             Ground = WadiGrid.Make("Wadi ground", groundPoints, columns);
             groundObject = Show(Ground, groundMaterial, ShadowCastingMode.On);
             if (waterMaterial == null) return;
+            levels = new float[world.Nx * world.Ny];
+            wetColumn = new bool[world.Nx];
             waterPoints = Flat();
             Water = WadiGrid.Make("Wadi water", waterPoints, columns);
             waterObject = Show(Water, waterMaterial, ShadowCastingMode.Off);
@@ -141,56 +146,68 @@ namespace Wadi
             return shown;
         }
 
-        void Lift(Mesh mesh, Vector3[] points, bool water)
+        /// <summary>Puts a height over each cell, and on the rim those of the cells beside it.</summary>
+        void Lift(Mesh mesh, Vector3[] points, float[] heights)
         {
-            float low = float.MaxValue, high = float.MinValue;
-            for (int j = 0; j < world.Ny; ++j)
+            int nx = world.Nx, ny = world.Ny;
+            float low = heights[0], high = heights[0];
+            for (int row = 0; row < rows; ++row)
             {
-                for (int i = 0; i < world.Nx; ++i)
+                int from = Math.Min(Math.Max(row - 1, 0), ny - 1) * nx, to = row * columns;
+                points[to].y = heights[from];
+                for (int i = 0; i < nx; ++i)
                 {
-                    float height = water ? WaterLevel(i, j) : solid[j * world.Nx + i];
-                    low = Math.Min(low, height);
-                    high = Math.Max(high, height);
-                    points[(j + 1) * columns + i + 1].y = height;
+                    float height = heights[from + i];
+                    if (height < low) low = height;
+                    if (height > high) high = height;
+                    points[to + i + 1].y = height;
                 }
-            }
-            for (int j = 1; j < rows - 1; ++j)
-            {
-                points[j * columns].y = points[j * columns + 1].y;
-                points[j * columns + columns - 1].y = points[j * columns + columns - 2].y;
-            }
-            for (int i = 0; i < columns; ++i)
-            {
-                points[i].y = points[columns + i].y;
-                points[(rows - 1) * columns + i].y = points[(rows - 2) * columns + i].y;
+                points[to + nx + 1].y = heights[from + nx - 1];
             }
             mesh.SetVertices(points);
-            float x = Place(columns, world.Nx), z = Place(rows, world.Ny);
+            float x = Place(columns, nx), z = Place(rows, ny);
             mesh.bounds = new Bounds(new Vector3(0.5f * x, 0.5f * (low + high), 0.5f * z), new Vector3(x, high - low, z));
         }
 
-        /// <summary>Elevation of the water over a cell. Where there is none, still water goes on to where it meets the shore, a front runs out
-        /// with the mean depth in place of a step, and away from water it lies below the ground.</summary>
-        float WaterLevel(int i, int j)
+        /// <summary>Elevation of the water over each cell; away from water it lies below the ground.</summary>
+        void FindLevels()
         {
-            int n = j * world.Nx + i;
-            float least = 0.25f * Math.Max(0.004f * (float)world.Dx, 1e-4f); // below it is a film that no wave runs on
-            if (seen[4 * n + 1] > least) return seen[4 * n];
+            int nx = world.Nx, ny = world.Ny;
+            float film = 0.25f * Math.Max(0.004f * (float)world.Dx, 1e-4f); // depth up to which it is a film that no wave runs on
+            float below = 0.02f * (float)world.Dx;
+            for (int j = 0; j < ny; ++j)
+            {
+                int row = j * nx, south = Math.Max(j - 1, 0) * nx, north = Math.Min(j + 1, ny - 1) * nx;
+                for (int i = 0; i < nx; ++i)
+                    wetColumn[i] = seen[4 * (row + i) + 1] > film || seen[4 * (south + i) + 1] > film || seen[4 * (north + i) + 1] > film;
+                for (int i = 0; i < nx; ++i)
+                {
+                    int n = row + i;
+                    if (seen[4 * n + 1] > film) levels[n] = seen[4 * n];
+                    else if (wetColumn[i] || (i > 0 && wetColumn[i - 1]) || (i < nx - 1 && wetColumn[i + 1])) levels[n] = ShoreLevel(i, j, film);
+                    else levels[n] = solid[n] - below;
+                }
+            }
+        }
+
+        /// <summary>Over a dry cell beside water: still water goes on to where it meets the shore, a front runs out with the mean depth in place
+        /// of a step.</summary>
+        float ShoreLevel(int i, int j, float film)
+        {
             float level = 0, depth = 0;
             int wet = 0, cells = 0;
             for (int y = Math.Max(j - 1, 0); y <= Math.Min(j + 1, world.Ny - 1); ++y)
             {
-                for (int x = Math.Max(i - 1, 0); x <= Math.Min(i + 1, world.Nx - 1); ++x)
+                for (int x = Math.Max(i - 1, 0); x <= Math.Min(i + 1, world.Nx - 1); ++x, ++cells)
                 {
                     int at = 4 * (y * world.Nx + x);
-                    ++cells;
-                    if (seen[at + 1] <= least) continue;
+                    if (seen[at + 1] <= film) continue;
                     ++wet;
                     level += seen[at];
                     depth += seen[at + 1];
                 }
             }
-            return wet == 0 ? solid[n] - 0.02f * (float)world.Dx : Math.Min(level / wet, solid[n] + 2 * depth / cells);
+            return Math.Min(level / wet, solid[j * world.Nx + i] + 2 * depth / cells);
         }
     }
 }
