@@ -55,16 +55,19 @@ static partial class UnityHost
         return Enumerable.Range(0, triangles.Length).Select(n => triangles[n / 3 * 3 + 2 - n % 3]).ToArray();
     }
 
-    // Area on the map [m2] of the triangles whose front is seen from above: clockwise there, in Unity's left-handed space.
-    static double AreaFromAbove(Vector3[] points, int[] triangles)
+    // Whether triangles cover an area of the map [m2] once, and show their front from above: clockwise there, in Unity's left-handed space.
+    static bool Covers(Vector3[] points, int[] triangles, double extent)
     {
         double area = 0;
+        var edges = new HashSet<Tuple<int, int>>(); // each in the way round its triangle; a neighbour has it the other way round
         for (int n = 0; n < triangles.Length; n += 3)
         {
             var a = points[triangles[n]];
             area += Math.Max(0, 0.5 * Cross(points[triangles[n + 1]] - a, points[triangles[n + 2]] - a).y);
+            for (int k = 0; k < 3; ++k)
+                if (!edges.Add(Tuple.Create(triangles[n + k], triangles[n + (k + 1) % 3]))) return false;
         }
-        return area;
+        return Math.Abs(area - extent) < 1e-3;
     }
 
     static void Surface()
@@ -92,8 +95,11 @@ static partial class UnityHost
         double extent = world.Nx * world.Dx * world.Ny * world.Dx;
         foreach (var mesh in new[] { surface.Ground, surface.Water })
         {
-            Expect(Math.Abs(AreaFromAbove(mesh.Vertices, mesh.Triangles) - extent) < 1e-3, mesh.name + " covers the grid once, its front above");
-            Expect(AreaFromAbove(mesh.Vertices, Reversed(mesh.Triangles)) == 0, mesh.name + " with triangles reversed would not be seen");
+            Expect(Covers(mesh.Vertices, mesh.Triangles, extent), mesh.name + " covers the grid once, its front above");
+            Expect(!Covers(mesh.Vertices, Reversed(mesh.Triangles), extent), mesh.name + " with triangles reversed would be found");
+            var twice = (int[])mesh.Triangles.Clone();
+            Array.Copy(twice, 0, twice, 3, 3);
+            Expect(!Covers(mesh.Vertices, twice, extent), mesh.name + " with a triangle twice would be found");
             float low = mesh.Vertices.Min(v => v.y), high = mesh.Vertices.Max(v => v.y);
             Expect(Math.Abs(mesh.bounds.center.y - 0.5f * (low + high)) < 1e-5f && Math.Abs(mesh.bounds.size.y - (high - low)) < 1e-5f, mesh.name + " has bounds");
         }

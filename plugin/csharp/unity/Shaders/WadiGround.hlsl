@@ -152,7 +152,7 @@ float4 GroundFragment(Varyings i) : SV_Target
     albedo *= Shown(1.0 + _Caustics * drowned * CausticLight(at, s.level - s.ground, pixel));
 
     // Dry sand scatters between its grains: the terminator is sharper and the lit side flatter than Lambert's.
-    float3 toSun = TO_SUN, up = UnityObjectToWorldNormal(float3(0.0, 1.0, 0.0));
+    float3 toSun = ToSun(), up = UnityObjectToWorldNormal(float3(0.0, 1.0, 0.0));
     float lambert = max(dot(normal, toSun), 0.0);
     float grainy = saturate(1.9 * dot(normalize(normal - 0.55 * dot(normal, up) * up), toSun));
     float3 halfway = normalize(toSun + normalize(_WorldSpaceCameraPos - i.world));

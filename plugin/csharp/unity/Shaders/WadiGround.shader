@@ -29,7 +29,7 @@ Shader "Wadi/Ground"
         Pass
         {
             Name "Ground"
-            Tags { "LightMode" = "UniversalForward" }
+            Tags { "LightMode" = "UniversalForwardOnly" }
             HLSLPROGRAM
             #pragma target 3.5
             #pragma vertex GroundVertex

@@ -8,7 +8,7 @@
 #ifdef WADI_URP
 float4 _MainLightPosition;
 float4 _MainLightColor;
-#define TO_SUN normalize(_MainLightPosition.xyz)
+#define SUN_PLACE _MainLightPosition
 #define SUN_COLOUR _MainLightColor.rgb
 #define WADI_SHADOW_COORDS(n)
 #define WADI_TRANSFER_SHADOW(o)
@@ -16,7 +16,7 @@ float4 _MainLightColor;
 #else
 #include "Lighting.cginc"
 #include "AutoLight.cginc"
-#define TO_SUN normalize(_WorldSpaceLightPos0.xyz)
+#define SUN_PLACE _WorldSpaceLightPos0
 #define SUN_COLOUR _LightColor0.rgb
 #define WADI_SHADOW_COORDS(n) SHADOW_COORDS(n)
 #define WADI_TRANSFER_SHADOW(o) TRANSFER_SHADOW(o)
@@ -27,6 +27,12 @@ struct Vertex
 {
     float4 vertex : POSITION;
 };
+
+// Direction to the sun; 0 where a scene has none.
+float3 ToSun()
+{
+    return SUN_PLACE.xyz / max(length(SUN_PLACE.xyz), 1e-5);
+}
 
 // Light of the sky on a surface with this normal.
 float3 SkyLight(float3 normal)

@@ -118,7 +118,7 @@ float Glint(Water w, float3 toSun)
 float4 LightFragment(Varyings i) : SV_Target
 {
     Water w = WaterAt(i);
-    float3 toSun = TO_SUN, sun = SUN_COLOUR;
+    float3 toSun = ToSun(), sun = SUN_COLOUR;
     float3 own = lerp(_Glow.rgb * Shown(1.0 - w.through), _FoamColour.rgb, w.foam);
     float3 mirrored = w.fresnel * SkyMirrored(reflect(-w.view, w.normal), _Roughness) + min(Glint(w, toSun), 8.0) * sun;
     float3 light = own * (max(dot(w.normal, toSun), 0.0) * sun + SkyLight(w.normal)) + mirrored * (1.0 - w.foam);
