@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""The C# binding (plugin/csharp) under Mono against the library and against the C compiler. Exit status 77 where Mono or its compiler is
-missing. Usage: check.py LIBRARY SOURCE_DIR [PART ...]; parts: layout session behaviour collector missing unity
-unity_package unity_shaders readme; all where none is named."""
+"""The C# binding (plugin/csharp) under Mono against the library and against the C compiler. Exit status 77 where a program that it needs is
+missing. Usage: check.py LIBRARY SOURCE_DIR [PART ...]; parts: layout session behaviour collector missing unity unity_package unity_shaders
+readme; all where none is named. Or check.py PACKAGE.tgz SOURCE_DIR: a Unity package with all libraries, its scripts over its own for Linux."""
 import json
 import os
 import pathlib
@@ -209,7 +209,7 @@ def readme(work, dll):
 
 
 def unity(work, _):
-    checks.scripts(work, library, compile_program, mono, ends_well)
+    checks.scripts(work, checks.laid_out(work, library), compile_program, mono, ends_well)
 
 
 def unity_package(work, _):
@@ -231,6 +231,12 @@ def main():
         work = pathlib.Path(folder)
         (work / "library").mkdir()
         (work / "empty").mkdir()
+        if library.suffix == ".tgz":
+            print(f"{library.name}: {checks.contents(library, fail)} files")
+            package, own = checks.unpacked(work, library)
+            (work / "library/libwadi.so").symlink_to(own)
+            checks.scripts(work, package, compile_program, mono, ends_well)
+            return 1 if failures else 0
         (work / "library/libwadi.so").symlink_to(library)
         if "layout" in wanted:
             layout(work)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Lays out the package for Unity's package manager: components, shaders, binding, sample, native libraries, and the .meta files without which
 a package that Unity may not write to is ignored. With --archive the same as .tgz, as `npm pack` lays it out, of equal bytes for equal input.
-Usage: make_package.py --linux-x86_64 FILE --windows-x86_64 FILE --macos-arm64 FILE --macos-x86_64 FILE [--linux-arm64 FILE] --notices FILE
+Usage: make_package.py --linux-x86_64 FILE --windows-x86_64 FILE --macos-arm64 FILE --macos-x86_64 FILE [--linux-aarch64 FILE] --notices FILE
 [--archive FOLDER] PACKAGE; PACKAGE is a folder, which must not exist or be an earlier package. With --partial what is not given is left out."""
 import argparse
 import gzip
@@ -40,8 +40,8 @@ NATIVES = {"linux-x86_64": Native("Linux/x86_64/libwadi.so", "ELF 62", "Linux", 
            "windows-x86_64": Native("Windows/x86_64/libwadi.dll", "PE 34404", "Windows", "Standalone", "Win64", "x86_64"),
            "macos-arm64": Native("macOS/arm64/libwadi.dylib", "Mach-O 16777228", "OSX", "Standalone", "OSXUniversal", "ARM64"),
            "macos-x86_64": Native("macOS/x86_64/libwadi.dylib", "Mach-O 16777223", "OSX", "Standalone", "OSXUniversal", "x86_64"),
-           "linux-arm64": Native("Linux/arm64/libwadi.so", "ELF 183", None, "EmbeddedLinux", "EmbeddedLinux", "ARM64")}
-OPTIONAL = "linux-arm64"  # Unity has no desktop player there
+           "linux-aarch64": Native("Linux/arm64/libwadi.so", "ELF 183", None, "EmbeddedLinux", "EmbeddedLinux", "ARM64")}
+OPTIONAL = "linux-aarch64"  # Unity has no desktop player there
 
 
 def stop(text):

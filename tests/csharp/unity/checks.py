@@ -14,7 +14,7 @@ import make_package
 
 # How libraries of other systems begin, for a package of all of them.
 BEGINNINGS = {"windows-x86_64": b"MZ".ljust(60, b"\0") + b"\x40\0\0\0PE\0\0\x64\x86", "macos-arm64": b"\xcf\xfa\xed\xfe\x0c\0\0\x01",
-              "macos-x86_64": b"\xcf\xfa\xed\xfe\x07\0\0\x01", "linux-arm64": b"\x7fELF".ljust(18, b"\0") + b"\xb7\0"}
+              "macos-x86_64": b"\xcf\xfa\xed\xfe\x07\0\0\x01", "linux-aarch64": b"\x7fELF".ljust(18, b"\0") + b"\xb7\0"}
 SOURCES = {".cs": "MonoImporter", ".shader": "ShaderImporter", ".hlsl": "ShaderIncludeImporter", ".mat": "NativeFormatImporter", ".bytes": "TextScriptImporter"}
 
 
@@ -46,7 +46,14 @@ def package(work, library, fail):
     version = json.loads((root / "plugin/csharp/unity/package.json").read_text())["version"]
     if [a.name for a in archives] != [f"com.wadi.terrain-{version}.tgz"] * 2 or archives[0].read_bytes() != archives[1].read_bytes():
         fail("package: two archives of the same input differ")
-    with tarfile.open(archives[0]) as tar:
+    count = contents(archives[0], fail)
+    stopped(work, options, notices, version, fail)
+    print(f"package: {count} files, {archives[0].stat().st_size / 1e3:.0f} kB with libraries cut off, twice the same")
+
+
+def contents(archive, fail):
+    """What lies in an archive with all libraries, with controls; the number of its files."""
+    with tarfile.open(archive) as tar:
         members = tar.getmembers()
         names = [m.name.removeprefix("package/") for m in members]
         texts = {name: tar.extractfile("package/" + name).read().decode(errors="replace") for name in names}
@@ -60,8 +67,8 @@ def package(work, library, fail):
     for text in (texts["README.md"][:200], json.loads(texts["package.json"])["description"]):
         if "Compiled against a stand-in" not in text.replace("is compiled", "Compiled"):
             fail(f"package: not said that it has not run: {text}")
-    if "None has been chosen yet" not in texts["LICENSE.md"] or texts["Third Party Notices.md"] != "# Texts\n":
-        fail("package: licence and notices are not those that were given")
+    if "None has been chosen yet" not in texts["LICENSE.md"] or not texts["Third Party Notices.md"].strip():
+        fail("package: it has no licence or no notices")
     for sample in json.loads(texts["package.json"])["samples"]:
         if not any(n.startswith(sample["path"] + "/") and n.endswith(".unity") for n in names):
             fail(f"package: no scene in {sample['path']}")
@@ -78,6 +85,11 @@ def package(work, library, fail):
                 ("Win64", "x86_64", None), ("OSXUniversal", "ARM64", None), ("OSXUniversal", "x86_64", None), ("EmbeddedLinux", "ARM64", None)}
     if set(bound) != expected or any(len(libraries) != 1 for libraries in bound.values()):
         fail(f"package: libraries are bound to {bound}")
+    return len(names)
+
+
+def stopped(work, options, notices, version, fail):
+    """What stops make_package.py, each time with a message and without a package."""
 
     def stops(text, *arguments):
         done = run(*arguments, work / "stopped")
@@ -90,7 +102,7 @@ def package(work, library, fail):
             stops(f"--{name} missing", *rest)
         stops("is not there", f"--{name}", work / "none", *rest)
         stops(f"{notices} is no library, not", f"--{name}", notices, *rest)
-    stops("--notices missing", *given[:-2])
+    stops("--notices missing", *(word for name, path in options.items() for word in (f"--{name}", path)))
     stops("is ELF 62, not Mach-O 16777228", "--partial", "--macos-arm64", options["linux-x86_64"])
     stops("without any library", "--partial")
     if run("--partial", "--linux-x86_64", options["linux-x86_64"], work).returncode == 0:
@@ -115,7 +127,6 @@ def package(work, library, fail):
         if done.returncode == 0 or text not in done.stderr:
             fail(f"package: {file} with {new} does not stop it: {done.stderr}")
         (copy / file).write_text(kept)
-    print(f"package: {len(names)} files, {archives[0].stat().st_size / 1e3:.0f} kB with libraries cut off, twice the same")
 
 
 def metas(fail, names, texts):
@@ -213,9 +224,21 @@ def shaders(work, fail):
     print(f"shaders: {read} entries read, 7 faults found")
 
 
-def scripts(work, library, compile_program, mono, ends_well):
+def unpacked(work, archive):
+    """The package in an archive, and its library for this system."""
+    with tarfile.open(archive) as tar:
+        tar.extractall(work / "archive")
+    return work / "archive/package", work / "archive/package" / make_package.NATIVES["linux-x86_64"].path
+
+
+def laid_out(work, library):
     made = work / "package"
     make_package.lay_out(made, {"linux-x86_64": small_library(work, library)}, None)
+    return made
+
+
+def scripts(work, made, compile_program, mono, ends_well):
+    """A package's scripts, compiled and run over the stand-in."""
     stand_in = compile_program(work, "UnityEngine", here / "UnityEngineStub.cs", library_file=True)
     runtime = compile_program(work, "WadiUnity", *sorted((made / "Runtime").rglob("*.cs")), references=[stand_in], library_file=True)
     sample = compile_program(work, "Sample", *sorted((made / make_package.CASTLE).rglob("*.cs")), references=[stand_in, runtime], library_file=True)
