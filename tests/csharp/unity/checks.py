@@ -184,8 +184,7 @@ def scene(fail, names, texts):
 
 
 def read_shader(work, folder, shader):
-    """Each pass of a .shader file through glslang's front end for HLSL: (entries that were read, what it says)."""
-    read, said = 0, []
+    """What glslang's front end for HLSL says of each entry of each pass of a .shader file; "" of a good one."""
     text = (folder / shader).read_text()
     for number, source in enumerate(re.findall(r"HLSLPROGRAM\n(.*?)ENDHLSL", text, re.S)):
         file = work / f"{shader}.{number}.hlsl"
@@ -193,20 +192,17 @@ def read_shader(work, folder, shader):
         for stage, word in (("vert", "vertex"), ("frag", "fragment")):
             entry = re.search(rf"#pragma {word} (\w+)", source)[1]
             done = subprocess.run(["glslangValidator", "-D", "-V", "-S", stage, "-e", entry, f"-I{here / 'shaders'}", f"-I{folder}", file, "-o", work / "shader.spv"], capture_output=True, text=True)
-            read += 1
-            if done.returncode != 0 or "WARNING" in done.stdout:
-                said.append(f"{shader}: {entry}: {done.stdout}{done.stderr}")
-    return read, said
+            yield f"{shader}: {entry}: {done.stdout}{done.stderr}" if done.returncode != 0 or "WARNING" in done.stdout else ""
 
 
 def shaders(work, fail):
     folder, planted = root / "plugin/csharp/unity/Shaders", work / "planted"
     read = 0
     for shader in sorted(p.name for p in folder.glob("*.shader")):
-        count, said = read_shader(work, folder, shader)
-        read += count
-        for text in said:
-            fail(f"shaders: {text}")
+        for said in read_shader(work, folder, shader):
+            read += 1
+            if said:
+                fail(f"shaders: {said}")
         text = (folder / shader).read_text()
         declared = set(re.findall(r"^\s+(_\w+) \(\"", text, re.M))
         used = set().union(*(set(re.findall(r"\b_\w+", line)) for line in re.findall(r"^float4? (.*);$", (folder / shader.replace(".shader", ".hlsl")).read_text(), re.M)))
@@ -219,7 +215,7 @@ def shaders(work, fail):
         shutil.copytree(folder, planted)
         text = (planted / file).read_text()
         (planted / file).write_text(text.replace(old, new))
-        if old not in text or not any(read_shader(work, planted, shader)[1] for shader in ("WadiGround.shader", "WadiWater.shader")):
+        if old not in text or not any(any(read_shader(work, planted, shader)) for shader in ("WadiWater.shader", "WadiGround.shader")):
             fail(f"shaders: {new} in {file} is not found")
     print(f"shaders: {read} entries read, 7 faults found")
 
