@@ -151,11 +151,17 @@ fast() { # PART
     ! grep -qw avx2 /proc/cpuinfo || "$work/$1/bin/wadi-minimal-host" | grep -q "(avx" || { echo "$1: runs the base set where AVX2 is there"; return 1; }
 }
 
+# A host that closes the library ends well: at the end nothing of it may be called that is gone.
+closes() { # PART
+    cc -std=gnu99 -O1 tests/packaging/open_and_close.c -Iplugin/include -o "$work/$1/unpacked/open_and_close" -ldl &&
+        "$work/$1/unpacked/open_and_close" "$work/$1/unpacked/plugin/lib/${library_of[$1]}" samples/levels/dam_break/level.json || { echo "$1: a host that closes the library crashes"; return 1; }
+}
+
 # What the site's first page says, word for word.
 first_steps() { python3 "$here/first_steps.py" plugin/docs/hello.md "$(zip_of "$1")" "${@:2}"; } # PART [OPTION ...]
 
 try_linux-x86_64() {
-    fast linux-x86_64 && first_steps linux-x86_64 && golden linux-x86_64 "$work/linux-x86_64/bin/wadi-test-golden" && in_environment linux-x86_64 bullseye && in_environment linux-x86_64 bookworm &&
+    fast linux-x86_64 && closes linux-x86_64 && first_steps linux-x86_64 && golden linux-x86_64 "$work/linux-x86_64/bin/wadi-test-golden" && in_environment linux-x86_64 bullseye && in_environment linux-x86_64 bookworm &&
         in_environment linux-x86_64 sid && beside_glibc linux-x86_64 &&
         told linux-x86_64 "release, x86-64 Linux" "" --ran "the first page's steps, Debian 11, 12, sid, glibc 2.31 alone"
 }
@@ -227,7 +233,7 @@ make_unity() {
     for part in $names; do libraries+=("--$part" "$(library "$part")"); done
     python3 plugin/csharp/unity/make_package.py "${libraries[@]}" --notices "$work/THIRD_PARTY.windows.txt" ${partial:+--partial} --archive "$out" "$work/unity" || return 1
     if [[ " $names " == *" linux-x86_64 "* ]]; then
-        python3 tests/csharp/check.py "$(library linux-x86_64)" "$root" unity unity_package || return 1
+        python3 tests/csharp/check.py "$out/com.wadi.terrain-$version.tgz" "$root" || return 1
         tell=(--target "Unity package" --tools "$(mono --version | head -n 1 | cut -d" " -f1-5)" --ran "over a stand-in of Unity, not in Unity")
     fi
 }

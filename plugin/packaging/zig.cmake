@@ -15,3 +15,6 @@ set(CMAKE_FIND_ROOT_PATH_MODE_LIBRARY ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_INCLUDE ONLY)
 set(CMAKE_FIND_ROOT_PATH_MODE_PACKAGE ONLY)
 set(CMAKE_SHARED_LINKER_FLAGS_INIT -s) # names that are not exported are half a megabyte
+if(CMAKE_SYSTEM_NAME STREQUAL "Linux") # zig's libraries do not end their own objects when a host closes them: that would come later, without them
+  string(APPEND CMAKE_SHARED_LINKER_FLAGS_INIT " -Wl,-z,nodelete")
+endif()
