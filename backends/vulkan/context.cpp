@@ -134,7 +134,8 @@ Result<std::unique_ptr<Context>> adopt_device(std::unique_ptr<Context> context, 
     }
     if (!c.sharing_families.empty()) c.sharing_families.push_back(host.queue_family);
     c.instance->load(c.vk, c.device);
-    // A call of Vulkan 1.2 is there where the host asked for 1.2, too, and not for 1.1 of a device that could do more.
+    // A host may have asked for Vulkan 1.1 of a device that has 1.2: calls of 1.2 are then missing, at least where a validation
+    // layer would object (NVIDIA's driver has them, and takes such modules).
     c.float_modes = c.limits.api_version >= VK_API_VERSION_1_2 && c.vk.vkGetSemaphoreCounterValue != nullptr &&
                     preserves_signed_zero(c.instance->api(), c.physical);
     if (c.vk.vkGetSemaphoreCounterValueKHR == nullptr) c.vk.vkGetSemaphoreCounterValueKHR = c.vk.vkGetSemaphoreCounterValue;
