@@ -2,7 +2,7 @@
 # Tests: installs what is missing, builds, runs. README.md beside it says what each of these runs and how long it takes.
 #   tests/run.sh                  presets ci and asan, all but what is labelled long; at its end the lanes that have fallen behind
 #   tests/run.sh quick            of preset ci what takes seconds
-#   tests/run.sh long [LANE ...]  the lanes of tests/lanes.txt, all or some; each that passes is stamped there
+#   tests/run.sh long [LANE ...]  lanes of tests/lanes.txt, all or some; each that passes is stamped in tests/stamps.csv
 #   tests/run.sh PRESET ...       all tests of a preset: release, ci, asan, tsan, dev, cpu-only, vulkan-lavapipe, cuda
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -35,7 +35,7 @@ preset() { # PRESET CMAKE_OPTION ...: all of it
     build "$@" && tests "$1"
 }
 
-# A lane returns 0 where it has passed and 77 where this machine lacks what it needs.
+# A lane returns 0 where it has passed and 77 where this machine lacks what it needs. In `stamp` it leaves what is to be said of it.
 lane_o3() { # engine, backends and plugin compiled, not linked: g++ warns of more at -O3, file by file
     say "configure o3"
     cmake --preset o3 && say "build o3" &&
@@ -45,14 +45,18 @@ lane_asan() { build asan -DWADI_BASE_STAGES_OF= && cmake --build --preset asan -
 lane_tsan() { preset tsan; }
 lane_release() { preset release; }
 lane_reports() { build ci && tests ci -L long; }
-lane_godot() { build ci && tests/godot/run.sh build/ci; }
+lane_godot() {
+    build ci && tests/godot/run.sh build/ci &&
+        stamp=(--target "Godot add-on, x86-64 Linux" --tools "Godot $(tests/godot/godot.sh --version)" --ran "all of tests/godot")
+}
 lane_gpu() {
     [ -e /dev/nvidiactl ] || { echo "no NVIDIA device" && return 77; }
-    build release && build/release/bin/conformance test --require cuda,vulkan
+    build release && build/release/bin/conformance test --require cuda,vulkan &&
+        stamp=(--target "NVIDIA, CUDA and Vulkan" --tools "$(nvidia-smi --query-gpu=name,driver_version --format=csv,noheader | head -n 1)" --ran conformance)
 }
 
 long() { # LANE ...
-    local lanes known lane status
+    local lanes known lane status stamp
     known=$(tests/lanes.py list)
     lanes=("$@")
     [ ${#lanes[@]} -ne 0 ] || read -r -a lanes <<<"$known"
@@ -63,12 +67,14 @@ long() { # LANE ...
         say "lane $lane"
         status=0
         if [ "$(type -t "lane_$lane")" = function ]; then
+            stamp=(--tools "$(c++ --version | head -n 1)")
             "lane_$lane" || status=$?
+            [ $status -ne 0 ] || tests/lanes.py passed "$lane" "${stamp[@]}" || true
         else
-            WADI_JOBS=$jobs tests/platforms/run.sh "$lane" || status=$?
+            WADI_JOBS=$jobs tests/platforms/run.sh --write "$lane" || status=$?
         fi
         case $status in
-        0) tests/lanes.py passed "$lane" || true ;;
+        0) ;;
         77) echo "lane $lane: not run here" ;;
         *) failed+=("$lane") ;;
         esac

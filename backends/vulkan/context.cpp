@@ -42,6 +42,7 @@ void read_properties(Context& c, const PhysicalDevice& chosen) {
     api.GetPhysicalDeviceProperties2(chosen.handle, &properties);
     api.GetPhysicalDeviceMemoryProperties(chosen.handle, &c.memory);
 
+    c.limits.api_version = properties.properties.apiVersion;
     const VkPhysicalDeviceLimits& limits = properties.properties.limits;
     for (int axis = 0; axis < 2; ++axis) {
         c.limits.group_count[axis] = limits.maxComputeWorkGroupCount[axis];
@@ -89,6 +90,15 @@ bool has_timeline(const InstanceApi& api, VkPhysicalDevice device) {
     return timeline.timelineSemaphore == VK_TRUE;
 }
 
+// Whether shaders may ask that signs of zeros, infinities and NaN be kept, which is what turns fast math off.
+bool preserves_signed_zero(const InstanceApi& api, VkPhysicalDevice device) {
+    auto modes = vk_struct<VkPhysicalDeviceFloatControlsProperties>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FLOAT_CONTROLS_PROPERTIES);
+    auto properties = vk_struct<VkPhysicalDeviceProperties2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2);
+    properties.pNext = &modes;
+    api.GetPhysicalDeviceProperties2(device, &properties);
+    return modes.shaderSignedZeroInfNanPreserveFloat32 == VK_TRUE;
+}
+
 VkResult create_device(Context& c) {
     const InstanceApi& api = c.instance->api();
     const float priority = 1.0f;
@@ -99,15 +109,17 @@ VkResult create_device(Context& c) {
     auto timeline =
         vk_struct<VkPhysicalDeviceTimelineSemaphoreFeatures>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_TIMELINE_SEMAPHORE_FEATURES);
     timeline.timelineSemaphore = VK_TRUE;
-    const char* extension = VK_KHR_TIMELINE_SEMAPHORE_EXTENSION_NAME;
+    std::vector<const char*> extensions;
+    if (c.float_modes) extensions.push_back(VK_KHR_SHADER_FLOAT_CONTROLS_EXTENSION_NAME);
     auto info = vk_struct<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO);
     info.queueCreateInfoCount = 1;
     info.pQueueCreateInfos = &queue;
     if (c.timeline) {
         info.pNext = &timeline;
-        info.enabledExtensionCount = 1;
-        info.ppEnabledExtensionNames = &extension;
+        extensions.push_back(VK_KHR_TIMELINE_SEMAPHORE_EXTENSION_NAME);
     }
+    info.enabledExtensionCount = static_cast<std::uint32_t>(extensions.size());
+    info.ppEnabledExtensionNames = extensions.data();
     return api.CreateDevice(c.physical, &info, nullptr, &c.device);
 }
 
@@ -122,6 +134,10 @@ Result<std::unique_ptr<Context>> adopt_device(std::unique_ptr<Context> context, 
     }
     if (!c.sharing_families.empty()) c.sharing_families.push_back(host.queue_family);
     c.instance->load(c.vk, c.device);
+    // A host may have asked for Vulkan 1.1 of a device that has 1.2: calls of 1.2 are then missing, at least where a validation
+    // layer would object (NVIDIA's driver has them, and takes such modules).
+    c.float_modes = c.limits.api_version >= VK_API_VERSION_1_2 && c.vk.vkGetSemaphoreCounterValue != nullptr &&
+                    preserves_signed_zero(c.instance->api(), c.physical);
     if (c.vk.vkGetSemaphoreCounterValueKHR == nullptr) c.vk.vkGetSemaphoreCounterValueKHR = c.vk.vkGetSemaphoreCounterValue;
     if (c.vk.vkWaitSemaphoresKHR == nullptr) c.vk.vkWaitSemaphoresKHR = c.vk.vkWaitSemaphores;
     if (c.timeline && (c.vk.vkGetSemaphoreCounterValueKHR == nullptr || c.vk.vkWaitSemaphoresKHR == nullptr))
@@ -147,6 +163,8 @@ Result<std::unique_ptr<Context>> Context::open(int index, const compute::DeviceO
     read_properties(c, *chosen);
     if (host) return adopt_device(std::move(context), *host);
     c.timeline = has_timeline(c.instance->api(), c.physical);
+    c.float_modes = has_extension(c.instance->api(), c.physical, VK_KHR_SHADER_FLOAT_CONTROLS_EXTENSION_NAME) &&
+                    preserves_signed_zero(c.instance->api(), c.physical);
     if (Status s = c.check(create_device(c), "vkCreateDevice", c.capabilities.name); !s) return s;
     c.instance->load(c.vk, c.device);
     c.vk.vkGetDeviceQueue(c.device, c.queue_family, 0, &c.queue);

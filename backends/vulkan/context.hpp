@@ -9,6 +9,7 @@ namespace wadi::vulkan {
 
 /// Numbers of the physical device that the backend respects.
 struct Limits {
+    std::uint32_t api_version = 0;
     std::uint32_t group_count[2] = {};
     std::uint32_t storage_buffers = 0; // of one stage
     double timestamp_nanoseconds = 0;  // of one tick
@@ -41,6 +42,7 @@ struct Context {
     VkPhysicalDeviceMemoryProperties memory{};
     Limits limits;
     bool timeline = false;           // VK_KHR_timeline_semaphore is there and on
+    bool float_modes = false;        // modules may ask for SignedZeroInfNanPreserve
     bool corrected_division = false; // chosen by the self-test
     bool lost = false;
     bool left = false; // by leave_all()

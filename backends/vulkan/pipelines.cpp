@@ -1,4 +1,5 @@
 #include "backends/vulkan/pipelines.hpp"
+#include "backends/vulkan/float_modes.hpp"
 #include "shaders/stage_table.hpp"
 #include <cstddef>
 
@@ -33,6 +34,11 @@ Result<VkPipelineLayout> create_pipeline_layout(Context& c, VkDescriptorSetLayou
 }
 
 Result<VkShaderModule> create_module(Context& c, std::span<const std::uint32_t> spirv, std::string_view label) {
+    std::vector<std::uint32_t> without;
+    if (!c.float_modes) {
+        without = without_float_modes(spirv);
+        spirv = without;
+    }
     auto info = vk_struct<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
     info.codeSize = spirv.size_bytes();
     info.pCode = spirv.data();

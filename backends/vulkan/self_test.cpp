@@ -117,7 +117,11 @@ Status run_self_test(Context& c, OneTimeCommands& once, Transfers& transfers) {
             return ok_status();
         }
     }
-    if (c.options.log) c.options.log(1, "vulkan: " + backends::inexact_float_warning(c.capabilities.name));
+    if (c.options.log) {
+        const char* reason =
+            c.float_modes ? "" : "; nor could it be asked for signed zeros (SignedZeroInfNanPreserve), which some need";
+        c.options.log(1, "vulkan: " + backends::inexact_float_warning(c.capabilities.name) + reason);
+    }
     return ok_status();
 }
 

@@ -2,10 +2,11 @@
 //   stagec glsl  EFFECTS_H STAGE OUT.comp          GLSL wrapper: prelude, stage, main()
 //   stagec cpp   EFFECTS_H STAGE OUT.cpp ISA all|common|largest [BELOW]  a function per mask the stage distinguishes, for one
 //                                                  instruction set; largest: of each choice of methods the masks that no other
-//                                                  one includes; common: those and all of the default method; BELOW: the set whose
-//                                                  functions run the masks that are left out
+//                                                  one includes; common: those and all of the default method; BELOW: the set
+//                                                  whose functions run the masks that are left out
 //   stagec cuda  EFFECTS_H STAGE OUT.cu all|largest  every mask as CUDA kernels; largest: masks that no other one includes
-//   stagec nocontract IN.spv OUT.spv               decorates every float operation NoContraction
+//   stagec strict IN.spv OUT.spv                   decorates every float operation NoContraction and turns off what else drivers
+//                                                  call fast math
 //   stagec embed IN.spv OUT.inc                    a module as the words of a C++ array
 //   stagec table EFFECTS_H OUT.cpp SPIRV_DIR|- STAGES...   the stage table that the engine reads
 //   stagec cpurows OUT.cpp ISAS fused|- STAGES...  the CPU backend's index of the compiled stages, with or without fused ones
@@ -30,8 +31,8 @@ int main(int argc, char** argv) {
         const bool all = a[4] == "all";
         write_code(a[3], is_fused(a[2]) ? write_cuda(parse_fused(a[2], effects), effects, all)
                                         : write_cuda(parse_stage(a[2]), effects, all));
-    } else if (mode == "nocontract" && a.size() == 3) {
-        write_nocontract(a[1], a[2]);
+    } else if (mode == "strict" && a.size() == 3) {
+        write_strict(a[1], a[2]);
     } else if (mode == "embed" && a.size() == 3) {
         write_code(a[2], "// Written by stagec." + word_list(a[1]) + "\n");
     } else if (mode == "table" && a.size() >= 5) {
@@ -43,7 +44,7 @@ int main(int argc, char** argv) {
         for (std::size_t i = 2; i < a.size(); ++i) names.push_back(stem(a[i]));
         write_code(a[1], cuda_rows(names));
     } else {
-        fail("usage: glsl|cpp|cuda|nocontract|embed|table|cpurows|cudarows ... (see the top of stagec.cpp)");
+        fail("usage: glsl|cpp|cuda|strict|embed|table|cpurows|cudarows ... (see the top of stagec.cpp)");
     }
     return 0;
 }

@@ -49,8 +49,8 @@ std::string write_cpp(const FusedStage& fused, const CpuSet& set, const Effects&
 std::string write_cuda(const Stage& stage, const Effects& effects, bool all_masks);
 std::string write_cuda(const FusedStage& fused, const Effects& effects, bool all_masks);
 
-/// Decorates every float operation of a module NoContraction.
-void write_nocontract(const std::string& in, const std::string& out);
+/// Decorates every float operation of a module NoContraction and has its entry points ask for SignedZeroInfNanPreserve.
+void write_strict(const std::string& in, const std::string& out);
 /// The words of a module as the inside of a C++ array.
 std::string word_list(const std::string& module);
 

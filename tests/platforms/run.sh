@@ -7,7 +7,7 @@ all=(windows aarch64 swiftshader static wasm)
 usage() {
     cat <<EOF
 Usage: run.sh [--write] [LANE ...]; all lanes where none is named. Exit status 1 where one fails, 2 for a wrong command line.
-  --write      what ran goes into the table of tests/platforms/README.md
+  --write      lanes that passed are stamped in tests/stamps.csv and the table of tests/platforms/README.md (tests/lanes.py)
 
 lane         installs                          packages, build  runs
 windows      g++-mingw-w64-x86-64-posix wine64  1.0 GB, 0.8 GB   golden hashes, smallest host, it again WADI_WINE_RUNS (20) times
@@ -70,23 +70,11 @@ build() { # FOLDER TARGETS CMAKE_OPTION ...
         { tail -n 20 "$work/$folder.log"; echo "$folder: cannot be built, see $work/$folder.log"; return 1; }
 }
 
-# A row of the page's table: that of the same target is replaced, a new one comes last.
-tell() { # TARGET COMPILER CELL ...
-    local row="| $1 | $2"
-    for cell in "${@:3}"; do row+=" | $cell"; done
-    row+=" | $(git rev-parse --short HEAD)$(git diff --quiet HEAD -- . ":!$here/README.md" || echo ", changed") |"
-    echo "$row"
-    [ -n "$write" ] || return 0
-    awk -v target="| $1 |" -v row="$row" '
-        index($0, target) == 1 { print row; told = 1; next }
-        table && !/^\|/ { if (!told) print row; told = 1; table = 0 }
-        /^\| target \|/ { table = 1 }
-        { print }
-        END { if (!told) print row }' $here/README.md >"$work/README.md" && cp "$work/README.md" $here/README.md
-}
-
-cell() { # TARGET HASH EXPECTED: the reference has its hashes in the table, what is equal says so
-    if [[ $2 == "$3" && $1 != "x86-64 Linux" ]]; then echo equal; else echo "\`${2:-none}\`"; fi
+# What a lane's stamp is to say of a target, once all of the lane has passed.
+stamps=()
+tell() { # TARGET COMPILER [--golden LOG] [--host HASH] [--ran TEXT]
+    echo "$1 ($2) ${*:3}"
+    stamps+=("$(printf '%q ' --target "$1" --tools "$2" "${@:3}")")
 }
 
 host_hash() { # of what a host prints
@@ -103,19 +91,14 @@ judge() { # WHAT LOG COMMAND ...
     [[ $found == "$expected" ]] || { echo "$what: hash ${found:-none}, not $expected; see $log"; return 1; }
 }
 
-# RUNNER is a command ahead of a program's name. The golden test says what it found of each scene (-s), whether it is right or wrong.
+# RUNNER is a command ahead of a program's name. The golden test says what it found of each scene (-s). `also` is what else ran there.
 run() { # TARGET COMPILER FOLDER SUFFIX RUNNER ...
     local target=$1 compiler=$2 folder=$3 suffix=$4
     shift 4
-    local bin=$work/$folder/bin good=yes log=$work/${target//[ ,()]/_} found cells=()
+    local bin=$work/$folder/bin good=yes log=$work/${target//[ ,()]/_} found
     timeout "$limit" "$@" "$bin/wadi-test-golden$suffix" -s >"$log.golden.log" 2>&1 || { good=; echo "$target: golden hashes FAILED, see $log.golden.log"; }
     judge "$target: smallest host" "$log.host.log" "$@" "$bin/wadi-minimal-host$suffix" || good=
-    for scene in dam_break piles canyon; do
-        cells+=("$(cell "$target" "$(sed -n "s/.*${scene}_50 is \([0-9a-f]*\), golden.*/\1/p" "$log.golden.log" | head -n 1)" \
-            "$(sed -n "s/^${scene}_50 //p" tests/golden/hashes.txt)")")
-    done
-    tell "$target" "$compiler" "${cells[@]}" "$(cell "$target" "$found" "$expected")"
-    [ -n "$good" ]
+    [ -n "$good" ] && tell "$target" "$compiler" --golden "$log.golden.log" --host "$found" ${also:+--ran "$also"}
 }
 
 version() { "$@" 2>/dev/null | grep -m 1 -oE '[0-9]+\.[0-9]+(\.[0-9]+)*' | head -n 1; }
@@ -198,8 +181,8 @@ lane_wasm() {
 
     build wasm_single wadi "${options[@]}" -DWADI_TESTS=OFF -DWADI_SAMPLES=OFF -DCMAKE_CXX_FLAGS="$wasm_compile" || return 1
     wasm_host wasm_single || good=
-    tell "WebAssembly without threads" "$emscripten, $node" "-" "-" "-" "$(cell wasm "${hashes[0]:-}" "$expected")"
-    tell "WebAssembly without threads, a page" "$emscripten, $chromium" "-" "-" "-" "$(cell wasm "${hashes[1]:-}" "$expected")"
+    tell "WebAssembly without threads" "$emscripten, $node" --host "${hashes[0]:-}"
+    tell "WebAssembly without threads, a page" "$emscripten, $chromium" --host "${hashes[1]:-}"
     [ -n "$good" ]
 }
 
@@ -219,6 +202,7 @@ lane_swiftshader() {
         "$native/bin/conformance" test --backend vulkan --suite "$suite" --max-masks 2 --max-steps 30 --max-cells 600 >"$work/swiftshader.$suite.log" 2>&1 || failed=1
         echo "swiftshader: $suite: $(tail -n 2 "$work/swiftshader.$suite.log" | tr '\n' ' ')"
     done
+    local also="conformance: ${WADI_SUITES:-step}"
     run "SwiftShader (Vulkan)" "Chromium $(dpkg-query --show --showformat='${Version}' chromium-common)" swiftshader "" env || failed=1
     return $failed
 }
@@ -238,14 +222,19 @@ lane_static() {
     cc -std=c99 samples/minimal_host/main.c -o "$work/static/host" $(PKG_CONFIG_PATH=$prefix/lib/pkgconfig pkg-config --cflags --libs wadi) &&
         by_pkg=$("$work/static/host" | host_hash)
     echo "static: smallest host by CMake $by_cmake, by pkg-config ${by_pkg:-MISSING}"
-    tell "x86-64 Linux, one archive" "g++ $(version c++ -dumpfullversion)" "-" "-" "-" "$(cell static "$by_cmake" "$expected")"
+    tell "x86-64 Linux, one archive" "g++ $(version c++ -dumpfullversion)" --host "$by_cmake"
     [[ $by_cmake == "$expected" && $by_pkg == "$by_cmake" ]]
 }
 
 failed=()
 for target in "${targets[@]}"; do
     start=$SECONDS
-    "lane_$target" || failed+=("$target")
+    stamps=()
+    if ! "lane_$target"; then
+        failed+=("$target")
+    elif [ -n "$write" ]; then
+        for stamp in "${stamps[@]}"; do eval "tests/lanes.py passed $target $stamp" || true; done
+    fi
     echo "$target: $((SECONDS - start)) s"
 done
 [ ${#failed[@]} -eq 0 ] || { echo "FAILED: ${failed[*]}"; exit 1; }
