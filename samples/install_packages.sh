@@ -14,8 +14,6 @@ packages_of[docs]="mkdocs mkdocs-material python3-pymdownx doxygen nodejs libjs-
 packages_of[tests]="${packages_of[viewer]} ${packages_of[docs]} libtiff-dev libtinyexr-dev doctest-dev python3-numpy pkg-config vulkan-validationlayers xvfb twm xdotool mono-mcs mono-runtime unzip"
 packages_of[contributing]="clang-format-14 pre-commit" # beside the tests: CONTRIBUTING.md
 # Lanes of tests/platforms, beside the tests.
-packages_of[windows]="g++-mingw-w64-x86-64-posix wine64"
-packages_of[aarch64]="g++-aarch64-linux-gnu qemu-user"
 packages_of[wasm]="emscripten node-acorn chromium"
 packages_of[swiftshader]="chromium-common"
 # What plugin/packaging/release.sh makes environments with and runs other systems' programs in, beside the tests.
@@ -25,7 +23,7 @@ packages_of[packaging]="python3-venv debootstrap qemu-user wine64 reuse"
 packages=()
 for purpose in "$@"; do
     if [[ -z $purpose || -z ${packages_of[$purpose]:-} ]]; then
-        echo "install_packages.sh: no purpose \"$purpose\"; the purposes are: demo viewer import tests contributing docs windows aarch64 wasm swiftshader packaging" >&2
+        echo "install_packages.sh: no purpose \"$purpose\"; the purposes are: demo viewer import tests contributing docs wasm swiftshader packaging" >&2
         exit 2
     fi
     # shellcheck disable=SC2206 # words

@@ -1,17 +1,15 @@
 #!/usr/bin/env bash
-# Builds Wadi for other platforms and runs the golden hashes and the smallest host there; --help says what each lane needs.
+# Builds Wadi for platforms that no release is for and runs the golden hashes and the smallest host there; --help says what each lane needs.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
-all=(windows aarch64 swiftshader static wasm)
+all=(swiftshader static wasm)
 usage() {
     cat <<EOF
 Usage: run.sh [--write] [LANE ...]; all lanes where none is named. Exit status 1 where one fails, 2 for a wrong command line.
   --write      lanes that passed are stamped in tests/stamps.csv and the table of tests/platforms/README.md (tests/lanes.py)
 
 lane         installs                          packages, build  runs
-windows      g++-mingw-w64-x86-64-posix wine64  1.0 GB, 0.8 GB   golden hashes, smallest host, it again WADI_WINE_RUNS (20) times
-aarch64      g++-aarch64-linux-gnu qemu-user    0.3 GB, 0.1 GB   that rows of stages are vectors (NEON), golden hashes, smallest host
 wasm         emscripten node-acorn chromium     1.6 GB, 0.1 GB   in Node.js and in headless Chromium, with threads: golden hashes,
                                                                  smallest host; without: smallest host; controls of browser.py
 swiftshader  chromium-common (for its driver)   0.1 GB, 0.4 GB   conformance, golden hashes, smallest host on Vulkan
@@ -45,23 +43,11 @@ mkdir -p "$work"
 jobs=${WADI_JOBS:-$(nproc)}
 expected=$(cat $here/minimal_host_hash.txt)
 
-# The header libraries in a folder of their own: /usr/include has this machine's C library as well. Once.
-copy_headers() {
-    [ -z "${headers_copied:-}" ] || return 0
-    headers_copied=yes
-    rm -rf "$headers"
-    mkdir -p "$headers/include" "$headers/share/cmake" "$headers/lib/cmake"
-    cp -rLp /usr/include/{nlohmann,doctest,stb,CLI} "$headers/include/"
-    cp -rp /usr/share/cmake/{nlohmann_json,CLI11} "$headers/share/cmake/"
-    cp -rp /usr/lib/cmake/doctest "$headers/lib/cmake/"
-    sed -i "s|\"/usr\"|\"$headers\"|" "$headers"/*/cmake/*/*Targets.cmake
-}
-
 # Stages become vector code, quicker to compile and some percent slower than a release's.
 build() { # FOLDER TARGETS CMAKE_OPTION ...
     local folder=$1 targets=$2
     shift 2
-    copy_headers
+    [ -e "$headers" ] || plugin/packaging/header_libraries.sh "$headers"
     # shellcheck disable=SC2086
     cmake -S . -B "$work/$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_PREFIX_PATH="$headers" -DCMAKE_FIND_ROOT_PATH="$headers" -DWADI_BACKENDS=OFF \
         -DWADI_NARROW_MASKS=largest -DWADI_OPTIMISE_BASE="-O1;-ftree-vectorize;-fvect-cost-model=dynamic" \
@@ -103,28 +89,7 @@ run() { # TARGET COMPILER FOLDER SUFFIX RUNNER ...
 
 version() { "$@" 2>/dev/null | grep -m 1 -oE '[0-9]+\.[0-9]+(\.[0-9]+)*' | head -n 1; }
 
-lane_windows() {
-    samples/install_packages.sh windows && build windows "wadi wadi-minimal-host wadi-test-golden" -DCMAKE_TOOLCHAIN_FILE="$PWD/$here/windows.cmake" "-DWADI_CPU_SETS=base;avx2" || return 1
-    local wine
-    wine=$(command -v wine64 || echo /usr/lib/wine/wine64)
-    export WINEDEBUG=-all WINEPREFIX=$work/wine
-    run "x86-64 Windows" "MinGW-w64 g++ $(version dpkg-query -W -f '${Version}' g++-mingw-w64-x86-64-posix), Wine $(version "$wine" --version)" windows .exe "$wine" || return 1
-    local runs=${WADI_WINE_RUNS:-20}
-    for n in $(seq "$runs"); do # waits that lose a wake-up show as runs that hang
-        timeout 60 "$wine" "$work/windows/bin/wadi-minimal-host.exe" >/dev/null 2>&1 || { echo "windows: run $n of $runs hung or failed"; return 1; }
-    done
-    echo "windows: $runs runs of the smallest host, none hung"
-}
-
-# NEON belongs to the base set of this processor: what base is compiled to is the vector code.
-lane_aarch64() {
-    samples/install_packages.sh aarch64 && build aarch64 "wadi wadi-minimal-host wadi-test-golden" -DCMAKE_TOOLCHAIN_FILE="$PWD/$here/aarch64.cmake" || return 1
-    python3 tests/unit/vectorised.py "$work/aarch64/tools/stagec_of_builder" . aarch64-linux-gnu-g++ || return 1
-    run "aarch64 Linux" "g++ $(version aarch64-linux-gnu-g++ -dumpfullversion), QEMU $(version qemu-aarch64 --version)" aarch64 "" qemu-aarch64 -L /usr/aarch64-linux-gnu
-}
-
-# Files that are compiled as one shadow each other's names, of which this clang, unlike g++, warns (no fault).
-wasm_compile="-fexceptions -msimd128 -Wno-error=shadow"
+wasm_compile="-fexceptions -msimd128"
 # Emscripten programs end with main() (EXIT_RUNTIME); pages wait for threads only beside their own (PROXY_TO_PTHREAD).
 wasm_options=(-fexceptions -msimd128 -sEXIT_RUNTIME)
 wasm_threads=(-pthread -sPROXY_TO_PTHREAD -sPTHREAD_POOL_SIZE=8)
