@@ -60,7 +60,7 @@ ziglang=
 say() { printf '\n== %s (%d s)\n' "$1" "$SECONDS"; }
 
 declare -A zig_target=([linux-x86_64]=x86_64-linux-gnu.2.28 [linux-aarch64]=aarch64-linux-gnu.2.28 [windows-x86_64]=x86_64-windows-gnu
-    [macos-x86_64]=x86_64-macos [macos-arm64]=aarch64-macos)
+    [macos-x86_64]=x86_64-macos.13.0 [macos-arm64]=aarch64-macos.13.0)
 declare -A library_of=([linux-x86_64]=libwadi.so.1 [linux-aarch64]=libwadi.so.1 [windows-x86_64]=libwadi.dll [macos-x86_64]=libwadi.1.dylib [macos-arm64]=libwadi.1.dylib)
 zip_of() { echo "$out/wadi-$version-$1.zip"; }
 
