@@ -36,7 +36,7 @@ __attribute__((visibility("default"))) GDExtensionBool wadi_godot_init(GDExtensi
                                                                        GDExtensionInitialization* initialization) {
     if (!load_api(get_proc_address, library)) return false;
     if (wadi_get_abi_version() != WADI_ABI_VERSION) {
-        log_error("libwadi.so has ABI version %u, this extension was built for %u", wadi_get_abi_version(), WADI_ABI_VERSION);
+        log_error("libwadi has ABI version %u, this extension was built for %u", wadi_get_abi_version(), WADI_ABI_VERSION);
         return false;
     }
     initialization->minimum_initialization_level = GDEXTENSION_INITIALIZATION_SCENE;

@@ -1,10 +1,9 @@
-#define _DEFAULT_SOURCE /* mkdtemp */
-
 #include "level.h"
 
 #include "engine/collections.h"
 #include "engine/engine.h"
 #include "engine/files.h"
+#include "engine/system.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -91,10 +90,9 @@ static wadi_result from_map(const char* path, const wadi_level_overrides* overri
         return result;
     }
     free(global);
-    const char *temporary = getenv("TMPDIR"), *slash = strrchr(path, '/');
+    const char* slash = strrchr(path, '/');
     char folder[1024], file[2048];
-    snprintf(folder, sizeof folder, "%s/wadi-map-XXXXXX", temporary && *temporary ? temporary : "/tmp");
-    if (!mkdtemp(folder)) {
+    if (!system_make_folder(folder, sizeof folder)) {
         snprintf(message, size, "level.file: \"%s\" is in a pack, and no folder \"%s\" can be made to read it from", path,
                  folder);
         return WADI_ERROR_BAD_FILE;

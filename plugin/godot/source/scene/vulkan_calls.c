@@ -1,11 +1,18 @@
 #include "vulkan_calls.h"
 
-#include <dlfcn.h>
+#include "engine/system.h"
+
+/* The loader that the engine has open, on Linux, Windows and macOS: a system keeps one of a name. */
+static SystemFunction first_call(void) {
+    static const char* const loaders[] = {"libvulkan.so.1", "vulkan-1.dll", "libvulkan.1.dylib"};
+    SystemFunction found = NULL;
+    for (size_t n = 0; !found && n < sizeof loaders / sizeof *loaders; ++n)
+        found = system_function(loaders[n], "vkGetInstanceProcAddr");
+    return found;
+}
 
 bool vulkan_load(VulkanCalls* calls, VkInstance instance, VkDevice device) {
-    void* loader = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL); /* the engine's own: the system keeps one of a name */
-    if (!loader) return false;
-    *(void**)&calls->GetInstanceProcAddr = dlsym(loader, "vkGetInstanceProcAddr");
+    calls->GetInstanceProcAddr = (PFN_vkGetInstanceProcAddr)first_call();
     if (!calls->GetInstanceProcAddr) return false;
     calls->GetPhysicalDeviceMemoryProperties =
         (PFN_vkGetPhysicalDeviceMemoryProperties)calls->GetInstanceProcAddr(instance, "vkGetPhysicalDeviceMemoryProperties");
