@@ -17,6 +17,9 @@ if [ "${1:-}" != --on-screen ]; then
     cp "$here/editor_probe.gd" "$work/project/addons/probe/probe.gd"
     printf '[plugin]\nname="Probe"\ndescription=""\nauthor=""\nversion=""\nscript="probe.gd"\n' >"$work/project/addons/probe/plugin.cfg"
     sed -i 's|"res://addons/wadi/plugin.cfg"|&, "res://addons/probe/plugin.cfg"|' "$work/project/project.godot"
+    sed -e '0,/^\[sub_resource/s//[ext_resource type="Script" path="res:\/\/addons\/wadi\/source.gd" id="source"]\n\n&/' \
+        -e 's/^\[node name="Flag"/[node name="Spring" type="Node3D" parent="World"]\nscript = ExtResource("source")\nradius = 2.0\n\n&/' \
+        "$root/samples/godot/beach.tscn" >"$work/project/beach.tscn"
     # Imported ahead: an editor that imports as it starts ends now and then by a fault of a thread of its own (Godot 4.6.3).
     "$here/godot.sh" --headless --path "$work/project" --import >"$work/import.log" 2>&1
     exec "$here/godot.sh" --screen --run "$here/editor.sh" --on-screen "$work"
@@ -68,6 +71,7 @@ godot --editor --single-window --resolution 1280x720 --position 0,0 --rendering-
 editor=$!
 trap 'kill -9 $editor 2>/dev/null' EXIT
 wait_for World
+wait_for "gizmo of a source"
 sleep 2
 click World "pressed 0"
 [ "$(saved)" = 0 ] || fail "the scene was not saved without strokes"

@@ -28,6 +28,10 @@ func _process(_delta: float) -> void:
 		var cell := Vector2i((AT * Vector2(1, -1) / world.get_cell_size() + 0.5 * Vector2(world.get_cells())).floor()) # from the south
 		var texel := world.get_texture(WadiTerrain3D.OUTPUT_PACKED).get_image().get_pixelv(cell)
 		lines.append(_line("Ground", 1000 * Vector2(world.get_heights(Rect2i(cell, Vector2i.ONE))[0], texel.r - texel.g)))
+	var spring := world.get_node_or_null("Spring") if world != null else null
+	for gizmo: EditorNode3DGizmo in spring.get_gizmos() if spring != null else []:
+		if gizmo.get_plugin()._get_gizmo_name() == "WadiSource3D":
+			lines.append("gizmo of a source")
 	_since = _since + 1 if count == _count else 0
 	_count = count
 	if _since >= 4 and lines.has("pressed 1"): # drawn by now

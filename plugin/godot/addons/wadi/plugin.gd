@@ -1,4 +1,4 @@
-## The editor's part: a brush for the sand, the water and the rock of a WadiTerrain3D, and a gizmo of its extent.
+## The editor's part: a brush for the sand, the water and the rock of a WadiTerrain3D, and gizmos of its extent and of sources.
 ##
 ## Select the terrain, press Brush and draw in the 3D view; with Shift the brush takes instead of giving. Strokes go into a WadiStrokes
 ## node under the terrain, one action of undo for each time that the button is held.
@@ -7,9 +7,11 @@ extends EditorPlugin
 
 const Extent := preload("brush_extent.gd")
 const Ray := preload("brush_ray.gd")
+const SourceGizmo := preload("source_gizmo.gd")
 const Strokes := preload("brush_strokes.gd")
 
 var _extent := Extent.new()
+var _source := SourceGizmo.new()
 var _ray := Ray.new()
 var _bar := HBoxContainer.new()
 var _on := Button.new()
@@ -24,6 +26,7 @@ var _before := PackedByteArray()  # the world ahead of the first stroke
 
 func _enter_tree() -> void:
 	add_node_3d_gizmo_plugin(_extent)
+	add_node_3d_gizmo_plugin(_source)
 	_on.text = "Brush"
 	_on.toggle_mode = true
 	_bar.add_child(_on)
@@ -48,6 +51,7 @@ func _set_up(box: SpinBox, what: String, low: float, high: float, value: float) 
 
 
 func _exit_tree() -> void:
+	remove_node_3d_gizmo_plugin(_source)
 	remove_node_3d_gizmo_plugin(_extent)
 	remove_control_from_container(CONTAINER_SPATIAL_EDITOR_MENU, _bar)
 	_bar.queue_free()

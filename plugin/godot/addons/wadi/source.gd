@@ -2,16 +2,23 @@
 ## Pours water or sand into a running [WadiTerrain3D] where it stands, or takes it away.
 ##
 ## Moves freely: a brush at every physics tick of the terrain, so that what is poured is in the command log and in the ledger.
+@icon("icons/WadiSource3D.svg")
 class_name WadiSource3D
 extends Node3D
 
 ## The terrain; empty: the parent.
 @export var terrain: WadiTerrain3D
-@export var layer := WadiTerrain3D.LAYER_WATER
+@export var layer := WadiTerrain3D.LAYER_WATER:
+	set(value):
+		layer = value
+		update_gizmos()
 ## Volume in a second of the world's time [m3/s]; below 0 it takes, no more than there is.
 @export var discharge := 0.5
 ## Of the disc that it pours over [m].
-@export_range(0.01, 100, 0.01, "or_greater", "suffix:m") var radius := 1.0
+@export_range(0.01, 100, 0.01, "or_greater", "suffix:m") var radius := 1.0:
+	set(value):
+		radius = value
+		update_gizmos()
 ## Share of the radius over which the amount falls to 0.
 @export_range(0, 1, 0.01) var softness := 0.5
 
