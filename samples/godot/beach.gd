@@ -1,5 +1,5 @@
 ## A beach: sand castle, rising tide, three sets of waves. The sea must stay out of the courtyard until the last set is over.
-extends Game
+extends "game.gd"
 
 const COURT := Rect2(-1.7, -4.9, 3.4, 3.4)  # x, z
 const KEEP := Vector2(0, -3.2)

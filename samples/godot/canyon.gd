@@ -1,7 +1,7 @@
 ## A canyon with three dams and crates behind the first. The flood must carry enough of them out in the south before it is over.
 ##
 ## Left alone the dams hold back the water for a while each; who digs breaches early and in the right place saves time.
-extends Game
+extends "game.gd"
 
 ## Beyond this z a crate has arrived [m].
 const MOUTH := 52.0

@@ -9,7 +9,6 @@
 ##   --until=SECONDS      with --script-run: leave at this time of the world
 ##   --view=X,Y,Z,D,YAW,PITCH  the camera: target, distance [m], degrees
 ##   --pictures=DIR@T,T   with --script-run and a renderer: DIR/SCENE_T.jpg at these times of the world
-class_name Game
 extends Node3D
 
 enum Verdict { OPEN, WON, LOST }
