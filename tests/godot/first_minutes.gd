@@ -4,7 +4,7 @@ extends Node
 
 const MOVED := 0.02 # depth that makes a cell another [m]
 const CELLS := 50
-const LATER := 1.5 # seconds of the world until the picture
+const LATER := 0.6 # seconds of the world until the picture
 
 var _terrain: WadiTerrain3D
 var _first := PackedFloat32Array()

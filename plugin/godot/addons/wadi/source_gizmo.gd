@@ -2,13 +2,16 @@
 @tool
 extends EditorNode3DGizmoPlugin
 
+const ICON := "res://addons/wadi/icons/WadiSource3D.svg"
 const SEGMENTS := 32
 
 
 func _init() -> void:
 	create_material("water", Color(0.35, 0.75, 0.95))
 	create_material("sand", Color(0.9, 0.72, 0.45))
-	create_icon_material("icon", preload("icons/WadiSource3D.svg"))
+	var symbol := Image.new() # drawn here: a plugin starts ahead of a project's first import
+	symbol.load_svg_from_string(FileAccess.get_file_as_string(ICON), 4)
+	create_icon_material("icon", ImageTexture.create_from_image(symbol))
 
 
 func _get_gizmo_name() -> String:
