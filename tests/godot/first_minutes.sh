@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # How long a Godot user waits for water: an empty project, the add-on's zip (plugin/godot/package.py) unpacked into it, the first import, the
 # lines of the README in the zip, until their water moves on the screen. Usage: first_minutes.sh ZIP [SECONDS], at most so many (120). Keeps
-# build/godot/first_minutes/picture.png. Exit status 1 where it takes longer, nothing moves, or there is no sky; 77 without Godot.
+# build/godot/first_minutes/picture.png. Then it plays the games of the
+# zip by script. Exit status 1 where it takes longer, nothing moves, there is no sky or a game does not play; 77 without Godot.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
@@ -62,3 +63,11 @@ awk -v took="$seconds" -v limit="$limit" 'BEGIN { exit took > limit }' || fail "
 sed -i 's/^\( *\)add_child(terrain).*/\1terrain.running = false\n&/' "$project/main.gd"
 ! run "$work/control.png" 15 || fail "water that stands counts as moving"
 grep -q "the water stands" "$work/run.log" || { tail -n 20 "$work/run.log" >&2; fail "the control failed otherwise"; }
+
+# The games in the zip, by script, a second each.
+sed -i '/^\[autoload\]/,/^FirstMinutes/d' "$project/project.godot"
+for game in beach:120x96 canyon:100x128; do
+    timeout 300 "$here/godot.sh" --headless --path "$project" --fixed-fps 60 "res://demo/${game%:*}.tscn" -- --script-run --backend=cpu --cells="${game#*:}" --until=1 \
+        >"$work/${game%:*}.log" 2>&1 && grep -q "hash [0-9a-f]\{16\}" "$work/${game%:*}.log" || { tail -n 20 "$work/${game%:*}.log" >&2; fail "demo/${game%:*}.tscn does not play"; }
+done
+echo "the demo plays"

@@ -142,8 +142,7 @@ static uint64_t import(Object rendering_device, VkImage vulkan_image, VkFormat v
     const int64_t width = view->nx, height = view->ny;
     const uint64_t image = (uint64_t)(uintptr_t)vulkan_image;
     uint64_t rid = 0;
-    const GDExtensionConstTypePtr arguments[] = {&type_2d, &format, &one_sample, &sampling, &image,
-                                                 &width,   &height, &one,        &one,      &one};
+    const GDExtensionConstTypePtr arguments[] = {&type_2d, &format, &one_sample, &sampling, &image, &width, &height, &one, &one};
     engine_call(ENGINE_RenderingDevice_texture_create_from_extension, rendering_device, arguments, &rid);
     return rid;
 }
