@@ -43,6 +43,7 @@ func _enter_tree() -> void:
 func _set_up(box: SpinBox, what: String, low: float, high: float, value: float) -> void:
 	box.prefix = what
 	box.suffix = "m"
+	box.custom_minimum_size.x = 140 * EditorInterface.get_editor_scale() # for all of its words
 	box.min_value = low
 	box.max_value = high
 	box.step = low
