@@ -5,7 +5,7 @@ samples/godot as demo. The same files give the same bytes.
     package.py --addon FOLDER ... --third-party FILE [--systems SYSTEM ...] [--out FOLDER]
       --addon FOLDER      addons/wadi as build.sh lays it out; several may have a system each
       --third-party FILE  texts of what is linked into the libraries; becomes addons/wadi/THIRD_PARTY.txt
-      --systems SYSTEM    of bin/; all that wadi.gdextension names, of which none may be missing. With fewer the file in the zip names these
+      --systems SYSTEM    as build.sh has them; all of which none may be missing. With fewer wadi.gdextension in the zip names these alone
       --out FOLDER        where the zip is written (build/godot)
 Prints the zip's path and a table of sizes."""
 import argparse
@@ -22,6 +22,9 @@ EPOCH = (1980, 1, 1, 0, 0, 0)
 # A map is read as it is, in exported games too: the engine must not turn it into a texture.
 KEEP = b'[remap]\n\nimporter="keep"\n'
 IMAGES = (".png", ".jpg", ".exr", ".hdr", ".bmp", ".tga", ".webp", ".svg")
+SYSTEMS = ("linux.x86_64", "linux.arm64", "windows.x86_64", "macos.x86_64", "macos.arm64")
+FAT = bytes.fromhex("cafebabe")  # a Mach-O file of several processors begins so
+MAC = "macos"  # one folder, whose files have the programs of several processors
 ENTRY = re.compile(r'^([\w.]+)\.single = .*"(bin/([\w.]+)/[^"]+)"', re.MULTILINE)
 DEMO = ("*.gd", "*.tscn", "*.tres", "*.gdshader")
 
@@ -39,14 +42,13 @@ def version() -> str:
 
 
 def libraries(folders: list[pathlib.Path], systems: list[str]) -> tuple[str, dict[str, bytes]]:
-    """wadi.gdextension for these systems (none: all of them), and the files that it names."""
-    text = (OWN / "wadi.gdextension").read_text()
-    known = dict.fromkeys(folder for _, _, folder in ENTRY.findall(text))
+    """wadi.gdextension for these systems, and the files that it names."""
     for system in systems:
-        if system not in known:
-            end(f'--systems: "{system}" is none of {", ".join(known)}')
-    lines = text.splitlines(keepends=True)
-    text = "".join(line for line in lines if not ENTRY.match(line) or not systems or ENTRY.match(line).group(3) in systems)
+        if system not in SYSTEMS:
+            end(f'--systems: "{system}" is none of {", ".join(SYSTEMS)}')
+    wanted = [MAC if system.startswith(MAC) else system for system in systems]
+    lines = (OWN / "wadi.gdextension").read_text().splitlines(keepends=True)
+    text = "".join(line for line in lines if not ENTRY.match(line) or ENTRY.match(line).group(3) in wanted)
     files = {}
     for _, name, _ in ENTRY.findall(text):
         found = [folder / name for folder in folders if (folder / name).is_file()]
@@ -55,6 +57,8 @@ def libraries(folders: list[pathlib.Path], systems: list[str]) -> tuple[str, dic
         if any(other.read_bytes() != found[0].read_bytes() for other in found):
             end(f"the folders of --addon have different files {name}")
         files[name] = found[0].read_bytes()
+        if name.startswith(f"bin/{MAC}/") and wanted.count(MAC) > 1 and files[name][:4] != FAT:
+            end(f"{found[0]} has the program of one processor alone, and --systems names {wanted.count(MAC)}")
     return text, files
 
 
@@ -105,7 +109,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(usage=__doc__)
     parser.add_argument("--addon", type=pathlib.Path, nargs="+", required=True)
     parser.add_argument("--third-party", type=pathlib.Path, required=True)
-    parser.add_argument("--systems", nargs="+", default=[])
+    parser.add_argument("--systems", nargs="+", default=SYSTEMS)
     parser.add_argument("--out", type=pathlib.Path, default=ROOT / "build/godot")
     options = parser.parse_args()
     if not options.third_party.is_file():

@@ -44,7 +44,7 @@ def main() -> None:
         for name in libraries:
             file = (linux if "linux.x86_64" in name else others) / name
             file.parent.mkdir(parents=True, exist_ok=True)
-            file.write_text(name)
+            file.write_bytes((b"\xca\xfe\xba\xbe" if "macos" in name else b"") + name.encode())
         texts = here / "texts"
         texts.write_text("licences")
         all_of_it = ["--addon", str(linux), str(others), "--third-party", str(texts)]
@@ -79,6 +79,12 @@ def main() -> None:
         ]:
             refused = package(here / "d", *options)
             expect(refused.returncode == 1 and says in refused.stderr, f"refused with \"{says}\": {refused.stderr}")
+        one = others / "bin/macos/libwadi.1.dylib"
+        one.write_text("one processor's")
+        refused = package(here / "d", *all_of_it)
+        expect(refused.returncode == 1 and "of one processor alone" in refused.stderr, f"half of macOS: {refused.stderr}")
+        partial = package(here / "e", *all_of_it, "--systems", "macos.arm64", "windows.x86_64")
+        expect(partial.returncode == 0 and "| `bin/macos` | 2 |" in partial.stdout, f"one processor of macOS where one is asked for: {partial.stderr}")
         (others / libraries[0]).parent.mkdir(parents=True, exist_ok=True)
         (others / libraries[0]).write_text("another")
         refused = package(here / "d", *all_of_it)
