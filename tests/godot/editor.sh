@@ -18,7 +18,7 @@ if [ "${1:-}" != --on-screen ]; then
     printf '[plugin]\nname="Probe"\ndescription=""\nauthor=""\nversion=""\nscript="probe.gd"\n' >"$work/project/addons/probe/plugin.cfg"
     sed -i 's|"res://addons/wadi/plugin.cfg"|&, "res://addons/probe/plugin.cfg"|' "$work/project/project.godot"
     sed -e '0,/^\[sub_resource/s//[ext_resource type="Script" path="res:\/\/addons\/wadi\/source.gd" id="source"]\n\n&/' \
-        -e 's/^\[node name="Flag"/[node name="Spring" type="Node3D" parent="World"]\nscript = ExtResource("source")\nradius = 2.0\n\n&/' \
+        -e 's/^\[node name="Flag"/[node name="Spring" type="Node3D" parent="World"]\ntransform = Transform3D(1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 1.8, 0)\nscript = ExtResource("source")\nradius = 0.8\n\n&/' \
         "$root/samples/godot/beach.tscn" >"$work/project/beach.tscn"
     # Imported ahead: an editor that imports as it starts ends now and then by a fault of a thread of its own (Godot 4.6.3).
     "$here/godot.sh" --headless --path "$work/project" --import >"$work/import.log" 2>&1

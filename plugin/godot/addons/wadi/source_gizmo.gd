@@ -7,7 +7,7 @@ const SEGMENTS := 32
 
 
 func _init() -> void:
-	create_material("water", Color(0.35, 0.75, 0.95), false, true) # on top: sources may stand below the ground
+	create_material("water", Color(0.35, 0.75, 0.95), false, true) # on top of the ground while it is selected
 	create_material("sand", Color(0.9, 0.72, 0.45), false, true)
 	var symbol := Image.new() # drawn here: a plugin starts ahead of a project's first import
 	symbol.load_svg_from_string(FileAccess.get_file_as_string(ICON), 4)
