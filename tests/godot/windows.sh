@@ -4,7 +4,7 @@
 # them. Usage: windows.sh ADDON INTERFACE COMPILER [WORK]
 #   ADDON      addons/wadi as plugin/godot/build.sh lays it out, with bin/windows.x86_64
 #   INTERFACE  the folder with an engine's gdextension_interface.h
-#   COMPILER   a C compiler for Windows: x86_64-w64-mingw32-gcc-posix
+#   COMPILER   a C compiler for Windows: what plugin/packaging/zig.sh makes, or x86_64-w64-mingw32-gcc-posix
 #   WORK       a folder for what is made (build/godot/windows)
 # Exit status 77 and a reason where there is no Wine.
 set -euo pipefail
@@ -16,7 +16,7 @@ work=${4:-$root/build/godot/windows}
 libraries=$addon/bin/windows.x86_64
 fail() { echo "windows.sh: $1" >&2; exit 1; }
 [ -e "$libraries/wadi_godot.dll" ] || fail "there is no \"$libraries/wadi_godot.dll\""
-wine=$(command -v wine64 || ls /usr/lib/wine/wine64 2>/dev/null) || { echo "windows.sh: no Wine (samples/install_packages.sh windows)" >&2; exit 77; }
+wine=$(command -v wine64 || ls /usr/lib/wine/wine64 2>/dev/null) || { echo "windows.sh: no Wine (samples/install_packages.sh packaging)" >&2; exit 77; }
 export WINEDEBUG=-all WINEPREFIX=$work/wine
 rm -rf "$work"/{play,host,native,other,bare}
 mkdir -p "$work"/{play,host,native,other,bare}
