@@ -12,7 +12,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
 [ $# -ge 3 ] || { sed -n '2,9s/^# //p' "$0" >&2; exit 2; }
 addon=$(realpath "$1") interface=$(realpath "$2") compiler=$3
-work=${4:-$root/build/godot/windows}
+work=$(realpath -m "${4:-$root/build/godot/windows}")
 libraries=$addon/bin/windows.x86_64
 fail() { echo "windows.sh: $1" >&2; exit 1; }
 [ -e "$libraries/wadi_godot.dll" ] || fail "there is no \"$libraries/wadi_godot.dll\""
@@ -23,8 +23,8 @@ mkdir -p "$work"/{play,host,native,other,bare}
 
 flags=(-O1 -Wall -Wextra -Werror -I"$interface" -I"$root/plugin/godot/source" -I"$root/plugin/include")
 player=("$here/fake/stand_in.c" "$here/fake/play_extension.c")
-$compiler -std=gnu11 "${flags[@]}" -static-libgcc "${player[@]}" "$here/fake/open_extension_windows.c" -o "$work/player.exe"
-$compiler -std=gnu99 -D__USE_MINGW_ANSI_STDIO=1 -Wno-format -Wno-format-extra-args "${flags[@]}" -static-libgcc "$here/host.c" "$libraries/libwadi.dll" -o "$work/host/host.exe"
+$compiler -std=gnu11 "${flags[@]}" "${player[@]}" "$here/fake/open_extension_windows.c" -o "$work/player.exe"
+$compiler -std=gnu99 -D__USE_MINGW_ANSI_STDIO=1 -Wno-format -Wno-format-extra-args "${flags[@]}" "$here/host.c" "$libraries/libwadi.dll" -o "$work/host/host.exe"
 cp "$libraries/libwadi.dll" "$work/host"
 
 levels=$root/samples/levels

@@ -1,4 +1,3 @@
-#define _WIN32_WINNT 0x0602 /* AddDllDirectory */
 #include "open_extension.h"
 
 #include <stdio.h>
