@@ -83,7 +83,8 @@ build() { # PART
     export CCACHE_BASEDIR=$root CCACHE_NOHASHDIR=1 CCACHE_COMPILERTYPE=clang CCACHE_COMPILERCHECK="string:$(cat "$here/requirements.txt") ${zig_target[$1]}"
     cmake -S . -B "$folder" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_TOOLCHAIN_FILE="$here/zig.cmake" -DWADI_ZIG_TOOLS="$tools" \
         -DWADI_ZIG_TARGET="${zig_target[$1]}" -DCMAKE_PREFIX_PATH="$headers" -DCMAKE_FIND_ROOT_PATH="$headers" -DWADI_CUDA=OFF \
-        -DWADI_TESTS=$tests "-DWADI_CPU_SETS=$sets" -DWADI_OPTIMISE_VECTOR=-O2 -DWADI_THIRD_PARTY="$texts" -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON >"$folder.log" 2>&1 &&
+        -DWADI_TESTS=$tests "-DWADI_CPU_SETS=$sets" -DWADI_OPTIMISE_VECTOR=-O2 -DWADI_THIRD_PARTY="$texts" -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON \
+        -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=16 >"$folder.log" 2>&1 &&
         ninja -C "$folder" $targets >>"$folder.log" 2>&1 &&
         (cd "$folder" && cpack -G ZIP -B "$folder/zip" >>"$folder.log" 2>&1) ||
         { tail -n 20 "$folder.log"; echo "$1: cannot be built, see $folder.log"; return 1; }
