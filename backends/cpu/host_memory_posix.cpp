@@ -6,6 +6,15 @@
 #include <vector>
 
 namespace wadi::cpu {
+namespace {
+
+// The system fills bytes that are unsigned on Linux and not on macOS.
+template <typename Data, typename Byte>
+int ask_resident(int (*ask)(Data, std::size_t, Byte*), void* data, std::size_t bytes, unsigned char* resident) {
+    return ask(data, bytes, reinterpret_cast<Byte*>(resident));
+}
+
+} // namespace
 
 std::uint64_t physical_memory() {
     const long pages = sysconf(_SC_PHYS_PAGES), size = sysconf(_SC_PAGESIZE);
@@ -41,10 +50,16 @@ void unmap_pages(std::byte* data, std::size_t bytes) { munmap(data, bytes); }
 
 std::uint64_t resident_pages(std::byte* data, std::size_t pages, std::size_t page) {
     std::vector<unsigned char> resident(pages);
-    if (mincore(data, pages * page, resident.data()) != 0) return 0;
+    if (ask_resident(mincore, data, pages * page, resident.data()) != 0) return 0;
     return static_cast<std::uint64_t>(std::count_if(resident.begin(), resident.end(), [](unsigned char r) { return r & 1; }));
 }
 
-void forget_pages(std::byte* data, std::size_t bytes) { madvise(data, bytes, MADV_DONTNEED); }
+void forget_pages(std::byte* data, std::size_t bytes) {
+#if defined(__linux__)
+    madvise(data, bytes, MADV_DONTNEED);
+#else // elsewhere that is advice, and what was there may stay: other pages take its place
+    mmap(data, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE | MAP_FIXED, -1, 0);
+#endif
+}
 
 } // namespace wadi::cpu
