@@ -145,7 +145,7 @@ beside_glibc() { # PART
     local from folder=$work/environments/glibc
     from=$(environment bullseye amd64) || return 1
     rm -rf "$folder" && mkdir -p "$folder/lib64" "$folder/lib" && cp -r "$work/$1/unpacked" "$folder/wadi"
-    cp -L "$from"/lib/x86_64-linux-gnu/{libc.so.6,libm.so.6,libdl.so.2,libpthread.so.0,librt.so.1} "$folder/lib/" && cp -L "$from/lib64/ld-linux-x86-64.so.2" "$folder/lib64/"
+    cp -L "$from"/lib/x86_64-linux-gnu/{libc.so.6,libm.so.6,libdl.so.2,libpthread.so.0,librt.so.1} "$folder/lib/" && cp -L "$from"/lib/x86_64-linux-gnu/ld-2.*.so "$folder/lib64/ld-linux-x86-64.so.2"
     same "$1, glibc 2.31 alone" chroot "$folder" /lib64/ld-linux-x86-64.so.2 --library-path /lib:/wadi/plugin/lib /wadi/host
 }
 
