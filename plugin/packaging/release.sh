@@ -175,7 +175,7 @@ try_linux-aarch64() {
     folder=$(environment bullseye arm64) && rm -rf "$folder/wadi" && cp -r "$work/linux-aarch64/unpacked" "$folder/wadi" &&
         golden linux-aarch64 qemu-aarch64 -L "$folder" "$work/linux-aarch64/bin/wadi-test-golden" &&
         same "linux-aarch64, Debian bullseye (QEMU)" qemu-aarch64 -L "$folder" -E LD_LIBRARY_PATH=/wadi/plugin/lib "$folder/wadi/host" &&
-        told linux-aarch64 "release, aarch64 Linux" "QEMU $(qemu-aarch64 --version | grep -oE '[0-9.]+' | head -n 1)" --ran "Debian 11"
+        told linux-aarch64 "release, aarch64 Linux" "QEMU $(qemu-aarch64 --version | sed -n '1s/.*version \([0-9.]*\).*/\1/p')" --ran "Debian 11"
 }
 no_hang() { # COMMAND ...: waits that lose a wake-up show as runs that hang, 1 to 6 of 60 once
     for n in $(seq 20); do timeout 60 "$@" >/dev/null 2>&1 || { echo "run $n of 20 of the smallest host hung or failed"; return 1; }; done
