@@ -45,11 +45,12 @@ task "record $level" "$build/bin/wadi-recorder" "$level" "${options[@]}" --out "
 
 # Three moments, where the viewer was built and a Vulkan device (a software one will do) draws them.
 draw() {
+    rm -rf "$out/viewer" # pictures that are there are not drawn again
     if [[ ${#targets[@]} -eq 1 ]]; then
         echo "left out: see the line \"Viewer\" of the configure report"
     elif [[ -z $("$build/bin/wadi-viewer" --list-gpus) ]]; then
         echo "left out: no Vulkan device"
-    elif samples/levels/gallery.py "$build/bin/wadi-viewer" "$level" --moments 3 --quality low --size 640x360 --coarse 2 --backend cpu --out "$out/viewer"; then
+    elif samples/levels/gallery.py "$build/bin/wadi-viewer" "$level" --only moments --panels "$out/viewer" --quality low --size 640x360 --coarse 2 --backend cpu; then
         pictures="$out/viewer"
     fi
 }

@@ -31,7 +31,7 @@ LANES, STAMPS, PAGE = "tests/lanes.txt", "tests/stamps.csv", "tests/platforms/RE
 GOLDEN, HOST = "tests/golden/hashes.txt", "tests/platforms/minimal_host_hash.txt"
 HERE = "tests/run.sh"  # runs the lanes that "list" names
 BEGIN, END = "<!-- lanes.py writes from here -->", "<!-- to here -->"
-NO_CODE = [f":!*.{kind}" for kind in ("md", "png", "jpg", "svg", "csv")]
+NO_CODE = [f":!*.{kind}" for kind in ("md", "png", "jpg", "webp", "svg", "csv")]
 # results: the git blob of tests/golden/hashes.txt at that commit
 COLUMNS = ["lane", "target", "commit", "day", "results", "tools", "held"]
 

@@ -49,6 +49,11 @@ lane_godot() {
     build ci && tests/godot/run.sh build/ci &&
         stamp=(--target "Godot add-on, x86-64 Linux" --tools "Godot $(tests/godot/godot.sh --version)" --ran "all of tests/godot")
 }
+lane_fine() { # every level's claims on its fine grid
+    [ -e /dev/nvidiactl ] || { echo "no NVIDIA device" && return 77; }
+    build release && tests/levels/fine_grids.py build/release/bin/wadi-recorder &&
+        stamp=(--target "NVIDIA, levels on fine grids" --tools "$(nvidia-smi --query-gpu=name,driver_version --format=csv,noheader | head -n 1)" --ran "every level's claims")
+}
 lane_gpu() {
     [ -e /dev/nvidiactl ] || { echo "no NVIDIA device" && return 77; }
     build release && build/release/bin/conformance test --require cuda,vulkan &&

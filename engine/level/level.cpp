@@ -37,10 +37,19 @@ Status read_root(const Json& json, LevelFiles& files, Level& level, LevelLayers&
     root.string("description", level.description);
     root.number("duration", level.duration, 0, DURATION_MOST);
     root.pair("origin", level.origin, -POSITION_MOST, POSITION_MOST);
+    if (root.find("fine_grid") != nullptr) {
+        std::array<double, 2> cells = {};
+        root.pair("fine_grid", cells, 1, GRID_MOST);
+        overrides.fine_grid = {static_cast<int>(cells[0]), static_cast<int>(cells[1])};
+        if (cells[0] != overrides.fine_grid->first || cells[1] != overrides.fine_grid->second)
+            root.fail("fine_grid", "must be whole numbers");
+    }
     const auto accuracies = accuracy_names();
     int accuracy = -1;
     root.choice("accuracy", accuracies, accuracy);
-    if (accuracy >= 0 && !overrides.accuracy) overrides.accuracy = accuracies[static_cast<std::size_t>(accuracy)];
+    const bool nothing_finer = overrides.accuracy == "fine" && !overrides.fine_grid;
+    if (accuracy >= 0 && (!overrides.accuracy || nothing_finer))
+        overrides.accuracy = accuracies[static_cast<std::size_t>(accuracy)];
     read_settings(root, files, level.settings);
     if (const Json* list = root.find("terrain")) layers.terrain = read_layers(*list, "terrain", LayerTarget::terrain, status);
     if (const Json* list = root.find("sand")) layers.sand = read_layers(*list, "sand", LayerTarget::sand, status);

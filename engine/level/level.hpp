@@ -34,8 +34,9 @@ struct LevelOverrides {
     std::optional<std::string> variant; // one of the level's own, merged in before anything else
     /// Name of an accuracy preset: scales the level's cells, unless `size` is given, and sets the sand substeps per water step.
     std::optional<std::string> accuracy;
-    std::optional<int> active_tiles;         // Settings::active_tiles
-    std::optional<FusedStages> fused_stages; // Settings::fused_stages
+    std::optional<std::pair<int, int>> fine_grid; // cells along x and y of accuracy "fine"; none = what the level says
+    std::optional<int> active_tiles;              // Settings::active_tiles
+    std::optional<FusedStages> fused_stages;      // Settings::fused_stages
     /// Where the maps and series of the level may lie. By default whoever wrote the level chooses among the files beside it
     /// alone.
     FilesFrom files = FilesFrom::below;

@@ -34,6 +34,7 @@ Status check(const LevelOverrides& overrides) {
 std::optional<std::pair<int, int>> chosen_size(const LevelOverrides& overrides, const Grid& grid) {
     if (overrides.size || !overrides.accuracy) return overrides.size;
     const double factor = find_accuracy_preset(*overrides.accuracy)->cells;
+    if (factor == 0) return overrides.fine_grid;
     if (factor == 1) return std::nullopt;
     const auto scaled = [&](int cells) { return std::max(1, static_cast<int>(std::lround(cells * factor))); };
     return std::pair{scaled(grid.nx), scaled(grid.ny)};
@@ -87,7 +88,7 @@ Result<LevelGrid> apply_overrides(const LevelOverrides& overrides, Settings& set
     if (overrides.method && *overrides.method != settings.method.name) choose_method(settings, *overrides.method);
     if (overrides.accuracy) {
         const AccuracyPreset& preset = *find_accuracy_preset(*overrides.accuracy);
-        settings.method.substeps = preset.substeps;
+        if (preset.substeps != 0) settings.method.substeps = preset.substeps;
         if (preset.water_order != 0) settings.method.water_transport_order = preset.water_order;
     }
     level_grid.nx = settings.grid.nx;

@@ -172,7 +172,9 @@ int main_checked(int argc, char** argv) {
     app.add_option("--method", options.method, "method preset instead of the level's");
     app.add_option("--variant", options.variant, "a variant of the level (--list-levels shows them)");
     app.add_option("--accuracy", options.accuracy,
-                   "draft, balanced or accurate: half, all or twice the cells, two sand substeps; accurate: order 2 for water");
+                   "draft, balanced or accurate: half, all or twice the cells, two sand substeps; accurate: order 2 for water; "
+                   "fine: the level's "
+                   "fine_grid");
     app.add_flag("--any-files", options.any_files, "the level may name files outside its folder; for levels that you trust");
     app.add_option("--size", size, "grid NxM instead of the level's; keeps the length in x");
     app.add_option("--dt", options.dt, "water time step [s] instead of the level's")->check(CLI::Range(1e-7, 100.0));

@@ -35,6 +35,7 @@ class Gpu {
     std::string name;
     double nanoseconds_per_tick = 0; // 0 = the queue has no timestamps
     bool graphics = false;
+    bool discrete = false; // a card of its own, that a fine grid runs on
     bool shares_with_cuda = false;
 
     void wait_idle() const { check(vkQueueWaitIdle(queue), "vkQueueWaitIdle"); }

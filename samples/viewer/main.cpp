@@ -46,7 +46,9 @@ int main_checked(int argc, char** argv) {
         ->check(CLI::Range(-1, 64));
     app.add_option("--variant", options.simulation.variant, "one of the level's variants");
     app.add_option("--accuracy", options.simulation.accuracy,
-                   "draft, balanced or accurate: half, all or twice the cells, two sand substeps; accurate: order 2 for water");
+                   "draft, balanced or accurate: half, all or twice the cells, two sand substeps; accurate: order 2 for water; "
+                   "fine: the level's "
+                   "fine_grid; level: as it says. Default: fine on a graphics card, level elsewhere");
     app.add_option("--method", options.simulation.method, "robust or published instead of the level's");
     app.add_option("--grid", grid, "grid NxM instead of the level's; keeps the length in x");
     app.add_option("--size", size, "WIDTHxHEIGHT of the picture or window, default 1280x720");

@@ -91,11 +91,11 @@ void Panel::simulation(Session& session) {
         choice.device = devices[static_cast<std::size_t>(device)].device;
         session.open(session.level_name, choice);
     }
-    static const char* const accuracies[] = {"", "draft", "balanced", "accurate"};
-    const auto named = [](int n) { return n == 0 ? "as the level says" : accuracies[n]; };
+    static const char* const accuracies[] = {"", "level", "draft", "balanced", "accurate", "fine"};
+    const auto named = [](int n) { return n == 0 ? "fine on a graphics card" : n == 1 ? "as the level says" : accuracies[n]; };
     int accuracy = static_cast<int>(std::find(std::begin(accuracies), std::end(accuracies), session.choice().accuracy) -
                                     std::begin(accuracies));
-    if (choose("accuracy", named, 4, accuracy)) {
+    if (choose("accuracy", named, 6, accuracy)) {
         SimulationChoice choice = session.choice();
         choice.accuracy = accuracies[accuracy];
         session.open(session.level_name, choice);

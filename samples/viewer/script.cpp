@@ -80,7 +80,7 @@ void run(const Script::Line& line, Session& session) {
     }
     if (command == "accuracy") {
         SimulationChoice choice = session.choice();
-        choice.accuracy = line.words[0] == "level" ? "" : line.words[0];
+        choice.accuracy = line.words[0];
         session.open(session.level_name, choice);
     }
     if (command == "level") {

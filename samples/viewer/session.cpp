@@ -78,7 +78,7 @@ void Session::take_settings() {
     SimulationChoice choice = choice_;
     choice.text = settings.text();
     choice.variant = FOUND_VARIANT;
-    choice.accuracy.clear();
+    choice.accuracy = "level";
     choice.nx = choice.ny = 0;
     open(level_name, choice);
 }

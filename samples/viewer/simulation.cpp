@@ -105,7 +105,10 @@ Simulation::Simulation(const Gpu& gpu, const SimulationChoice& choice) : gpu_(gp
     overrides.nx = choice.nx;
     overrides.ny = choice.ny;
     overrides.variant = choice.variant.empty() ? nullptr : choice.variant.c_str();
-    overrides.accuracy = choice.accuracy.empty() ? nullptr : choice.accuracy.c_str();
+    const bool fine = choice.accuracy.empty() && choice.backend != "cpu" && gpu.discrete;
+    overrides.accuracy = fine                                                    ? "fine"
+                         : choice.accuracy.empty() || choice.accuracy == "level" ? nullptr
+                                                                                 : choice.accuracy.c_str();
     overrides.method = choice.method.empty() ? nullptr : choice.method.c_str();
     std::filesystem::path folder = std::filesystem::path(choice.level_file).parent_path();
     check(choice.text.empty()

@@ -13,7 +13,7 @@ struct SimulationChoice {
     std::string level_file;
     std::string text;     // not empty: instead of the file's own; maps are still found beside it
     std::string variant;  // empty = the level as it is
-    std::string accuracy; // preset; empty = what the level says
+    std::string accuracy; // preset; "level" = what the level says; empty = "fine" on a graphics card, "level" elsewhere
     std::string method;   // preset; empty = the level's
     std::string backend = "auto";
     int device = -1;

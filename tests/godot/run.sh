@@ -24,7 +24,7 @@ mkdir -p "$project/.godot" "$work/castle"
 cp -r "$here/project/." "$here/scene.txt" "$project/"
 cp -r "$work/addons" "$project/"
 cp -r "$root/samples/levels" "$project/levels"
-find "$project/levels" -name "*.jpg" -delete # pictures of their pages, which would be imported as textures
+find "$project/levels" \( -name "*.jpg" -o -name "*.webp" \) -delete # pictures of their pages, which would be imported as textures
 echo "res://addons/wadi/wadi.gdextension" >"$project/.godot/extension_list.cfg"
 "$here/godot.sh" --headless --path "$project" --import >"$work/import.log" 2>&1 || { tail -n 20 "$work/import.log"; exit 1; }
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs a level as its expected.json says and checks every claim, each with a control that must break it. README.md has the format.
 
-usage: check_claims.py RECORDER LEVEL_FOLDER [--backend cpu] [--full] [--keep DIR]
+usage: check_claims.py RECORDER LEVEL_FOLDER [--backend cpu] [--cells small|level|fine] [--keep DIR]
 """
 import argparse
 import json
@@ -25,7 +25,7 @@ def fail(message):
 def record(recorder, level, name, run, times, backend, folder):
     """Runs one variant and returns its fields at all times."""
     command = [recorder, str(level), "--backend", backend, "--no-frames", "--out", str(folder), "--summary", str(folder / "summary.json")]
-    for key in ("variant", "dt", "method"):
+    for key in ("variant", "dt", "method", "accuracy"):
         if key in run:
             command += [f"--{key}", str(run[key])]
     if "size" in run:
@@ -40,8 +40,8 @@ def record(recorder, level, name, run, times, backend, folder):
     if any(summary["ledger"][what]["drift_quanta"] != 0 for what in ("water", "sand")):
         fail(f"run {name}: the ledger drifts: {summary['ledger']}")
     grid = summary["grid"]
-    print(f"run {name}: {grid['nx']} x {grid['ny']} cells of {grid['dx']:.4g} m, {summary['steps']} steps in "
-          f"{summary['wall_seconds']:.1f} s, hash {summary['hash']}")
+    print(f"run {name}: {grid['nx']} x {grid['ny']} cells of {grid['dx']:.4g} m, {summary['steps']} steps of {grid['dt']:.5g} s in "
+          f"{summary['wall_seconds']:.1f} s, {summary['ms_per_step']:.3g} ms each, hash {summary['hash']}")
     return measures.Run(folder, grid["nx"], grid["ny"], grid["dx"], [float(f"{time:g}") for time in times])
 
 
@@ -74,7 +74,8 @@ def main():
     parser.add_argument("recorder")
     parser.add_argument("level", type=pathlib.Path)
     parser.add_argument("--backend", default="cpu")
-    parser.add_argument("--full", action="store_true", help="the level's own size instead of the small one")
+    parser.add_argument("--cells", choices=("small", "level", "fine"), default="small",
+                        help="those that expected.json names for tests, the level's own, or its fine_grid, for which you want a GPU")
     parser.add_argument("--keep", type=pathlib.Path, help="folder for the fields, kept")
     options = parser.parse_args()
     expected = json.loads((options.level / "expected.json").read_text())
@@ -86,7 +87,7 @@ def main():
         for name, run in expected["runs"].items():
             if set(run) - RUN_KEYS:
                 fail(f"run {name}: unknown keys {sorted(set(run) - RUN_KEYS)}")
-            small = {} if options.full else expected["small"]
+            small = expected["small"] if options.cells == "small" else {"accuracy": options.cells} if options.cells == "fine" else {}
             folder = (options.keep or pathlib.Path(scratch)) / name
             runs[name] = record(options.recorder, options.level, name, {**small, **run}, expected["times"], options.backend, folder)
         results = [check(claim, runs) for claim in expected["claims"]]

@@ -79,7 +79,7 @@ def identifiers(root):
     words = set()
     for path in (p for top in FOLDERS for p in (root / top).rglob("*") if p.is_file()):
         words.add(path.stem)
-        if path.suffix not in {".md", ".png", ".jpg", ".csv", ".svg", ".npy", ".mp4"}:
+        if path.suffix not in {".md", ".png", ".jpg", ".webp", ".csv", ".svg", ".npy", ".mp4"}:
             words.update(re.findall(r"[A-Za-z_]\w*", path.read_text(encoding="utf-8", errors="ignore")))
     for path in root.iterdir():
         if path.is_file() and path.suffix in {".txt", ".json"}:

@@ -377,6 +377,17 @@ TEST_CASE("level: an accuracy preset scales cells and time step and sets the sub
           2);
     overrides.size = {12, 8};
     CHECK(must(parse(R"("accuracy": "draft")", "", overrides)).settings.grid.nx == 12);
+    overrides = {};
+    overrides.accuracy = "fine";
+    const Level fine = must(parse(R"("fine_grid": [48, 36], "method": {"substeps": 5})", "", overrides));
+    CHECK(fine.settings.grid.nx == 48);
+    CHECK(fine.settings.grid.ny == 36);
+    CHECK(fine.settings.dt / fine.settings.grid.dx == doctest::Approx(plain.settings.dt / plain.settings.grid.dx));
+    CHECK(fine.settings.method.substeps == 5);
+    CHECK(must(parse("", "", overrides)).settings.grid.nx == plain.settings.grid.nx); // names no finer one
+    CHECK(must(parse(R"("accuracy": "draft")", "", overrides)).settings.grid.nx == draft.settings.grid.nx); // nor does this one
+    CHECK(must(parse(R"("fine_grid": [48, 36])")).settings.grid.nx == plain.settings.grid.nx);
+    CHECK(parse(R"("fine_grid": [48, 36.5])").status().message.find("fine_grid: must be whole numbers") != std::string::npos);
     overrides.accuracy = "exact";
     const auto refused = parse("", "", overrides);
     REQUIRE_FALSE(refused);

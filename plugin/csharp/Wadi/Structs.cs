@@ -163,7 +163,8 @@ namespace Wadi
         public IntPtr Variant;
         /// <summary>
         /// "draft", "balanced" or "accurate": half, all or twice the level's cells along x and y (nx, ny win), and two sand steps per
-        /// water step. "accurate" has second order for water, too. NULL = what the level says
+        /// water step. "accurate" has second order for water, too. "fine": the cells of the level's fine_grid, for GPUs. NULL, or
+        /// "fine" where it has none = what the level says
         /// </summary>
         public IntPtr Accuracy;
         public ActiveTiles ActiveTiles;
@@ -192,9 +193,9 @@ namespace Wadi
     public struct RawAccuracyPreset
     {
         public IntPtr Name;
-        /// <summary>factor on the level's cells along x and y</summary>
+        /// <summary>factor on the level's cells along x and y; 0 = the level's fine_grid</summary>
         public double Cells;
-        /// <summary>sand steps per water step</summary>
+        /// <summary>sand steps per water step; 0 = the level's</summary>
         public int Substeps;
         /// <summary>method.water_transport_order; 0 = the level's</summary>
         public int WaterOrder;

@@ -31,7 +31,7 @@ LINK = re.compile(r"(!?\[[^\]]*\]\()([^)\s]+)(\))")
 INCLUDE = re.compile(r"<!-- include: (\S+) -->")
 LANGUAGES = {".c": "c", ".h": "c", ".cpp": "cpp", ".hpp": "cpp", ".cu": "cuda", ".py": "python", ".sh": "bash", ".json": "json", ".glsl": "glsl",
              ".stage": "glsl", ".fused": "glsl", ".gd": "gdscript", ".cs": "csharp", ".cmake": "cmake"}
-PICTURES = {".jpg", ".png", ".svg", ".mp4"}
+PICTURES = {".jpg", ".png", ".svg", ".webp", ".mp4"}
 
 formulas = []  # (tex, display) of the page that is being made
 api = {}       # name -> address in api/

@@ -239,7 +239,8 @@ typedef struct wadi_level_overrides {
     const char* method;        /* "robust" or "published" */
     const char* variant;       /* one of the level's variants; NULL = the level as it is. Not for terrain maps */
     const char* accuracy;      /* "draft", "balanced" or "accurate": half, all or twice the level's cells along x and y (nx, ny win), and
-                                  two sand steps per water step. "accurate" has second order for water, too. NULL = what the level says */
+                                  two sand steps per water step. "accurate" has second order for water, too. "fine": the cells of the
+                                  level's fine_grid, for GPUs. NULL, or "fine" where it has none = what the level says */
     wadi_active_tiles active_tiles;
     wadi_choice fused_stages;  /* ON = several stages in one pass wherever the effects allow, OFF = one by one. Every bit stays */
     wadi_bool any_files;       /* 1 = maps and series may lie anywhere that the process can read; 0 = in the level's folder and below it
@@ -253,8 +254,8 @@ static inline wadi_level_overrides wadi_default_level_overrides(void) {
 /** An accuracy preset. */
 typedef struct wadi_accuracy_preset {
     const char* name;
-    double cells;        /* factor on the level's cells along x and y */
-    int32_t substeps;    /* sand steps per water step */
+    double cells;        /* factor on the level's cells along x and y; 0 = the level's fine_grid */
+    int32_t substeps;    /* sand steps per water step; 0 = the level's */
     int32_t water_order; /* method.water_transport_order; 0 = the level's */
 } wadi_accuracy_preset;
 /** Lists the accuracy presets by rising accuracy. */

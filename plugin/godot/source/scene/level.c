@@ -20,7 +20,7 @@ static const Property properties[] = {
     {FIELD(String, file), HINT_FILE, "*.json,*.png,*.r16,*.npy,*.asc", changed},
     {FIELD(String, variant), HINT_NONE, NULL, changed},
     {FIELD(String, method), HINT_ENUM_SUGGESTION, "robust,published", changed},
-    {FIELD(String, accuracy), HINT_ENUM_SUGGESTION, "draft,balanced,accurate", changed},
+    {FIELD(String, accuracy), HINT_ENUM_SUGGESTION, "draft,balanced,accurate,fine", changed},
     {FIELD(Vector2i, cells), HINT_NONE, NULL, changed},
     {FIELD(String, settings), HINT_MULTILINE, NULL, changed},
     {FIELD(PackedFloat32Array, terrain), HINT_NONE, NULL, changed},
