@@ -17,12 +17,7 @@ template=$("$here/godot.sh" --run sh -c 'command -v godot-template-release || ls
 cp -r "$root/samples/godot/." "$here/export.gd" "$work/project"
 find "$work/project/.godot" -mindepth 1 ! -name extension_list.cfg -delete # imports anew
 sed -i "s|^\[preset.0.options\]|&\ncustom_template/release=\"$template\"|" "$work/project/export_presets.cfg"
-cat >"$work/project/export.tscn" <<END
-[gd_scene format=3]
-[ext_resource type="Script" path="res://export.gd" id="script"]
-[node name="Export" type="Node"]
-script = ExtResource("script")
-END
+"$here/script_scene.sh" Node export.gd >"$work/project/export.tscn"
 
 scenes="beach canyon export"
 arguments() {

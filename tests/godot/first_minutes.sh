@@ -24,12 +24,7 @@ FirstMinutes="*res://first_minutes.gd"
 [editor_plugins]
 enabled=PackedStringArray("res://addons/wadi/plugin.cfg")
 END
-cat >"$project/main.tscn" <<END
-[gd_scene format=3]
-[ext_resource type="Script" path="res://main.gd" id="main"]
-[node name="Main" type="Node3D"]
-script = ExtResource("main")
-END
+"$here/script_scene.sh" Node3D main.gd >"$project/main.tscn"
 cp "$here/first_minutes.gd" "$project"
 
 begin=$(date +%s.%N)

@@ -42,6 +42,36 @@ static void edit(wadi_world_id world, const char* line) {
     check(wadi_world_edit(world, &edit, 1), line);
 }
 
+/* "source INDEX LAYER X Z RADIUS DISCHARGE", "tap INDEX LAYER X Z DISCHARGE" (the cell there) and "close INDEX": whether it is
+ * one. */
+static int source(wadi_world_id world, const char* line) {
+    static wadi_source sources[4];
+    static wadi_sample discharges[4];
+    unsigned n;
+    int layer;
+    double x, z;
+    wadi_source made = wadi_default_source();
+    wadi_sample discharge = {0, 0};
+    if (sscanf(line, "close %u", &n) == 1 && n < 4) {
+        made = sources[n];
+    } else {
+        if (sscanf(line, "tap %u %d %lf %lf %lf", &n, &layer, &x, &z, &discharge.value) == 5)
+            made.shape = WADI_SOURCE_POINT;
+        else if (sscanf(line, "source %u %d %lf %lf %lf %lf", &n, &layer, &x, &z, &made.radius, &discharge.value) != 6)
+            return 0;
+        made.sand = layer == WADI_LAYER_SAND;
+        made.center[0] = middle_x + x;
+        made.center[1] = middle_y - z;
+        made.discharge_count = 1;
+        if (n >= 4) return 0;
+    }
+    sources[n] = made;
+    discharges[n] = discharge;
+    sources[n].discharge = &discharges[n];
+    check(wadi_world_set_source(world, n, &sources[n]), line);
+    return 1;
+}
+
 static void run(wadi_world_id world, FILE* scene) {
     char line[256], name[64];
     while (fgets(line, sizeof line, scene)) {
@@ -55,7 +85,7 @@ static void run(wadi_world_id world, FILE* scene) {
             printf("%016" PRIx64 "\n", hash);
         } else if (sscanf(line, "material %63s %lf", name, &value) == 2) {
             check(wadi_world_set_material(world, name, value), line);
-        } else {
+        } else if (!source(world, line)) {
             edit(world, line);
         }
     }

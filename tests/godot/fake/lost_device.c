@@ -146,6 +146,10 @@ wadi_result wadi_world_set_command_log(wadi_world_id world, wadi_bool on) {
     (void)on;
     return answer(world);
 }
+wadi_result wadi_world_set_source(wadi_world_id world, uint32_t index, const wadi_source* source) {
+    (void)index, (void)source;
+    return answer(world);
+}
 
 /* ---- The engine ---- */
 
@@ -322,6 +326,9 @@ static const Action actions[] = {
     {"save_state", terrain_save_state},
     {"load_state", terrain_load_state},
     {"begin_save", terrain_begin_save},
+    {"open_source", terrain_open_source},
+    {"set_source", terrain_set_source},
+    {"close_source", terrain_close_source},
     {"set_command_log", terrain_set_command_log},
     {"get_commands", terrain_get_commands},
     {"play_commands", terrain_play_commands},
@@ -333,9 +340,15 @@ static const Action actions[] = {
 static int run(const Action* action, const char* signal, int at) {
     static const struct { int64_t number[4]; } argument = {{WADI_OUTPUT_NORMAL}};
     static const Rect2i region = {0, 0, 2, 2};
-    const GDExtensionConstTypePtr arguments[] = {action->call == terrain_get_heights || action->call == terrain_get_bounds
-                                                     ? (const void*)&region
-                                                     : (const void*)&argument};
+    static const int64_t source = 0, layer = WADI_LAYER_WATER;
+    static const Vector3 middle = {0, 0, 0};
+    static const double one = 1;
+    const bool of_region = action->call == terrain_get_heights || action->call == terrain_get_bounds;
+    const GDExtensionConstTypePtr usual[] = {of_region ? (const void*)&region : (const void*)&argument},
+                                  of_source[] = {&source, &layer, &middle, &one, &one};
+    const GDExtensionConstTypePtr* arguments = usual;
+    if (action->call == terrain_set_source || action->call == terrain_close_source) arguments = of_source;
+    if (action->call == terrain_open_source) arguments = of_source + 1;
     uint64_t result[4] = {0};
     node = calloc(1, sizeof *node);
     node->object = &object;
@@ -347,6 +360,7 @@ static int run(const Action* action, const char* signal, int at) {
     lost_at = 0;
     heard_of = NULL;
     if (action->call != terrain_start) world_start(node);
+    node->sources[0] = (OpenSource){.open = true, .radius = 1, .discharge = 1};
     calls = 0;
     lost_at = at;
     heard_of = signal;
@@ -377,6 +391,8 @@ int main(void) {
         }
         run(&actions[1], "time_dropped", 0);
         run(&actions[1], "world_changed", 0);
+        for (size_t n = 0; n < sizeof actions / sizeof *actions; ++n)
+            if (actions[n].call == terrain_load_state) run(&actions[n], "state_loaded", 0);
         printf("who hears it %s: %d times\n", listener_names[listener], heard - told);
         expect(heard - told > 30, "losses are told");
     }

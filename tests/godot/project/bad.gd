@@ -29,6 +29,9 @@ func before_start() -> void:
 	refused(terrain.start(), ["level"], "start without a level")
 	refused(terrain.step(1), ["step", "start()"], "step")
 	refused(terrain.brush(WadiTerrain3D.LAYER_WATER, Vector3.ZERO, 1, 1), ["brush"], "brush")
+	refused(terrain.open_source(WadiTerrain3D.LAYER_WATER, Vector3.ZERO, 1, 1), ["open_source"], "open_source")
+	refused(terrain.set_source(0, WadiTerrain3D.LAYER_WATER, Vector3.ZERO, 1, 1), ["set_source"], "set_source")
+	refused(terrain.close_source(0), ["close_source"], "close_source")
 	refused(terrain.set_material("friction", 1), ["set_material"], "set_material")
 	refused(terrain.load_state(PackedByteArray([1])), ["load_state"], "load_state")
 	refused(terrain.sync_textures(), ["sync_textures"], "sync_textures")
@@ -86,6 +89,15 @@ func calls() -> void:
 	refused(terrain.brush_line(water, Vector3.ZERO, Vector3(NAN, 0, 0), 1, 1), ["brush_line", "x1"], "NaN end")
 	refused(terrain.push(Vector3.ZERO, 1, Vector3(NAN, 0, 0)), ["push", "velocity"], "NaN velocity")
 	refused(terrain.push(Vector3.ZERO, 1, Vector3.ZERO, 2), ["strength"], "strength 2")
+	check.same(terrain.open_source(WadiTerrain3D.LAYER_TERRAIN, Vector3.ZERO, 1, 1), -1, "a source of rock")
+	refused(1, ["open_source", "layer", "0"], "a source of rock")
+	for bad: Array in [[Vector3(NAN, 0, 0), 1.0, 1.0, "center[0]"], [Vector3(0, 0, INF), 1.0, 1.0, "center[1]"], [Vector3.ZERO, 0.0, 1.0, "radius"], [Vector3.ZERO, NAN, 1.0, "radius"], [Vector3.ZERO, 1.0, NAN, "discharge"], [Vector3.ZERO, 1.0, 2e9, "discharge"]]:
+		check.same(terrain.open_source(water, bad[0], bad[1], bad[2]), -1, "source %s" % [bad])
+		refused(1, ["open_source", bad[3]], "source %s" % [bad])
+	for index: int in [-1, 32, 1 << 40]:
+		refused(terrain.set_source(index, water, Vector3.ZERO, 1, 1), ["set_source", "index", str(index)], "set_source %d" % index)
+		refused(terrain.close_source(index), ["close_source", "index", str(index)], "close_source %d" % index)
+	refused(terrain.close_source(0), ["close_source", "index", "0"], "close_source of none")
 	refused(terrain.step(-1), ["step", "-1"], "step -1")
 	refused(terrain.set_material("frction", 1), ["frction"], "unknown material")
 	refused(terrain.set_material("friction", NAN), ["friction"], "NaN friction")
@@ -108,6 +120,13 @@ func calls() -> void:
 	terrain.max_steps_per_frame = 8
 	check.same(terrain.get_hash(), hash, "hash after all that")
 	check.same(terrain.step(3), OK, "steps after all that")
+	for n in 32:
+		check.same(terrain.open_source(water, Vector3.ZERO, 1, 0.01), n, "source %d" % n)
+	check.same(terrain.open_source(water, Vector3.ZERO, 1, 0.01), -1, "source 32")
+	refused(1, ["open_source", "32"], "source 32")
+	terrain.close_source(7)
+	check.same(terrain.open_source(water, Vector3.ZERO, 1, 0.01), 7, "the one that was closed")
+	check.same(terrain.step(3), OK, "steps with 32 sources")
 
 # Nodes that go while the world runs.
 func endings() -> void:

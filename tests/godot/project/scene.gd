@@ -33,6 +33,8 @@ static func terrain(tree: SceneTree, of: WadiLevel, backend := "cpu") -> WadiTer
 # Does what scene.txt says, up to its end; the hashes after each "step" line. `factor` multiplies the amounts of brushes.
 static func run(terrain: WadiTerrain3D, factor := 1.0) -> PackedStringArray:
 	var hashes := PackedStringArray()
+	var opened: Dictionary = terrain.get_meta("opened", {}) # numbers of what is open by those of the scene
+	terrain.set_meta("opened", opened)
 	for line in FileAccess.get_file_as_string("res://scene.txt").split("\n", false):
 		var words := line.split(" ")
 		var v := PackedFloat64Array()
@@ -48,6 +50,16 @@ static func run(terrain: WadiTerrain3D, factor := 1.0) -> PackedStringArray:
 				terrain.brush_line(int(words[1]), Vector3(v[2], 0, v[3]), Vector3(v[4], 0, v[5]), v[6], v[7] * factor, v[8])
 			"push":
 				terrain.push(Vector3(v[1], 0, v[2]), v[3], Vector3(v[4], 0, v[5]), v[6])
+			"source", "tap":
+				var radius := v[5] if words[0] == "source" else 0.01 # holds no middle of a cell
+				var rest := [int(words[2]), Vector3(v[3], 0, v[4]), radius, v[-1]]
+				if not opened.has(words[1]):
+					opened[words[1]] = terrain.callv("open_source", rest)
+				else:
+					terrain.callv("set_source", [opened[words[1]]] + rest)
+			"close":
+				terrain.close_source(opened[words[1]])
+				opened.erase(words[1])
 			"material":
 				terrain.set_material(words[1], v[2])
 	return hashes

@@ -1,4 +1,5 @@
 #include "engine/collections.h"
+#include "engine/engine.h"
 #include "results.h"
 #include "terrain.h"
 
@@ -42,6 +43,7 @@ void terrain_save_state(void* self, const GDExtensionConstTypePtr* arguments, vo
 void terrain_load_state(void* self, const GDExtensionConstTypePtr* arguments, void* result) {
     Terrain* terrain = self;
     *(int64_t*)result = read_bytes(terrain, "load_state", wadi_world_load, arguments[0]);
+    if (*(int64_t*)result == ERROR_OK) emit(terrain->object, "state_loaded", NULL, 0);
 }
 
 void terrain_begin_save(void* self, const GDExtensionConstTypePtr* arguments, void* result) {

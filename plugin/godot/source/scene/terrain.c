@@ -46,6 +46,9 @@ static const Method methods[] = {
     {"Error brush_line(Layer layer, Vector3 from, Vector3 to, float radius, float amount, float softness = 0.5)",
      terrain_brush_line},
     {"Error push(Vector3 position, float radius, Vector3 velocity, float strength = 1)", terrain_push},
+    {"int open_source(Layer layer, Vector3 position, float radius, float discharge)", terrain_open_source},
+    {"Error set_source(int index, Layer layer, Vector3 position, float radius, float discharge)", terrain_set_source},
+    {"Error close_source(int index)", terrain_close_source},
     {"Error set_material(String name, float value)", terrain_set_material},
     {"Dictionary get_material()", terrain_get_material},
     {"int query(PackedVector2Array points)", terrain_query},
@@ -66,6 +69,7 @@ static const Method methods[] = {
 
 static const char* const signals[] = {
     "void started()",
+    "void state_loaded()",
     "void time_dropped(float seconds)",
     "void device_lost(String message)",
     "void world_changed(Rect2i[] regions)",

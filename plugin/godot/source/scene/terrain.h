@@ -11,6 +11,14 @@ typedef struct Float Float;
 
 /* Of 65536 points each: 1024 bodies with the most samples. A world answers eight at a time, and the scene may ask, too. */
 enum { MOST_BODY_QUERIES = 4, MOST_QUERY_POINTS = 65536 };
+/* Of a world, its level's among them (wadi_world_set_source). */
+enum { MOST_SOURCES = 32 };
+
+/* A source as the scene set it last, in the world's axes. */
+typedef struct OpenSource {
+    bool open, sand;
+    double x, y, radius, discharge;
+} OpenSource;
 
 typedef struct Terrain {
     Object object;
@@ -36,6 +44,7 @@ typedef struct Terrain {
     uint64_t body_tickets[MOST_BODY_QUERIES]; /* of the queries for all bodies */
     uint32_t body_queries;                    /* how many are under way */
     Float* floats;                            /* a list */
+    OpenSource sources[MOST_SOURCES];         /* by their numbers; none of the level */
     char message[512];
 } Terrain;
 
@@ -75,6 +84,11 @@ void terrain_brush_line(void* self, const GDExtensionConstTypePtr* arguments, vo
 void terrain_push(void* self, const GDExtensionConstTypePtr* arguments, void* result);
 void terrain_set_material(void* self, const GDExtensionConstTypePtr* arguments, void* result);
 void terrain_get_material(void* self, const GDExtensionConstTypePtr* arguments, void* result);
+
+/* sources.c */
+void terrain_open_source(void* self, const GDExtensionConstTypePtr* arguments, void* result);
+void terrain_set_source(void* self, const GDExtensionConstTypePtr* arguments, void* result);
+void terrain_close_source(void* self, const GDExtensionConstTypePtr* arguments, void* result);
 
 /* reads.c */
 void terrain_is_started(void* self, const GDExtensionConstTypePtr* arguments, void* result);

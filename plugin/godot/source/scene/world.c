@@ -98,6 +98,7 @@ int64_t world_start(Terrain* terrain) {
     terrain->started = true;
     terrain->lost = false;
     terrain->nanoseconds_left = 0;
+    memset(terrain->sources, 0, sizeof terrain->sources);
     terrain->told_step = terrain->dirty_step = 0;
     if (result == WADI_OK) result = set_pace(terrain);
     if (result == WADI_OK) result = world_set_outputs(terrain);
