@@ -1,18 +1,20 @@
 #!/usr/bin/env bash
-# Builds the site and checks it. Usage: build.sh [--out FOLDER] [--library libwadi.so] [--update]
-# The site goes to build/site. Programs on pages are linked with the library: that of build/release, ci or demo unless one is named. --update
-# writes anew what a page shows of a program's output. Exit status 77 where a tool is missing.
+# Builds the site and checks it. Usage: build.sh [--out FOLDER] [--library libwadi.so] [--godot COMMAND] [--update]
+# The site goes to build/site. Programs on pages are linked with the library: that of build/release, ci or demo unless one is named. Code
+# for Godot is compiled by COMMAND (godot). --update writes anew what a page shows of a program's output. Exit status 77 where a tool is
+# missing.
 set -euo pipefail
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 here=$root/plugin/docs
-out=$root/build/site library= update=()
+out=$root/build/site library= more=()
 while [[ $# -gt 0 ]]; do
     case $1 in
     --out) out=$(realpath -m "$2") && shift 2 ;;
     --library) library=$2 && shift 2 ;;
-    --update) update=(--update) && shift ;;
-    *) echo "build.sh: no option \"$1\"; there are --out, --library and --update" >&2 && exit 2 ;;
+    --godot) more+=("--godot=$2") && shift 2 ;;
+    --update) more+=(--update) && shift ;;
+    *) echo "build.sh: no option \"$1\"; there are --out, --library, --godot and --update" >&2 && exit 2 ;;
     esac
 done
 for tool in mkdocs doxygen node; do
@@ -63,6 +65,6 @@ mv "$work/site" "$out"
 status=0
 "$here/figures/draw.py" --check || status=1
 "$here/site/check_site.py" "$out" index.html api/wadi_8h.html plugin/docs/hello.html engine/NUMERICS.html || status=1
-"$here/site/check_code.py" ${library:+"$library"} "${update[@]}" || status=1
+"$here/site/check_code.py" ${library:+"$library"} "${more[@]}" || status=1
 [[ $status -ne 0 ]] || echo "the site is in $out: open index.html"
 exit $status

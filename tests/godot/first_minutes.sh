@@ -31,7 +31,7 @@ begin=$(date +%s.%N)
 since() { awk -v now="${1:-$(date +%s.%N)}" -v begin="$begin" 'BEGIN { printf "%.1f", now - begin }'; }
 cp "$zip" "$work/download.zip"
 python3 -m zipfile -e "$work/download.zip" "$project"
-awk '/^```gdscript/ { inside = 1; next } /^```/ { inside = 0 } inside' "$project/addons/wadi/README.md" >"$project/main.gd"
+awk '/^```gdscript/ { inside = 1; next } inside && /^```/ { exit } inside' "$project/addons/wadi/README.md" >"$project/main.gd"
 [ -s "$project/main.gd" ] || fail "the README has no lines of GDScript"
 echo "unpacked after $(since) s"
 # Without a screen, which the editor of a user has: there the run that first finds an extension crashes as it ends (godotengine/godot 123511).

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Starts Godot 4.4 or later with the given arguments: the command in WADI_GODOT, or the installed "godot", or the one of a folder with
 # Debian sid that this script makes once (WADI_GODOT_FOLDER, /opt/godot-sid; 1.7 GB, needs root and debootstrap). Exit status 77 and a
-# reason where there is none. With --screen ahead the engine gets an X server of its own and a software Vulkan driver; with --run COMMAND
-# behind that another command is started where the engine would be: an exported game.
+# reason where there is none. With --installed ahead no folder is made. With --screen ahead the engine gets an X server of its own and a
+# software Vulkan driver; with --run COMMAND behind that another command is started where the engine would be: an exported game.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 folder=${WADI_GODOT_FOLDER:-/opt/godot-sid}
@@ -38,6 +38,11 @@ mount_folder() {
     [ -e "$folder$root/plugin" ] || mount --bind "$root" "$folder$root"
 }
 
+installed=
+if [ "${1:-}" = --installed ]; then
+    shift
+    installed=yes
+fi
 screen=()
 if [ "${1:-}" = --screen ]; then
     shift
@@ -54,6 +59,7 @@ if [ -n "${WADI_GODOT:-}" ]; then
     exec "${screen[@]}" ${command:-$WADI_GODOT} "$@"
 fi
 if new_enough godot; then exec "${screen[@]}" "${command:-godot}" "$@"; fi
+[ -e "$folder/.ready" ] || [ -z "$installed" ] || no_godot "\"godot\" is not installed, and there is no $folder"
 [ -e "$folder/.ready" ] || make_folder
 mount_folder || no_godot "$folder cannot be mounted"
 [ ${#screen[@]} -eq 0 ] || export VK_DRIVER_FILES=/usr/share/vulkan/icd.d/lvp_icd.json

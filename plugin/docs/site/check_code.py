@@ -1,10 +1,12 @@
 #!/usr/bin/env python3
 """What pages show as code is code: every block compiles, parses or names what is there.
-Usage: check_code.py [LIBRARY] [--update]     LIBRARY: libwadi.so to link whole programs with and to run hello with; without it they are compiled.
---update writes into hello.md what hello prints. Exit status 1 names every breach.
+Usage: check_code.py [LIBRARY] [--update] [--godot=COMMAND]
+LIBRARY: libwadi.so of a build, to link whole programs with and to run hello with; without it they are compiled. The build's stagec and the
+add-on for Godot need it. --update writes into hello.md what hello prints. COMMAND starts Godot (godot). Exit status 1 names every breach.
 
 Nothing is left out by a list. A block's language says what is done with it, and one without a language is the shell's (README.md beside this
 folder). What is not looked into has a language of its own: LEFT."""
+import contextlib
 import json
 import pathlib
 import re
@@ -15,12 +17,14 @@ import sys
 import tempfile
 import textwrap
 
+import godot_blocks
+
 HERE = pathlib.Path(__file__).resolve().parent
 ROOT = HERE.parents[2]
 FOLDERS = ("engine", "backends", "shaders", "plugin", "samples", "tests")
 INCLUDES = [f"-I{ROOT / 'plugin/include'}"]
 WARNINGS = ["-Wall", "-Wextra", "-Werror", "-Wno-unused"]
-LEFT = {"text", "glsl", "gdscript", "bat"}  # prose in columns; excerpts of stages; scripts of an engine that is not installed; Windows (release.sh runs them)
+LEFT = {"text", "bat"}  # prose in columns; Windows (release.sh runs them)
 # Tools of others, whose options are theirs.
 TOOLS = {"cmake", "ctest", "cpack", "cc", "cp", "mcs", "git", "godot", "python3", "pre-commit", "mkdir", "echo", "sed", "cat", "cd", "unzip"}
 FENCE = re.compile(r"^( *)```(\w*)\s*$")
@@ -60,7 +64,7 @@ def blocks(page):
 
 def run(*command):
     done = subprocess.run([str(part) for part in command], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
-    return None if done.returncode == 0 else next((line for line in done.stdout.splitlines() if "error" in line), done.stdout.strip()[-300:])
+    return None if done.returncode == 0 else next((line for line in done.stdout.splitlines() if "error" in line.lower()), done.stdout.strip()[-300:])
 
 
 def compiled(text, language, name, work, library):
@@ -89,6 +93,36 @@ def csharp(text, name, work):
         if error:
             return error
     return run("mcs", "-langversion:7", "-unsafe", f"-r:{dll}", f"-out:{path.with_suffix('.exe')}", path)
+
+
+# The stage language
+
+class Stages:
+    """`missing` says why they cannot be compiled, or is empty."""
+
+    def __init__(self, library, work):
+        self.tool = library.parents[1] / "tools/stagec" if library else None
+        self.glslang = shutil.which("glslangValidator") or shutil.which("glslang")
+        self.folder = work / "shaders"
+        self.missing = ""
+        if not self.tool or not self.tool.is_file():
+            self.missing = "no stagec of a build beside the library: stages are not compiled"
+        elif not self.glslang:
+            self.missing = "no glslangValidator: stages are not compiled"
+        if self.missing or self.folder.exists():
+            return
+        (self.folder / "stages/page").mkdir(parents=True)
+        for name in ("physics", "language", "step_params.h", "effects.h"):
+            (self.folder / name).symlink_to(ROOT / "shaders" / name)
+
+    def breach(self, text):
+        stage, out = self.folder / "stages/page/page.stage", self.folder.parent / "page.comp"
+        if "STAGE(" not in text:
+            before = '#include "../../physics/flux.glsl"\n' + (HERE / "fragment.stage").read_text(encoding="utf-8")
+            text = before.replace("    // the block\n", textwrap.indent(text, "    "))
+        stage.write_text(text, encoding="utf-8")
+        return (run(self.tool, "glsl", self.folder / "effects.h", stage, out)
+                or run(self.glslang, "-V", "--quiet", "--target-env", "vulkan1.1", "-S", "comp", f"-I{ROOT / 'shaders'}", out, "-o", out.with_suffix(".spv")))
 
 
 # Shell
@@ -178,14 +212,16 @@ def shell(text, repository):
                 command.append(word)
 
 
-def check(root, work, library, said):
-    found, counts = [], {}
+def check(root, work, library, godot, said):
+    found, counts, of_godot = [], {}, []
     repository = Repository(root)
     vulkan = run("cc", *INCLUDES, "-fsyntax-only", "-x", "c", "-include", "vulkan/vulkan_core.h", "/dev/null") is None
     if not vulkan:
         said.append("no headers of Vulkan: C is not compiled but for whole programs")
     if not shutil.which("mcs"):
         said.append("no Mono compiler: C# is not compiled")
+    stages = Stages(library, work)
+    said += [missing for missing in (stages.missing, godot.missing) if missing]
     for page in pages(root):
         name = page.relative_to(root).as_posix()
         for line, language, text in blocks(page):
@@ -197,6 +233,10 @@ def check(root, work, library, said):
                     breach = compiled(text, language, where, work, library)
             elif language in ("cs", "csharp"):
                 breach = csharp(text, where, work) if shutil.which("mcs") else None
+            elif language == "glsl":
+                breach = None if stages.missing else stages.breach(text)
+            elif language in godot_blocks.SUFFIX:
+                of_godot.append((where, language, text))
             elif language in ("", "sh", "bash", "console"):
                 if language == "console":  # commands behind "$ ", and what they print
                     text = "\n".join(row[2:] if row.startswith("$ ") else "" for row in text.splitlines()) + "\n"
@@ -208,9 +248,11 @@ def check(root, work, library, said):
                 except ValueError as error:
                     breach = str(error)
             elif language not in LEFT:
-                breach = f"no rule for the language {language}; there are c, cpp, cs, sh, console, json and, not looked into, {', '.join(sorted(LEFT))}"
+                breach = f"no rule for the language {language}; there are c, cpp, cs, glsl, gdscript, gdshader, sh, console, json and, not looked into, {', '.join(sorted(LEFT))}"
             if breach:
                 found.append(f"{where}: {breach}")
+    if not godot.missing:
+        found += godot.breaches(of_godot)
     return found, counts
 
 
@@ -239,9 +281,16 @@ def hello(work, library, update, said):
 CONTROLS = (  # (block, what must be said of it)
     ("```c\nwadi_world_updat(world, 1, NULL);\n```\n", "wadi_world_updat"),
     ("```c\n#include <wadi/wadi.h>\nint main(void) { return wadi_get_abi_version(1); }\n```\n", "wadi_get_abi_version"),
-    ("```c\nint helper(int n) { return m; }\n```\n", "undeclared"),
+    ("```c\nint helper(int n) { return n + unknown; }\n```\n", "unknown"),
     ("```cpp\nauto world2 = wadi_default_world();\n```\n", "wadi_default_world"),
     ("```cs\nWorld.FromNowhere(1);\n```\n", "FromNowhere"),
+    ("```glsl\nfloat flux = upwind_flux(sand_velocity_x[c], sand_hight[c], sand, P.ks);\nsand_flux_x[c] = flux;\n```\n", "sand_hight"),
+    ("```glsl\nEACH_AXIS {\n    float low_x = sand;\n}\n```\n", "has an axis in its name"),
+    ("```glsl\nSTAGE(Other)\nEXTENT(CELLS)\nINN(0, float, depth)\nKERNEL {\n}\nEND_STAGE\n```\n", "INN is no word"),
+    ("```gdscript\nterrain.brushes(1)\n```\n", "brushes"),
+    ("```gdscript\nextends Node3D\nfunc _ready() -> void:\n    terrain.step(1)\n```\n", '"terrain" not declared'),
+    ("```gdshader\nALBEDO = vec3(surfaces_at(at).froth);\n```\n", "froth"),
+    ("```gdshader\nshader_type spatial;\nvoid fragment() {\n    ALBEDO = surfaces_of(UV);\n}\n```\n", "surfaces_of"),
     ("```\nsamples/gone.sh --now\n```\n", "no script samples/gone.sh"),
     ("```\nsamples/there.sh --gone\n```\n", "knows no --gone"),
     ("```sh\nif true; then\n```\n", "syntax error"),
@@ -252,10 +301,12 @@ CONTROLS = (  # (block, what must be said of it)
     ("```json\n{ 1 }\n```\n", "property name"),
     ("```fortran\nend\n```\n", "no rule for the language fortran"),
 )
-GOOD = "```c\nfor (int n = 0; n < 2; ++n) wadi_world_step(world, 1);\n```\n\n```\nsamples/there.sh --there    # a comment; isn't it\n```\n```text\nanything: (at all\n```\n- an item\n\n      more of it\n"
+GOOD = "```gdscript\nterrain.step(1)\n```\n```gdscript\nfunc more() -> int:\n    return terrain.get_step()\n```\n```gdshader\nALBEDO = vec3(surfaces_at(at).foam);\n```\n" \
+       "```glsl\nsand_flux_x[c] = sand;\n```\n" \
+       "```c\nfor (int n = 0; n < 2; ++n) wadi_world_step(world, 1);\n```\n\n```\nsamples/there.sh --there    # a comment; isn't it\n```\n```text\nanything: (at all\n```\n- an item\n\n      more of it\n"
 
 
-def control(work):
+def control(work, library, godot):
     """Planted breaches must be seen, and nothing else."""
     with tempfile.TemporaryDirectory() as folder:
         root = pathlib.Path(folder).resolve()
@@ -263,11 +314,12 @@ def control(work):
         (root / "CMakeLists.txt").write_text("")
         (root / "samples/there.sh").write_text("case $1 in --there) ;; esac\n")
         (root / "samples/there.sh").chmod(0o755)
-        wanted = [sign for block, sign in CONTROLS if not block.startswith("```cs") or shutil.which("mcs")]
+        there = {"cs": shutil.which("mcs"), "glsl": not Stages(library, work).missing, "gdscript": not godot.missing, "gdshader": not godot.missing}
+        wanted = [sign for block, sign in CONTROLS if there.get(re.match(r"\W*(\w*)", block)[1], True)]
         for n, (block, _) in enumerate(CONTROLS):
             (root / f"samples/{n}.md").write_text("# Page\n\n" + block)
         (root / "README.md").write_text(GOOD)
-        seen, _ = check(root, work, None, [])
+        seen, _ = check(root, work, library, godot, [])
     missing = [sign for sign in wanted if sum(sign in breach for breach in seen) != 1]
     return missing + ([] if len(seen) == len(wanted) else seen)
 
@@ -276,13 +328,14 @@ def main():
     given = [a for a in sys.argv[1:] if not a.startswith("--")]
     library = pathlib.Path(given[0]).resolve() if given else None
     said = []
-    with tempfile.TemporaryDirectory() as folder:
+    godot = godot_blocks.Godot(next((a.partition("=")[2] for a in sys.argv[1:] if a.startswith("--godot=")), ""), library)
+    with contextlib.closing(godot), tempfile.TemporaryDirectory() as folder:
         work = pathlib.Path(folder)
-        wrong = control(work)
+        wrong = control(work, library, godot)
         if wrong:
             print("the checker does not see what is planted, or sees what is none:", *wrong, sep="\n")
             return 1
-        found, counts = check(ROOT, work, library, said)
+        found, counts = check(ROOT, work, library, godot, said)
         found += hello(work, library, "--update" in sys.argv, said)
     print(*dict.fromkeys(said), *found, f"blocks of code: {', '.join(f'{n} {what}' for what, n in sorted(counts.items()))}; {len(found)} breaches", sep="\n")
     return 1 if found or sum(counts.values()) < 30 else 0
