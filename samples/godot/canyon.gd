@@ -6,10 +6,17 @@ extends "game.gd"
 ## Beyond this z a crate has arrived [m].
 const MOUTH := 52.0
 
-## Crates that must arrive.
-@export var wanted := 3
+## What a player can choose from: [name, one line on it, crates that must arrive].
+const FLOODS := [
+	["Three crates", "Three of six crates must leave the canyon.", 3],
+	["Five crates", "Five of six crates must leave the canyon.", 5],
+]
 
 var _arrived := 0
+
+
+func _choices() -> Array:
+	return FLOODS
 
 
 func _begin() -> void:
@@ -24,14 +31,24 @@ func _judge(time: float) -> void:
 		if crate.position.z > MOUTH and not crate.freeze:
 			crate.freeze = true
 			_arrived += 1
-	if _arrived >= wanted:
+			sounds.play(&"bell")
+			screens.announce("A crate is out: %d of %d" % [_arrived, FLOODS[choice][2]])
+	if _arrived >= FLOODS[choice][2]:
 		verdict = Verdict.WON
 	elif time >= duration:
 		verdict = Verdict.LOST
 
 
 func _score() -> String:
-	return "%d of %d crates have arrived   bucket %d" % [_arrived, wanted, bucket]
+	return "%d of %d crates are out" % [_arrived, FLOODS[choice][2]]
+
+
+func _points() -> int:
+	return roundi(20 * (duration - world.get_time()))
+
+
+func _medal() -> Score.Medal:
+	return Score.Medal.GOLD if _points() > 240 else Score.Medal.SILVER if _points() > 120 else Score.Medal.BRONZE
 
 
 ## A breach in each dam, begun before the water is there.

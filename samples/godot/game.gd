@@ -1,21 +1,15 @@
-## What both scenes have in common: the world, a camera, a hand with a tool, the words on the screen, and play from a script.
-##
-## Arguments after `--`:
-##   --script-run         play `_strokes` instead of a hand, then print verdict and hash and leave; with --fixed-fps 60 ahead of `--` as
-##                        fast as the machine can, and with the same hash each time
-##   --idle               with --script-run: nobody plays
-##   --cells=NXxNY        another grid than the scene's
-##   --backend=NAME       cpu, vulkan, cuda or auto
-##   --until=SECONDS      with --script-run: leave at this time of the world
-##   --view=X,Y,Z,D,YAW,PITCH  the camera: target, distance [m], degrees
-##   --pictures=DIR@T,T   with --script-run and a renderer: DIR/SCENE_T.jpg at these times of the world
+## What both games have in common: a start screen, the world, a bucket and a tool, what one hears and reads, an end and its score.
+## Arguments and play by a script: replay.gd.
 extends Node3D
+
+const Replay := preload("replay.gd")
+const Score := preload("score.gd")
 
 enum Verdict { OPEN, WON, LOST }
 
 ## Seconds of the world that a game lasts.
 @export var duration := 52.0
-## Words at the top.
+## What to do, on the start screen.
 @export_multiline var task := ""
 ## Sand that a scoop digs or builds at the middle of the tool, and water that is built with it: dry sand flows apart [m].
 @export var scoop := 0.08
@@ -25,81 +19,115 @@ enum Verdict { OPEN, WON, LOST }
 ## Scoops in the bucket at the start, and the most that it holds: what is built was dug before.
 @export var bucket := 20
 @export var bucket_size := 160
+## Speed of water that one hears as a splash where it comes [m/s].
+@export var fast := 1.8
+## The other scene.
+@export_file("*.tscn") var other := ""
 
 @onready var world: WadiTerrain3D = $World
 @onready var camera := $Camera
-@onready var words: Label = $Words
+@onready var sounds := $Sounds
+@onready var spray := $Spray
+@onready var tools := $Tools
+@onready var screens := $Screens
 
+static var chosen := {}  # scene: which of its choices
+static var straight := false  # into the game, without the start screen
+
+var choice := 0
 var verdict := Verdict.OPEN
-var scripted := false
-var idle := false
+var playing := false
+var replay: Replay
 
 var _waited := 0.0
-var _next_scoop := 0.0
-var _until := INF
-var _pictures := PackedStringArray()  # times still to come
-var _picture_folder := ""
 var _answers := {}  # ticket of a query: what takes the answer
+var _ears := PackedVector2Array()
+var _heard := PackedFloat32Array()  # speeds there
+var _next_look := 0.0
 
 
 func _ready() -> void:
-	for argument in OS.get_cmdline_user_args():
-		_take(argument)
-	if scripted:
+	get_tree().auto_accept_quit = false
+	choice = chosen.get(name, 0)
+	replay = Replay.new(self)
+	if replay.on:
 		camera.set_process(false)
 		camera.set_physics_process(false)
 		camera.set_process_unhandled_input(false)
 		world.wait_for_device = true
-		world.time_dropped.connect(func(seconds: float) -> void: _leave("%f s dropped" % seconds, 1))
+		world.time_dropped.connect(func(seconds: float) -> void: leave("%f s dropped" % seconds, 1))
 	else:
 		world.time_dropped.connect(func(seconds: float) -> void: $Late.text = "%.0f ms late" % (1000 * seconds))
 	if RenderingServer.get_current_rendering_method() == "gl_compatibility":
 		$Sun.shadow_enabled = false  # there a light with shadows is added behind tone mapping, and the sum is too bright
-	world.device_lost.connect(func(message: String) -> void: _leave("device lost: " + message, 1))
+	world.device_lost.connect(func(message: String) -> void: leave("device lost: " + message, 1))
+	camera.pointed.connect(_on_hand_pointed)
+	screens.chosen.connect(_choose)
+	screens.play.connect(play)
+	screens.again.connect(restart)
+	screens.other.connect(func() -> void: get_tree().change_scene_to_file(other))
 	# The scenes keep `running` off, so that arguments count before the world is made.
-	if world.start() != OK:
-		_leave(world.get_last_message(), 2)
+	if not _make_world():
 		return
-	world.running = true
-	if scripted:
+	if replay.on:
 		# Nothing is drawn until a picture is due.
 		RenderingServer.render_loop_enabled = false
-	camera.used.connect(_on_hand_used)
+		play()
+	elif straight:
+		straight = false
+		play()
+	else:
+		screens.show_start(name, task, _choices(), choice)
+
+
+func _make_world() -> bool:
+	if world.is_started():
+		world.stop()
+	if world.start() != OK:
+		leave(world.get_last_message(), 2)
+		return false
+	_ears.clear()
+	for j in 6:
+		for i in 8:
+			_ears.append(world.get_extent() * (Vector2(i + 0.5, j + 0.5) / Vector2(8, 6) - Vector2(0.5, 0.5)))
+	_heard.resize(_ears.size())
 	_begin()
+	return true
 
 
-func _take(argument: String) -> void:
-	var value := argument.get_slice("=", 1)
-	match argument.get_slice("=", 0):
-		"--script-run":
-			scripted = true
-		"--idle":
-			idle = true
-		"--cells":
-			world.level = world.level.duplicate()
-			world.level.cells = Vector2i(value.get_slice("x", 0).to_int(), value.get_slice("x", 1).to_int())
-		"--backend":
-			world.backend = value
-		"--until":
-			_until = value.to_float()
-		"--view":
-			camera.look(value.split_floats(","))
-		"--pictures":
-			_picture_folder = value.get_slice("@", 0)
-			_pictures = value.get_slice("@", 1).split(",")
-		_:
-			_leave("unknown argument " + argument, 2)
+func _choose(which: int) -> void:
+	if which != choice:
+		choice = which
+		chosen[name] = which
+		_make_world()
 
 
-func _leave(message: String, code: int) -> void:
+func play() -> void:
+	playing = true
+	world.running = true
+
+
+## The same game from its beginning.
+func restart() -> void:
+	straight = true
+	get_tree().reload_current_scene()
+
+
+func leave(message: String, code: int) -> void:
 	if code != 0:
 		push_error(message)
 	print(message)
 	set_physics_process(false)
+	await sounds.end()
 	get_tree().quit(code)
 
 
-## The game's own: once, when the world stands.
+## The game's own: what a player can choose from, each [name, one line on it].
+func _choices() -> Array:
+	return []
+
+
+## The game's own: whenever a world was made.
 func _begin() -> void:
 	pass
 
@@ -119,77 +147,97 @@ func _score() -> String:
 	return ""
 
 
+## The game's own: points of a game that was won, and its medal.
+func _points() -> int:
+	return 0
+
+
+func _medal() -> Score.Medal:
+	return Score.Medal.NONE
+
+
 func _physics_process(_delta: float) -> void:
-	if scripted:
-		_advance_script()
+	if replay.on:
+		replay.advance()
 	for ticket: int in _answers.keys():
 		var answer: Array = world.get_query(ticket)
 		if not answer.is_empty():
 			_answers[ticket].call(answer)
 			_answers.erase(ticket)
-	if verdict == Verdict.OPEN:
+	if playing and verdict == Verdict.OPEN:
 		_judge(world.get_time())
-	words.text = "%s\n%4.1f of %.0f s   %s%s" % [task, world.get_time(), duration, _score(), _verdict_words()]
-	var over := verdict != Verdict.OPEN or world.get_time() >= _until
-	if scripted and over and _answers.is_empty() and _pictures.is_empty():
-		_leave("%s %s %s\nverdict %s at %.2f s, %s\nhash %s after %d steps" % [name, world.get_cells(), "idle" if idle else "played",
+		if verdict != Verdict.OPEN:
+			_end()
+	if playing and not replay.on and world.get_time() >= _next_look:
+		_next_look = world.get_time() + 0.2
+		ask(_ears, _hear)
+	screens.say(world.get_time(), duration, _score(), bucket / float(bucket_size))
+	if replay.on and replay.is_done() and _answers.is_empty():
+		leave("%s %s %s\nverdict %s at %.2f s, %s\nhash %s after %d steps" % [name, world.get_cells(), "idle" if replay.idle else "played",
 				Verdict.find_key(verdict), world.get_time(), _score(), world.get_hash(), world.get_step()], 0)
 
 
-## With `wait_for_device` and --fixed-fps a physics step is the same share of the world's time in every run, on any machine.
-func _advance_script() -> void:
-	world.sync_textures()
-	if not idle:
-		_play_strokes(world.get_time())
-	if not _pictures.is_empty() and world.get_time() >= _pictures[0].to_float():
-		_take_picture(_pictures[0])
-
-
-func _play_strokes(time: float) -> void:
-	if time + 1e-6 < _next_scoop:
+func _end() -> void:
+	var won := verdict == Verdict.WON
+	sounds.play(&"win" if won else &"lose")
+	if replay.on:
 		return
-	_next_scoop += every
-	for stroke: Array in _strokes():
-		if time >= stroke[0] - 1e-6 and time < stroke[1] - 1e-6:
-			_use(stroke[2], stroke[3] + stroke[4] * (time - stroke[0]))
+	var medal := _medal() if won else Score.Medal.NONE
+	var record := won and Score.keep(name, _choices()[choice][0], _points(), medal)
+	screens.show_end(won, medal, _points() if won else 0, Score.best(name, _choices()[choice][0]), record, _score())
 
 
-func _on_hand_used(tool: int, place: Vector3, delta: float) -> void:
-	_waited += delta
-	if _waited >= every:
-		_waited = 0
-		var local := world.to_local(place)
-		_use(tool, Vector2(local.x, local.z))
+## The water's voice: as loud as it is fast, and a splash where it comes to a place.
+func _hear(answer: Array) -> void:
+	var sum := 0.0
+	var came := 0
+	for n in answer.size():
+		var speed: float = answer[n].velocity.length() if answer[n].water_depth > 0.05 else 0.0
+		sum += minf(speed / fast, 2)
+		if speed > fast and _heard[n] < 0.5 * fast:
+			came += 1
+		_heard[n] = speed
+	sounds.set_surf(sum / answer.size())
+	if came > 0:
+		sounds.play(&"splash", minf(4 * came - 14, 0))
+
+
+func _on_hand_pointed(tool: int, place: Vector3, working: bool, delta: float) -> void:
+	var local := world.to_local(place)
+	if playing and verdict == Verdict.OPEN:
+		tools.point(Vector2(local.x, local.z), tool, working, bucket * scoop_volume(), bucket_size * scoop_volume())
+		_waited += delta
+		if working and _waited >= every:
+			_waited = 0
+			use(tool, Vector2(local.x, local.z))
+	else:
+		tools.hide()
+
+
+## Sand of a scoop [m3]: the brush gives all within half its radius and falls to nothing by 3 s^2 - 2 s^3.
+func scoop_volume() -> float:
+	return 0.575 * PI * camera.radius ** 2 * scoop
 
 
 ## One scoop at x, z in the world's space.
-func _use(tool: int, place: Vector2) -> void:
+func use(tool: int, place: Vector2) -> void:
 	var at := Vector3(place.x, 0, place.y)
 	if verdict != Verdict.OPEN:
 		return
 	if tool == camera.DIG and bucket < bucket_size:
 		bucket += 1
 		world.brush(WadiTerrain3D.LAYER_SAND, at, camera.radius, -scoop)
+		sounds.play(&"dig")
 	elif tool == camera.BUILD and bucket > 0:
 		bucket -= 1
 		world.brush(WadiTerrain3D.LAYER_SAND, at, camera.radius, scoop)
 		world.brush(WadiTerrain3D.LAYER_WATER, at, camera.radius, damp)
-
-
-func _take_picture(time: String) -> void:
-	set_physics_process(false)
-	world.running = false
-	RenderingServer.render_loop_enabled = true
-	for n in 4:
-		await get_tree().process_frame
-	await RenderingServer.frame_post_draw
-	var file := "%s/%s_%s.jpg" % [_picture_folder, name.to_lower(), time]
-	if get_viewport().get_texture().get_image().save_jpg(file, 0.88) != OK:
-		push_error("cannot write " + file)
-	RenderingServer.render_loop_enabled = false
-	world.running = true
-	_pictures.remove_at(0)
-	set_physics_process(true)
+		sounds.play(&"pour")
+	else:
+		return
+	if replay.on:
+		tools.point(place, tool, true, bucket * scoop_volume(), bucket_size * scoop_volume())
+	spray.burst(tools.tip(), camera.radius, false)
 
 
 ## Asks the world about points (x, z in its space); `then` gets the answers some frames later.
@@ -199,22 +247,20 @@ func ask(points: PackedVector2Array, then: Callable) -> void:
 		_answers[ticket] = then
 
 
-func _verdict_words() -> String:
-	match verdict:
-		Verdict.WON:
-			return "\nWon!  R plays again, N goes to the other scene."
-		Verdict.LOST:
-			return "\nLost.  R plays again, N goes to the other scene."
-	return ""
-
-
 func _unhandled_key_input(event: InputEvent) -> void:
-	if scripted or not event.is_pressed():
+	if replay.on or not event.is_pressed():
 		return
 	match (event as InputEventKey).physical_keycode:
 		KEY_R:
-			get_tree().reload_current_scene()
+			restart()
 		KEY_N:
-			get_tree().change_scene_to_file("res://canyon.tscn" if name == "Beach" else "res://beach.tscn")
+			get_tree().change_scene_to_file(other)
+		KEY_M:
+			sounds.switch()
 		KEY_ESCAPE:
-			get_tree().quit()
+			leave("", 0)
+
+
+func _notification(what: int) -> void:
+	if what == NOTIFICATION_WM_CLOSE_REQUEST:
+		leave("", 0)

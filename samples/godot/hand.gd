@@ -1,8 +1,8 @@
 ## The player's camera and hand. Right button or arrows: orbit; wheel: distance; WASD: move; left button: the tool, 1 and 2 choose it.
 extends Camera3D
 
-## Emitted while the tool works: where, in the world's space, and the seconds since the last time.
-signal used(tool: int, place: Vector3, delta: float)
+## Where the mouse points at the ground, with the tool, whether it works, and the seconds since the last time.
+signal pointed(tool: int, place: Vector3, working: bool, delta: float)
 
 enum { DIG, BUILD }
 
@@ -10,26 +10,14 @@ enum { DIG, BUILD }
 @export var distance := 20.0
 @export var yaw := 0.0
 @export var pitch := 35.0
-## Radius of the tool [m], drawn as a ring on the ground.
+## Radius of the tool [m].
 @export var radius := 0.5
 
 var tool := DIG
 var _working := false
-var _ring := MeshInstance3D.new()
 
 
 func _ready() -> void:
-	var torus := TorusMesh.new()
-	torus.inner_radius = 0.94 * radius
-	torus.outer_radius = radius
-	_ring.mesh = torus
-	var material := StandardMaterial3D.new()
-	material.shading_mode = BaseMaterial3D.SHADING_MODE_UNSHADED
-	_ring.material_override = material
-	_ring.cast_shadow = GeometryInstance3D.SHADOW_CASTING_SETTING_OFF
-	_ring.top_level = true
-	_ring.visible = false
-	add_child(_ring)
 	_place()
 
 
@@ -61,13 +49,8 @@ func _physics_process(delta: float) -> void:
 	var mouse := get_viewport().get_mouse_position()
 	var ray := PhysicsRayQueryParameters3D.create(project_ray_origin(mouse), project_position(mouse, far))
 	var hit := get_world_3d().direct_space_state.intersect_ray(ray)
-	_ring.visible = not hit.is_empty()
-	if hit.is_empty():
-		return
-	_ring.global_position = hit.position
-	(_ring.material_override as StandardMaterial3D).albedo_color = Color(0.9, 0.3, 0.2) if tool == DIG else Color(0.3, 0.8, 0.3)
-	if _working:
-		used.emit(tool, hit.position, delta)
+	if not hit.is_empty():
+		pointed.emit(tool, hit.position, _working, delta)
 
 
 func _unhandled_input(event: InputEvent) -> void:

@@ -32,12 +32,24 @@ check meshes --unsewn --still
 check strokes
 check collision --fixed
 
+games() { # [CONTROL]: start and end screens, score, tools and sounds
+    WADI_CONTROL=${1:-} godot --fixed-fps 60 --script "$here/play_games.gd" -- --backend=cpu
+}
+games || fail "games"
+if grep -E "ERROR|leaked" "$log"; then fail "games: errors or what is left over"; fi
+tail -n 1 "$log"
+for control in unkept untold silent hidden; do
+    if games $control; then fail "games $control: passed, and should not"; fi
+    grep -q FAILED "$log" || fail "games $control: ended without a finding"
+done
+
 play() { # SCENE VERDICT ARGUMENTS...
     local scene=$1 verdict=$2
     shift 2
     godot --fixed-fps 60 "res://$scene.tscn" -- --script-run --backend=cpu "$@" || fail "$scene $*: ended with an error"
     grep -q "^verdict $verdict " "$log" || fail "$scene $*: the verdict should be $verdict"
     hash=$(grep "^hash" "$log") || fail "$scene $*: no hash"
+    if grep -E "ERROR|leaked" "$log"; then fail "$scene $*: errors or what is left over"; fi
     grep -E "^verdict|^hash" "$log"
 }
 twice() { # SCENE CELLS: played twice alike and won; left alone another hash, and lost
