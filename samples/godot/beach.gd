@@ -100,7 +100,12 @@ const STROKES := [
 	[32.5, 34.0, 1, Vector2(2.2, -1.35), Vector2(0, -2)],
 	[34.0, 37.7, 1, Vector2(-2.3, -1.35), Vector2(1.15, 0)],
 ]
+## Where there is an open gate: it first.
+const GATE_STROKES := [
+	[1.0, 9.0, 0, Vector2(-6, -9.5), Vector2(1.2, 0)],
+	[9.0, 10.5, 1, Vector2(-0.3, -1.4), Vector2(0.4, 0)],
+]
 
 
 func _strokes() -> Array:
-	return STROKES
+	return STROKES if CASTLES[choice].gone.is_empty() else GATE_STROKES + STROKES.slice(1)

@@ -9,7 +9,7 @@ const MOUTH := 52.0
 ## What a player can choose from: [name, one line on it, crates that must arrive].
 const FLOODS := [
 	["Three crates", "Three of six crates must leave the canyon.", 3],
-	["Five crates", "Five of six crates must leave the canyon.", 5],
+	["Four crates", "Four of six crates must leave the canyon.", 4],
 ]
 
 var _arrived := 0

@@ -21,6 +21,8 @@ enum Verdict { OPEN, WON, LOST }
 @export var bucket_size := 160
 ## Speed of water that one hears as a splash where it comes [m/s].
 @export var fast := 1.8
+## Yaw and pitch of the camera on the start screen [degrees].
+@export var first_look := Vector2(-20, 26)
 ## The other scene.
 @export_file("*.tscn") var other := ""
 
@@ -39,6 +41,7 @@ var verdict := Verdict.OPEN
 var playing := false
 var replay: Replay
 
+var _own_look := Vector2.ZERO
 var _waited := 0.0
 var _answers := {}  # ticket of a query: what takes the answer
 var _ears := PackedVector2Array()
@@ -63,7 +66,7 @@ func _ready() -> void:
 	world.device_lost.connect(func(message: String) -> void: leave("device lost: " + message, 1))
 	camera.pointed.connect(_on_hand_pointed)
 	screens.chosen.connect(_choose)
-	screens.play.connect(play)
+	screens.play.connect(_on_play)
 	screens.again.connect(restart)
 	screens.other.connect(func() -> void: get_tree().change_scene_to_file(other))
 	# The scenes keep `running` off, so that arguments count before the world is made.
@@ -77,6 +80,8 @@ func _ready() -> void:
 		straight = false
 		play()
 	else:
+		_own_look = Vector2(camera.yaw, camera.pitch)
+		_look_at(first_look, -0.2 * camera.distance)  # beside the words
 		screens.show_start(name, task, _choices(), choice)
 
 
@@ -100,6 +105,18 @@ func _choose(which: int) -> void:
 		choice = which
 		chosen[name] = which
 		_make_world()
+
+
+func _on_play() -> void:
+	var swing := create_tween().set_trans(Tween.TRANS_SINE)
+	swing.tween_method(func(share: float) -> void: _look_at(first_look.lerp(_own_look, share), camera.h_offset * (1 - share)), 0.0, 1.0, 2.0)
+	play()
+
+
+func _look_at(look: Vector2, aside: float) -> void:
+	camera.yaw = look.x
+	camera.pitch = look.y
+	camera.h_offset = aside
 
 
 func play() -> void:

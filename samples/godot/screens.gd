@@ -35,6 +35,7 @@ func show_start(game: String, task: String, choices: Array, choice: int) -> void
 	%Choices.select(choice)
 	%About.text = _words[choice]
 	$Start.show()
+	$Hud.hide()
 	%Play.grab_focus()
 
 
@@ -45,6 +46,7 @@ func _on_chosen(which: int) -> void:
 
 func _on_play() -> void:
 	$Start.hide()
+	$Hud.show()
 	play.emit()
 
 

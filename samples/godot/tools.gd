@@ -16,7 +16,7 @@ var _worked := 0.0  # strokes so far, in radians of the tool's swing
 func _ready() -> void:
 	$Ring.mesh = _ring
 	for part: Node3D in [$Shovel, $Bucket]:
-		part.scale = Vector3.ONE * 2 * radius
+		part.scale = Vector3.ONE * 2.6 * radius
 	hide()
 
 
@@ -29,7 +29,7 @@ func point(place: Vector2, tool: int, working: bool, held: float, most: float) -
 	_ring.surface_begin(Mesh.PRIMITIVE_TRIANGLE_STRIP)
 	for n in POINTS + 1:
 		var out := Vector2.from_angle(TAU * n / POINTS)
-		for reach: float in [0.92, 1.0]:
+		for reach: float in [0.88, 1.0]:
 			var there := place + out * radius * reach
 			_ring.surface_add_vertex(Vector3(there.x, height.call(there) + 0.05 * radius, there.y))
 	_ring.surface_end()
@@ -42,7 +42,7 @@ func point(place: Vector2, tool: int, working: bool, held: float, most: float) -
 	$Shovel.rotation = Vector3(-0.5 - 0.3 * swing, 0.6, 0)
 	$Bucket.position = _at + Vector3(0, 1.7 * radius, 0)
 	$Bucket.rotation = Vector3(0, 0.6, (1.9 + 0.25 * swing) if working else 0.0)
-	$Says.position = _at + Vector3(0, 4.2 * radius, 0)
+	$Says.position = _at + Vector3(0, 5 * radius, 0)
 	$Says.text = "%.2f m high\n%.1f of %.1f m³ in the bucket" % [_at.y, held, most]
 
 

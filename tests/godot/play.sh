@@ -62,4 +62,7 @@ twice() { # SCENE CELLS: played twice alike and won; left alone another hash, an
 }
 twice beach 120x96
 twice canyon 100x128
+# The hardest of each game's choices can be won.
+play beach WON --cells=120x96 --choice=2
+play canyon WON --cells=100x128 --choice=1
 echo "play.sh: right"
