@@ -19,8 +19,6 @@ enum Verdict { OPEN, WON, LOST }
 ## Scoops in the bucket at the start, and the most that it holds: what is built was dug before.
 @export var bucket := 20
 @export var bucket_size := 160
-## Speed of water that one hears as a splash where it comes [m/s].
-@export var fast := 1.8
 ## Yaw and pitch of the camera on the start screen [degrees].
 @export var first_look := Vector2(-20, 26)
 ## The other scene.
@@ -41,12 +39,8 @@ var verdict := Verdict.OPEN
 var playing := false
 var replay: Replay
 
-var _own_look := Vector2.ZERO
 var _waited := 0.0
 var _answers := {}  # ticket of a query: what takes the answer
-var _ears := PackedVector2Array()
-var _heard := PackedFloat32Array()  # speeds there
-var _next_look := 0.0
 
 
 func _ready() -> void:
@@ -80,8 +74,7 @@ func _ready() -> void:
 		straight = false
 		play()
 	else:
-		_own_look = Vector2(camera.yaw, camera.pitch)
-		_look_at(first_look, -0.2 * camera.distance)  # beside the words
+		camera.look_beside(first_look)
 		screens.show_start(name, task, _choices(), choice)
 
 
@@ -91,11 +84,6 @@ func _make_world() -> bool:
 	if world.start() != OK:
 		leave(world.get_last_message(), 2)
 		return false
-	_ears.clear()
-	for j in 6:
-		for i in 8:
-			_ears.append(world.get_extent() * (Vector2(i + 0.5, j + 0.5) / Vector2(8, 6) - Vector2(0.5, 0.5)))
-	_heard.resize(_ears.size())
 	_begin()
 	return true
 
@@ -108,15 +96,8 @@ func _choose(which: int) -> void:
 
 
 func _on_play() -> void:
-	var swing := create_tween().set_trans(Tween.TRANS_SINE)
-	swing.tween_method(func(share: float) -> void: _look_at(first_look.lerp(_own_look, share), camera.h_offset * (1 - share)), 0.0, 1.0, 2.0)
+	camera.swing_back()
 	play()
-
-
-func _look_at(look: Vector2, aside: float) -> void:
-	camera.yaw = look.x
-	camera.pitch = look.y
-	camera.h_offset = aside
 
 
 func play() -> void:
@@ -185,9 +166,8 @@ func _physics_process(_delta: float) -> void:
 		_judge(world.get_time())
 		if verdict != Verdict.OPEN:
 			_end()
-	if playing and not replay.on and world.get_time() >= _next_look:
-		_next_look = world.get_time() + 0.2
-		ask(_ears, _hear)
+	if playing and not replay.on:
+		$Ears.listen(self)
 	screens.say(world.get_time(), duration, _score(), bucket / float(bucket_size))
 	if replay.on and replay.is_done() and _answers.is_empty():
 		leave("%s %s %s\nverdict %s at %.2f s, %s\nhash %s after %d steps" % [name, world.get_cells(), "idle" if replay.idle else "played",
@@ -202,21 +182,6 @@ func _end() -> void:
 	var medal := _medal() if won else Score.Medal.NONE
 	var record := won and Score.keep(name, _choices()[choice][0], _points(), medal)
 	screens.show_end(won, medal, _points() if won else 0, Score.best(name, _choices()[choice][0]), record, _score())
-
-
-## The water's voice: as loud as it is fast, and a splash where it comes to a place.
-func _hear(answer: Array) -> void:
-	var sum := 0.0
-	var came := 0
-	for n in answer.size():
-		var speed: float = answer[n].velocity.length() if answer[n].water_depth > 0.05 else 0.0
-		sum += minf(speed / fast, 2)
-		if speed > fast and _heard[n] < 0.5 * fast:
-			came += 1
-		_heard[n] = speed
-	sounds.set_surf(sum / answer.size())
-	if came > 0:
-		sounds.play(&"splash", minf(4 * came - 14, 0))
 
 
 func _on_hand_pointed(tool: int, place: Vector3, working: bool, delta: float) -> void:

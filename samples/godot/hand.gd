@@ -15,6 +15,7 @@ enum { DIG, BUILD }
 
 var tool := DIG
 var _working := false
+var _own := Vector2.ZERO  # yaw and pitch ahead of `look_beside`
 
 
 func _ready() -> void:
@@ -28,6 +29,21 @@ func look(numbers: PackedFloat64Array) -> void:
 	yaw = numbers[4]
 	pitch = numbers[5]
 	_place()
+
+
+## Another yaw and pitch, with the target in the right half of the picture, until `swing_back`.
+func look_beside(other: Vector2) -> void:
+	_own = Vector2(yaw, pitch)
+	yaw = other.x
+	pitch = other.y
+	h_offset = -0.2 * distance
+
+
+func swing_back() -> void:
+	var swing := create_tween().set_trans(Tween.TRANS_SINE).set_parallel()
+	swing.tween_property(self, "yaw", _own.x, 2)
+	swing.tween_property(self, "pitch", _own.y, 2)
+	swing.tween_property(self, "h_offset", 0.0, 2)
 
 
 func _place() -> void:

@@ -1,4 +1,5 @@
 ## What one reads: a start screen, how it stands, what is announced, and an end screen with medal and score.
+## Without containers: those of Debian's release build of the engine report errors as it ends.
 extends CanvasLayer
 
 signal chosen(which: int)
@@ -7,8 +8,8 @@ signal again
 signal other
 
 const Score := preload("score.gd")
+const GAP := 10.0  # between buttons
 
-var _words: PackedStringArray = []
 var _announced: Tween
 
 
@@ -20,27 +21,33 @@ func _ready() -> void:
 	%Again.pressed.connect(again.emit)
 	for button: Button in [%Other, %EndOther]:
 		button.pressed.connect(other.emit)
-	%Choices.item_selected.connect(_on_chosen)
 
 
 ## `choices`: [name, one line on it] each.
 func show_start(game: String, task: String, choices: Array, choice: int) -> void:
 	%Title.text = game
 	%Task.text = task
-	%Choices.clear()
-	for one: Array in choices:
-		var best := Score.best(game, one[0])
-		%Choices.add_item("%s (best: %s, %d)" % [one[0], Score.words(best.y as Score.Medal), best.x] if best.x > 0 else one[0])
-		_words.append(one[1])
-	%Choices.select(choice)
-	%About.text = _words[choice]
+	var group := ButtonGroup.new()
+	var wide: float = (%Choices.size.x + GAP) / choices.size()
+	for n in choices.size():
+		var best := Score.best(game, choices[n][0])
+		var button := Button.new()
+		button.toggle_mode = true
+		button.button_group = group
+		button.button_pressed = n == choice
+		button.position.x = n * wide
+		button.size = Vector2(wide - GAP, %Choices.size.y)
+		button.text = "%s\n%s, %d" % [choices[n][0], Score.words(best.y as Score.Medal), best.x] if best.x > 0 else choices[n][0]
+		button.pressed.connect(_on_chosen.bind(n, choices[n][1]))
+		%Choices.add_child(button)
+	%About.text = choices[choice][1]
 	$Start.show()
 	$Hud.hide()
 	%Play.grab_focus()
 
 
-func _on_chosen(which: int) -> void:
-	%About.text = _words[which]
+func _on_chosen(which: int, about: String) -> void:
+	%About.text = about
 	chosen.emit(which)
 
 
