@@ -37,6 +37,7 @@ func _begin() -> void:
 			world.brush_line(WadiTerrain3D.LAYER_SAND, line[n], line[n + 1], 0.6, -0.55)
 	if not CASTLES[choice].gone.is_empty():
 		world.step(1)  # so that it is seen before the game begins
+	_raise_flag()
 	$Sea.read(world.level)
 	if not $Sea.coming.is_connected(_on_waves_coming):
 		$Sea.coming.connect(_on_waves_coming)

@@ -36,7 +36,7 @@ func look_beside(other: Vector2) -> void:
 	_own = Vector2(yaw, pitch)
 	yaw = other.x
 	pitch = other.y
-	h_offset = -0.2 * distance
+	h_offset = -0.28 * distance
 
 
 func swing_back() -> void:
