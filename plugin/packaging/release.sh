@@ -17,7 +17,7 @@ Usage: release.sh [--out FOLDER] [--tag] [PART ...]; all parts where none is nam
 
 part            what it makes                 tried
 linux-*         wadi-VERSION-PART.zip         golden hashes; the smallest host in Debian 11, 12, sid, and beside nothing but glibc 2.31
-                                              (ARM under QEMU, in Debian 11)
+                                              (ARM under QEMU, with the three Debians' libraries)
 windows-x86_64  the same                      golden hashes and the smallest host under Wine
 macos-*         the same                      that a host links it, that it is signed for itself: BUILT, NOT RUN
 godot           wadi-godot-VERSION.zip        the extension under a stand-in engine, on Windows by Wine; download to moving water in Godot
@@ -169,13 +169,15 @@ try_linux-x86_64() {
         told linux-x86_64 "release, x86-64 Linux" "" --ran "the first page's steps, Debian 11, 12, sid, glibc 2.31 alone"
 }
 try_linux-aarch64() {
-    local folder
+    local suite folder
     # NEON belongs to this processor's base set: that the stages' rows are vectors is seen nowhere else.
     python3 tests/unit/vectorised.py --clang "$work/linux-aarch64/tools/stagec_of_builder" . "$tools/${zig_target[linux-aarch64]}/c++" -O3 || return 1
-    folder=$(environment bullseye arm64) && rm -rf "$folder/wadi" && cp -r "$work/linux-aarch64/unpacked" "$folder/wadi" &&
-        golden linux-aarch64 qemu-aarch64 -L "$folder" "$work/linux-aarch64/bin/wadi-test-golden" &&
-        same "linux-aarch64, Debian bullseye (QEMU)" qemu-aarch64 -L "$folder" -E LD_LIBRARY_PATH=/wadi/plugin/lib "$folder/wadi/host" &&
-        told linux-aarch64 "release, aarch64 Linux" "QEMU $(qemu-aarch64 --version | sed -n '1s/.*version \([0-9.]*\).*/\1/p')" --ran "Debian 11"
+    for suite in bullseye bookworm sid; do
+        folder=$(environment $suite arm64) && rm -rf "$folder/wadi" && cp -r "$work/linux-aarch64/unpacked" "$folder/wadi" &&
+            same "linux-aarch64, Debian $suite (QEMU)" qemu-aarch64 -L "$folder" -E LD_LIBRARY_PATH=/wadi/plugin/lib "$folder/wadi/host" || return 1
+    done
+    golden linux-aarch64 qemu-aarch64 -L "$(environment bullseye arm64)" "$work/linux-aarch64/bin/wadi-test-golden" &&
+        told linux-aarch64 "release, aarch64 Linux" "QEMU $(qemu-aarch64 --version | sed -n '1s/.*version \([0-9.]*\).*/\1/p')" --ran "Debian 11, 12, sid"
 }
 no_hang() { # COMMAND ...: waits that lose a wake-up show as runs that hang, 1 to 6 of 60 once
     for n in $(seq 20); do timeout 60 "$@" >/dev/null 2>&1 || { echo "run $n of 20 of the smallest host hung or failed"; return 1; }; done
