@@ -36,6 +36,8 @@ inline constexpr EffectRow effect_rows[] = {
     {EFFECT_RETENTION, "retention", EFFECT_MIXTURE | EFFECT_DRAG, "pores hold back a share of the water: damp sand stays damp"},
     {EFFECT_ROUGHNESS, "roughness", EFFECT_BED_FRICTION, "Manning's n from cell to cell"},
     {EFFECT_RAIN_MAP, "rain_map", EFFECT_RAIN, "how much of the rain falls on each cell"},
+    {EFFECT_FOAM, "foam", EFFECT_WATER, "foam is born where water breaks, drifts, fades and is left on the shore"},
+    {EFFECT_WETNESS, "wetness", EFFECT_WATER, "ground that water has left stays wet and dries"},
 };
 
 /// Choices: bits of the same mask above those, from settings and never from content. Without what it needs a choice has nothing

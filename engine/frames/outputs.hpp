@@ -21,6 +21,7 @@ enum class Output : std::uint32_t {
     smooth_surface,
     packed,
     packed_half,
+    wetness,
     count
 };
 constexpr std::uint32_t bit(Output output) { return 1u << static_cast<std::uint32_t>(output); }

@@ -64,6 +64,12 @@ void read_method(const Json& value, Settings& settings, Status& status) {
     reader.finish();
 }
 
+void read_surface(const Json& value, Settings& settings, Status& status) {
+    ObjectReader reader(value, "surface", status);
+    read_rows(reader, "surface", settings);
+    reader.finish();
+}
+
 void read_sides(const Json& value, LevelFiles& files, std::array<Side, 4>& sides, Status& status) {
     ObjectReader reader(value, "sides", status);
     for (std::size_t n = 0; n < sides.size(); ++n) {
@@ -145,6 +151,7 @@ void read_settings(ObjectReader& root, LevelFiles& files, Settings& settings) {
     read_rows(root, "", settings);
     if (const Json* method = root.find("method")) read_method(*method, settings, status);
     if (const Json* material = root.find("material")) read_material(*material, settings, status); // over the method's choice
+    if (const Json* surface = root.find("surface")) read_surface(*surface, settings, status);
     if (const Json* sides = root.find("sides")) read_sides(*sides, files, settings.sides, status);
     if (const Json* sources = root.find("sources")) {
         const auto elements = read_array(*sources, "sources", SOURCES_READ, status);

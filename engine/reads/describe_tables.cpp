@@ -205,7 +205,7 @@ std::string schema_of(const Setting& setting) {
 // {"material": {"friction": {...}, ...}, ...}; what stands beside the objects is in "".
 std::string describe_schema() {
     Strings objects;
-    for (const std::string_view object : {"", "grid", "material", "method"}) {
+    for (const std::string_view object : {"", "grid", "material", "method", "surface"}) {
         Strings keys;
         for (const Setting& setting : setting_table())
             if (setting.object() == object) keys.push_back("    " + json(setting.key()) + ": " + schema_of(setting));

@@ -1,4 +1,4 @@
-// Foam from the state alone, no history.
+// Foam: from the state alone, without history, and what drifts (NUMERICS 2.25).
 #ifndef PHYSICS_FOAM
 #define PHYSICS_FOAM
 #include "../physics/scalar.glsl"
@@ -18,6 +18,22 @@ FN float foam_of(float depth, float speed2, float inflow, float gravity, float i
     float wave2 = gravity * depth;
     float rise = depth * inflow * inv_dx;
     return flush(wmax(jet_foam(speed2, wave2), breaking_foam(rise, wave2)) * film_weight(depth, inv_dx));
+}
+
+#define FOAM_LEAST 1.52587890625e-5f // 2^-16 is none
+#define FOAM_MOST 4.0f               // where currents pile it up, it collapses
+#define INV_FOAM_DRAFT 50.0f         // foam floats freely in 2 cm of water [1/m]
+#define FOAM_PACE 1.1764706f         // 1/0.85: what floats on a stream is so much faster than its mean (ISO 748)
+
+// Share of the foam that shallow water carries; the rest of it lies on the ground.
+FN float afloat(float depth) { return wclamp(depth * INV_FOAM_DRAFT, 0.0f, 1.0f); }
+
+// Cover born in a step where breaking water loses energy: a bore's loss per width, depth times cubed fall of the velocity / 4, spread
+// over the cells in which it falls. `rate`: WorldParams.foam_birth; no compression is that fast (1e4 m/s).
+FN float foam_born(float depth, float inflow, float gravity, float inv_dx, float rate) {
+    float fall = wclamp(inflow, 0.0f, 1.0e4f);
+    float breaks = breaking_foam(depth * fall * inv_dx, gravity * depth);
+    return breaks * wmin(rate * (depth * (fall * fall * fall)), 1.0f);
 }
 
 #endif

@@ -13,6 +13,7 @@ inline constexpr std::uint32_t SECOND = EFFECT_SECOND_ORDER_WATER, SAND_SECOND =
 inline constexpr std::uint32_t SLOPES = EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION;
 inline constexpr std::uint32_t FLOWING = EFFECT_FLOW_FRICTION;
 inline constexpr std::uint32_t SOAKING = EFFECT_INFILTRATION;
+inline constexpr std::uint32_t SEEN = EFFECT_FOAM | EFFECT_WETNESS;
 inline constexpr std::uint32_t ALL_PUBLISHED = PUBLISHED | (all_effects & ~never_published);
 inline constexpr std::uint32_t ALL = all_effects | EFFECT_SHOCK_VISCOSITY; // the default method
 

@@ -30,6 +30,7 @@ template <class Real> struct Publisher {
     }
 
     Real foam(int i, int j) const {
+        if ((run.scene.effects & EFFECT_FOAM) != 0) return std::min(in("surface_foam", i, j), Real(1));
         const Real h = depth(i, j), g = param(run.params.gravity), dx = param(run.params.dx);
         if (!(h > param(run.params.dry_threshold))) return 0;
         const auto [u, v, none, nothing] = centre("water_velocity_x", "water_velocity_y", i, j);

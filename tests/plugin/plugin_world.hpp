@@ -18,12 +18,13 @@ inline std::vector<std::string> backends() { return wadi::test::abi_backends(); 
 
 constexpr uint64_t step_time = 10000000; // of the worlds here [ns]
 
-/// nx * ny cells of 0.5 m, dt [s], sand and water of that depth [m] that meet; destroyed at the end.
+/// nx * ny cells of 0.5 m, dt [s], sand and water of that depth [m] that meet; destroyed at the end. `more`: of its settings,
+/// each after a comma.
 struct World {
     wadi_world_id id{};
     int nx, ny;
     explicit World(const std::string& backend, int columns = 40, int rows = 36, double dt = 0.01, int threads = 0,
-                   float depth = 1.5F)
+                   float depth = 1.5F, const std::string& more = "")
         : nx(columns), ny(rows) {
         std::vector<float> terrain, sand, water;
         for (int j = 0; j < ny; ++j) {
@@ -34,7 +35,8 @@ struct World {
             }
         }
         const std::string settings = R"({"format_version": 1, "name": "slope", "grid": {"nx": )" + std::to_string(nx) +
-                                     R"(, "ny": )" + std::to_string(ny) + R"(, "dx": 0.5}, "dt": )" + std::to_string(dt) + "}";
+                                     R"(, "ny": )" + std::to_string(ny) + R"(, "dx": 0.5}, "dt": )" + std::to_string(dt) + more +
+                                     "}";
         auto arrays = wadi_default_world_arrays();
         arrays.settings_json = settings.c_str();
         arrays.nx = nx;

@@ -195,6 +195,36 @@ TEST_CASE("packed outputs hold what its four outputs hold, those of 16 bits the 
     }
 }
 
+TEST_CASE("foam that drifts and wetness are what a level with these effects publishes, on every backend") {
+    const std::string traces = R"(, "effects": {"foam": "on", "wetness": "on"}, "surface": {"wetness_half_life": 5})";
+    for (const auto& backend : backends()) {
+        CAPTURE(backend);
+        const World world(backend, 40, 36, 0.01, 0, 1.5F, traces), plain(backend);
+        for (const World* each : {&world, &plain}) {
+            REQUIRE(wadi_world_set_host_outputs(each->id, every_output) == WADI_OK);
+            REQUIRE(wadi_world_step(each->id, 150) == WADI_OK);
+            each->update(0);
+            REQUIRE(wadi_world_wait_for_outputs(each->id) == WADI_OK);
+        }
+        auto foam = world.read(WADI_FIELD_FOAM);
+        const auto wetness = world.read(WADI_FIELD_WETNESS);
+        CHECK(*std::max_element(foam.begin(), foam.end()) > 0.1F);
+        CHECK(*std::max_element(wetness.begin(), wetness.end()) == 1.0F);
+        CHECK(*std::min_element(wetness.begin(), wetness.end()) == 0.0F);
+        for (float& f : foam) f = std::min(f, 1.0F);
+        CHECK(host(world, WADI_OUTPUT_FOAM) == foam);
+        CHECK(host(world, WADI_OUTPUT_PACKED, 2) == foam);
+        CHECK(host(world, WADI_OUTPUT_WETNESS) == wetness);
+        CHECK(host(world, WADI_OUTPUT_FREE_SURFACE) == host(plain, WADI_OUTPUT_FREE_SURFACE)); // it moves nothing
+        const auto moment = host(plain, WADI_OUTPUT_FOAM), none = std::vector<float>(moment.size());
+        CHECK(moment != foam);
+        CHECK(moment != none);
+        CHECK(plain.read(WADI_FIELD_FOAM) == none);
+        CHECK(plain.read(WADI_FIELD_WETNESS) == none);
+        CHECK(host(plain, WADI_OUTPUT_WETNESS) == none);
+    }
+}
+
 TEST_CASE("a world of water alone publishes sand as zero") {
     const std::string text = R"({"format_version": 1, "name": "pond", "grid": {"nx": 8, "ny": 6, "dx": 0.5}, "dt": 0.01})";
     const std::vector<float> water(48, 1.0F);

@@ -275,6 +275,8 @@ template <class Real> void Solver<Real>::step_published_water() {
         give_layer_exchange();
     }
     push_water();
+    carry_foam();
+    wet_ground();
     if (has(EFFECT_BED_SHEAR)) compute_bed_load();
 }
 

@@ -7,6 +7,7 @@
 #include "tests/reference/rim.inl"
 #include "tests/reference/sand.inl"
 #include "tests/reference/slope.inl"
+#include "tests/reference/surface.inl"
 #include "tests/reference/water.inl"
 
 namespace wadi::reference {
@@ -126,7 +127,9 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
                                &pore_water,
                                &open_sand,
                                &felt_water,
-                               &mixed_diffused})
+                               &mixed_diffused,
+                               &foam,
+                               &wetness})
         field->assign(nx * ny, Real(0));
     Vxx.assign(nx * ny, Real(1));
     Vyy.assign(nx * ny, Real(1));
@@ -276,6 +279,8 @@ template <class Real> template <class Other> void Solver<Real>::copy_from(const 
     field(&A::open_sand, &B::open_sand);
     field(&A::felt_water, &B::felt_water);
     field(&A::mixed_diffused, &B::mixed_diffused);
+    field(&A::foam, &B::foam);
+    field(&A::wetness, &B::wetness);
     rained = static_cast<Real>(other.rained);
     water_added = other.water_added;
     sand_added = other.sand_added;
@@ -309,6 +314,8 @@ template <class Real> void Solver<Real>::step_robust() {
         infiltrate();
         if (has(EFFECT_SECOND_ORDER_WATER)) center_water_velocity();
         integrate_water_velocity();
+        carry_foam();
+        wet_ground();
     }
     if (has(EFFECT_BED_SHEAR)) compute_bed_load();
     if (has(EFFECT_COHESION)) compute_saturation();

@@ -16,7 +16,7 @@ PLACES = {
     "engine/step/STEP.md": ["fields"],
     "engine/settings/README.md": ["effects"],
     "shaders/stages/README.md": ["stages"],
-    "samples/levels/README.md": ["settings root", "settings material", "settings method", "effects content"],
+    "samples/levels/README.md": ["settings root", "settings material", "settings method", "settings surface", "effects content"],
 }
 SCHEMA = "samples/levels/level.schema.json"
 WIDEST_SCHEMA_LINE = 190
@@ -25,7 +25,7 @@ MARKED = re.compile(r"(<!-- table: ([a-z ]+) -->\n)(.*?)(<!-- end -->)", re.S)
 
 def of_object(row, wanted):
     path = row.split("`")[1]
-    named = path.split(".")[0] if path.startswith(("material.", "method.")) else "root"
+    named = path.split(".")[0] if path.startswith(("material.", "method.", "surface.")) else "root"
     return named == wanted
 
 
@@ -120,7 +120,7 @@ def main():
     schema = json.loads((root / SCHEMA).read_text())
     # Negative controls: what is planted must be seen.
     planted = {path: text.replace("`material.friction`", "`material.frict`").replace("compute_bed_load", "compute_bed") for path, text in texts.items()}
-    seen = "\n".join(problems(printed, planted, {"properties": {n: {"properties": {"no": 1}} for n in ("grid", "material", "method", "effects")}}))
+    seen = "\n".join(problems(printed, planted, {"properties": {n: {"properties": {"no": 1}} for n in ("grid", "material", "method", "surface", "effects")}}))
     for sign in ('table "settings material"', 'table "stages"', "grid.nx is null", "method.no is no setting"):
         if sign not in seen:
             print(f"the checker does not see a planted fault: {sign}")

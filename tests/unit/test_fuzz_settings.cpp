@@ -57,6 +57,7 @@ TEST_CASE("random worlds draw what levels have beside their settings: kinds of s
         if (!s.evaporation.samples.empty()) drawn.insert("evaporation");
         if (!s.roughness.empty()) drawn.insert("roughness");
         if (!s.rain_map.empty()) drawn.insert("rain map");
+        for (const auto& [name, force] : s.effects) drawn.insert(name + (force == Force::on ? " on" : " off"));
         if (!c.scene.fields.sand_velocity_x.empty()) drawn.insert("velocities");
         for (const Edit& edit : c.commands) drawn.insert("edit " + std::to_string(static_cast<int>(edit.kind)));
         drawn.insert("method " + s.method.name);
@@ -80,6 +81,8 @@ TEST_CASE("random worlds draw what levels have beside their settings: kinds of s
                              "evaporation",
                              "roughness",
                              "rain map",
+                             "foam on",
+                             "wetness on",
                              "velocities",
                              "method robust",
                              "method published"})

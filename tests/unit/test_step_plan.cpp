@@ -292,8 +292,8 @@ TEST_CASE("effects follow from the scene, with a reason, and a level may force t
     const auto bad = effects_required(scene.settings, content_of(scene.fields));
     CHECK(bad.status().code == Code::bad_argument);
     CHECK(bad.status().message.find("effects.diffusion: on, but it needs mixture") != std::string::npos);
-    scene.settings.effects = {{"foam", Force::on}};
-    CHECK(effects_required(scene.settings, content_of(scene.fields)).status().message.find("effects.foam") != std::string::npos);
+    scene.settings.effects = {{"steam", Force::on}};
+    CHECK(effects_required(scene.settings, content_of(scene.fields)).status().message.find("effects.steam") != std::string::npos);
 }
 
 TEST_CASE("the engine's pages name every stage of a step, and none that there is not") {

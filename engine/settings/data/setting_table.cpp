@@ -40,6 +40,7 @@ constexpr SettingAccess at = {kind_of<std::remove_reference_t<decltype(member<ME
 
 template <auto MEMBER> constexpr SettingAccess grid = at<&Settings::grid, MEMBER>;
 template <auto MEMBER> constexpr SettingAccess material = at<&Settings::material, MEMBER>;
+template <auto MEMBER> constexpr SettingAccess surface = at<&Settings::surface, MEMBER>;
 template <auto MEMBER> constexpr SettingAccess method = at<&Settings::method, MEMBER>;
 template <std::size_t N>
 constexpr SettingAccess saturation = {SettingKind::number,
@@ -144,6 +145,12 @@ constexpr Setting rows[] = {
      "2: heights and flux-form velocities of sand move with limited slopes", InDigest::where_set},
     {"method.strain_transport", method<&Method::strain_transport>, words(strain_transports), "", EFFECT_ELASTOPLASTIC,
      "published: angle and stretch move apart, or F as it is", InDigest::where_set},
+    {"surface.foam_half_life", surface<&Surface::foam_half_life>, {0, FADING_MOST}, "s", EFFECT_FOAM,
+     "time after which half of the foam is left; 0 = it never fades", InDigest::where_set},
+    {"surface.foam_energy", surface<&Surface::foam_energy>, {FOAM_ENERGY_LEAST, 1e9}, "J/m2", EFFECT_FOAM,
+     "energy that breaking water loses to cover itself with foam", InDigest::where_set},
+    {"surface.wetness_half_life", surface<&Surface::wetness_half_life>, {0, FADING_MOST}, "s", EFFECT_WETNESS,
+     "time after which ground is half dry; 0 = it never dries", InDigest::where_set},
     {"active_tiles", at<&Settings::active_tiles>, tile_sides, "cells", several,
      "side of tiles, left out at rest; 0 = off, 1, 2 = where that gains", InDigest::no},
     {"fused_stages", at<&Settings::fused_stages>, words(fused_stages), "", several,

@@ -73,6 +73,8 @@ inline constexpr double DX_LEAST = 1e-4, DX_MOST = 1e4; // [m]
 inline constexpr double DT_LEAST = 1e-7, DT_MOST = 100; // [s]
 inline constexpr double RAIN_MOST = 1;                  // rain and evaporation [m/s]
 inline constexpr double RAIN_TIMES_MOST = 100;          // of rain by a map
+inline constexpr double FADING_MOST = 1e5;              // half-lives of foam and wetness [s]
+inline constexpr double FOAM_ENERGY_LEAST = 1e-3;       // [J/m2]
 inline constexpr double RATE_MOST = 1e4;                // of a source [m/s]
 inline constexpr double MANNING_MOST = 1;               // n of a material, of a cell's roughness [s/m^(1/3)]
 inline constexpr double SPEED_MOST = 1e4;               // set by a source or as an initial velocity [m/s]

@@ -85,6 +85,13 @@ struct Method {
     bool published() const { return name == "published"; }
 };
 
+/// What water leaves behind to be seen; moves nothing. NUMERICS 2.25 and 2.26.
+struct Surface {
+    double foam_half_life = 4;
+    double foam_energy = 20;
+    double wetness_half_life = 30;
+};
+
 /// A value over time: linear between samples, constant outside. One sample = constant.
 struct TimeSeries {
     std::vector<std::pair<double, double>> samples; // (time [s], value), times increasing
@@ -153,6 +160,7 @@ struct Settings {
     double gravity = 9.81;
     Material material;
     Method method;
+    Surface surface;
     std::array<Side, 4> sides;                          // indexed by SideName
     std::vector<Source> sources;                        // at most MAX_SOURCES (32)
     TimeSeries rain;                                    // [m/s]

@@ -43,6 +43,9 @@ Why holds_shape(const Settings& s, Content) {
     return {cohesive, cohesive ? "young_modulus is above 0" : "the sand has no cohesion"};
 }
 
+// Of what is only seen: it costs something and moves nothing.
+Why unasked(const Settings&, Content) { return {false, "the level does not ask for it"}; }
+
 constexpr Effect effects[] = {
     {row(EFFECT_WATER), "the level, a source, rain or a side (discharge, level, waves) brings water",
      [](const Settings& s, Content content) -> Why {
@@ -114,6 +117,8 @@ constexpr Effect effects[] = {
          if (s.rain_map.empty()) return {false, "the level has none"};
          return {ever_above_zero(s.rain), ever_above_zero(s.rain) ? "the level has a rain map" : "it never rains"};
      }},
+    {row(EFFECT_FOAM), "never: a level asks for it", unasked},
+    {row(EFFECT_WETNESS), "never: a level asks for it", unasked},
 };
 
 constexpr Choice choices[] = {

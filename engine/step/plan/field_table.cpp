@@ -37,6 +37,8 @@ constexpr FieldRow rows[] = {
      "what waves and outflows have learnt of a stream (NUMERICS 2.9)"},
     {"water_in_pores", state, cell, in_hash, no_host, "", "m", EFFECT_INFILTRATION,
      "water in the pores, -1 where they are full under water (NUMERICS 2.24)"},
+    {"surface_foam", state, cell, in_hash, 16, "foam", "1", EFFECT_FOAM, "foam on the water and what it left ashore; 1 covers the cell"},
+    {"wetness", state, cell, in_hash, 17, "wet", "1", EFFECT_WETNESS, "how wet the ground is: 1 under water, then drying"},
     {"roughness", fixed, cell, no_hash, no_host, "", "s/m^(1/3)", EFFECT_ROUGHNESS, "Manning's n beyond that of the material"},
     {"rain_share", fixed, cell, no_hash, no_host, "", "1/65536", EFFECT_RAIN_MAP, "how much falls of the rain where it rains most"},
     {"water_scale", scratch, cell, no_hash, no_host, "", "1", EFFECT_WATER, "outflow limiter of pure water"},

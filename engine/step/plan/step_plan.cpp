@@ -88,6 +88,12 @@ void plan_water(PlanBuilder b) {
     plan_water_motion(b);
 }
 
+// What water leaves on the surface to be seen, behind its motion.
+void plan_surface(PlanBuilder b) {
+    if (b.has(EFFECT_FOAM)) b.run("carry_foam", {"surface_foam"});
+    if (b.has(EFFECT_WETNESS)) b.run("wet_ground");
+}
+
 // What the sand's substeps take from the water, once for all of them.
 void plan_water_on_sand(PlanBuilder b) {
     if (!b.has(EFFECT_WATER)) return;
@@ -275,6 +281,7 @@ StepPlan make_step_plan(std::uint32_t effects, Substeps substeps, PlanChoice cho
     plan_start({plan, plan.start_passes, false});
     const bool published = water.has(EFFECT_PUBLISHED);
     published ? plan_published_water(water) : plan_water(water);
+    plan_surface(water);
     plan.again_to = plan.water_passes.size();
     if (!published) plan_water_on_sand(water);
     published ? plan_published_sand(substep) : plan_sand(substep);

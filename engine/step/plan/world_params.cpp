@@ -66,6 +66,9 @@ double failing_slope(double mu, double chi) {
     return std::clamp(high, 0.1, steep);
 }
 
+// Of what halves in that time, 0 = never, the share that goes in a step.
+double fading_share(double half_life, double dt) { return half_life > 0 ? -std::expm1(-std::log(2.0) * dt / half_life) : 0; }
+
 } // namespace
 
 double ledger_quantum(const Method& method) {
@@ -136,6 +139,10 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     p.limiter = w.outflow_limiter ? 1.0F : 0.0F;
     p.infiltration = f(dt * m.conductivity);
     p.suction = f(m.suction);
+    // Of NUMERICS 2.25; the cube of a compression is by the metre of a cell.
+    p.foam_birth = f(m.water_density * dt / (s.surface.foam_energy * dx));
+    p.foam_fade = f(fading_share(s.surface.foam_half_life, dt));
+    p.wetness_fade = f(fading_share(s.surface.wetness_half_life, dt));
     p.inv_substeps = f(static_cast<double>(w.water_substeps) / w.substeps);
 
     p.ks = f(ks);

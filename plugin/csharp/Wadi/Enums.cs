@@ -93,7 +93,7 @@ namespace Wadi
         /// <summary>
         /// 0 ... 1 from the present state of the pure water (depth h, velocity u), 1 float: max(clamp((Fr^2 - 1)/3), clamp((R -
         /// 0.15)/0.5)) * clamp(10 h/dx), clamps to 0 ... 1; Fr = |u|/sqrt(g h) (fast water), R = -h div(u)/sqrt(g h) (rising,
-        /// breaking fronts)
+        /// breaking fronts). With effect foam that which drifts, fades and lies on the shore, at most 1: PACKED, too
         /// </summary>
         Foam = 8,
         /// <summary>unit normal of the visible surface: east, north, up, 0; 4 floats</summary>
@@ -106,7 +106,9 @@ namespace Wadi
         /// the same, each rounded to a 16-bit float (11 bits: a surface 16 ... 32 m up to 16 mm), at most 65504; 8 bytes
         /// </summary>
         PackedHalf = 12,
-        Count = 13,
+        /// <summary>with effect wetness how wet the ground is, 1 under water, less the longer it is dry, else 0; 1 float</summary>
+        Wetness = 13,
+        Count = 14,
     }
 
     public enum OutputSet
@@ -171,7 +173,11 @@ namespace Wadi
         StretchYY = 14,
         /// <summary>which limits hold the cell in the next step: a sum of wadi_limit bits, 0 = none</summary>
         Limits = 15,
-        Count = 16,
+        /// <summary>effect foam: 1 covers the cell, at most 4 where currents pile it up</summary>
+        Foam = 16,
+        /// <summary>effect wetness: 1 under water, less the longer the ground is dry</summary>
+        Wetness = 17,
+        Count = 18,
     }
 
     /// <summary>
@@ -241,6 +247,7 @@ namespace Wadi
         SmoothSurface = 1u << 10,
         Packed = 1u << 11,
         PackedHalf = 1u << 12,
+        Wetness = 1u << 13,
         /// <summary>For World.SetOutputs: lowest and highest elevation of tiles and their changes.</summary>
         Tiles = 0x80000000u,
     }

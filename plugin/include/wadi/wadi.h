@@ -420,13 +420,15 @@ typedef enum wadi_output WADI_ENUM {
     WADI_OUTPUT_SAND_VELOCITY = 7,  /* east and north [m/s], 2 floats */
     WADI_OUTPUT_FOAM = 8,           /* 0 ... 1 from the present state of the pure water (depth h, velocity u), 1 float:
                                        max(clamp((Fr^2 - 1)/3), clamp((R - 0.15)/0.5)) * clamp(10 h/dx), clamps to 0 ... 1;
-                                       Fr = |u|/sqrt(g h) (fast water), R = -h div(u)/sqrt(g h) (rising, breaking fronts) */
+                                       Fr = |u|/sqrt(g h) (fast water), R = -h div(u)/sqrt(g h) (rising, breaking fronts).
+                                       With effect foam that which drifts, fades and lies on the shore, at most 1: PACKED, too */
     WADI_OUTPUT_NORMAL = 9,         /* unit normal of the visible surface: east, north, up, 0; 4 floats */
     WADI_OUTPUT_SMOOTH_SURFACE = 10, /* elevation of the visible surface after a 3 x 3 Gaussian [m], 1 float */
     WADI_OUTPUT_PACKED = 11,        /* one texel to draw a surface with: FREE_SURFACE, WATER_DEPTH, FOAM, SATURATION; 4 floats */
     WADI_OUTPUT_PACKED_HALF = 12,   /* the same, each rounded to a 16-bit float (11 bits: a surface 16 ... 32 m up to 16 mm), at most
                                        65504; 8 bytes */
-    WADI_OUTPUT_COUNT = 13
+    WADI_OUTPUT_WETNESS = 13,       /* with effect wetness how wet the ground is, 1 under water, less the longer it is dry, else 0; 1 float */
+    WADI_OUTPUT_COUNT = 14
 } wadi_output;
 /** Outputs, each by WADI_OUTPUT_BIT. */
 typedef uint32_t wadi_output_mask;
@@ -544,7 +546,9 @@ typedef enum wadi_field WADI_ENUM {
     WADI_FIELD_STRETCH_XY = 13,
     WADI_FIELD_STRETCH_YY = 14,
     WADI_FIELD_LIMITS = 15,          /* which limits hold the cell in the next step: a sum of wadi_limit bits, 0 = none */
-    WADI_FIELD_COUNT = 16
+    WADI_FIELD_FOAM = 16,            /* effect foam: 1 covers the cell, at most 4 where currents pile it up */
+    WADI_FIELD_WETNESS = 17,         /* effect wetness: 1 under water, less the longer the ground is dry */
+    WADI_FIELD_COUNT = 18
 } wadi_field;
 /** Bits of WADI_FIELD_LIMITS, of a cell or any of its four faces. wadi_world_stats counts the same, by faces. */
 typedef enum wadi_limit WADI_ENUM {
@@ -556,8 +560,8 @@ typedef enum wadi_limit WADI_ENUM {
     WADI_LIMIT_SAND_OUTFLOW = 32,
     WADI_LIMIT_HEIGHT = 64        /* the column stands above method.largest_height: its heights are rounded, the books drift */
 } wadi_limit;
-/** Short name used by tools: "H", "hs", "W", "hw", "surface", "phi", "uw", "vw", "us", "vs", "um", "vm", "Vxx", "Vxy", "Vyy", "limits";
- *  NULL if unknown. */
+/** Short name used by tools: "H", "hs", "W", "hw", "surface", "phi", "uw", "vw", "us", "vs", "um", "vm", "Vxx", "Vxy", "Vyy", "limits",
+ *  "foam", "wet"; NULL if unknown. */
 WADI_API const char* wadi_field_name(wadi_field field);
 
 /** Reads a field, count = nx * ny floats.
