@@ -101,7 +101,7 @@ struct WorldParams {
     float inv_substeps;         // N/T: water substeps per sand substep
     float infiltration;         // dt K: depth that enters dry sand by its weight alone [m]
     float suction;              // psi: head with which dry sand draws water in [m]
-    float foam_birth;           // cover born in a step per depth times cubed compression, NUMERICS 2.25 [s3/m4]
+    float foam_birth;           // rho_w dt/(2 E dx): cover born in a step per depth, wave speed and squared compression [s3/m4]
     float foam_fade;            // share of the foam that fades in a step
     float wetness_fade;         // share of the wetness that dries in a step
 

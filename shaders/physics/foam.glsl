@@ -28,12 +28,13 @@ FN float foam_of(float depth, float speed2, float inflow, float gravity, float i
 // Share of the foam that shallow water carries; the rest of it lies on the ground.
 FN float afloat(float depth) { return wclamp(depth * INV_FOAM_DRAFT, 0.0f, 1.0f); }
 
-// Cover born in a step where breaking water loses energy: a bore's loss per width, depth times cubed fall of the velocity / 4, spread
-// over the cells in which it falls. `rate`: WorldParams.foam_birth; no compression is that fast (1e4 m/s).
+// Cover born in a step where breaking water loses energy: what a viscosity of half the speed of long waves times dx takes from the fall of
+// the velocity across a cell. `rate`: WorldParams.foam_birth; no compression is that fast (1e4 m/s).
 FN float foam_born(float depth, float inflow, float gravity, float inv_dx, float rate) {
     float fall = wclamp(inflow, 0.0f, 1.0e4f);
-    float breaks = breaking_foam(depth * fall * inv_dx, gravity * depth);
-    return breaks * wmin(rate * (depth * (fall * fall * fall)), 1.0f);
+    float wave2 = gravity * depth;
+    float breaks = breaking_foam(depth * fall * inv_dx, wave2);
+    return breaks * wmin(rate * (depth * (wsqrt(wave2) * (fall * fall))), 1.0f);
 }
 
 #endif

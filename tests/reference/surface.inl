@@ -66,7 +66,7 @@ template <class Real> void Solver<Real>::carry_foam() {
                 const Real rise = h * fall / P.dx, wave = std::sqrt(P.gravity * h);
                 const Real breaks =
                     wave > Real(0) ? std::clamp((rise / wave - Real(0.15)) / Real(0.5), Real(0), Real(1)) : Real(0);
-                const Real energy = P.rho_w * h * fall * fall * fall / P.dx * P.dt;
+                const Real energy = P.rho_w * h * (wave * P.dx / 2) * (fall / P.dx) * (fall / P.dx) * P.dt;
                 const Real born = breaks * std::min(energy / static_cast<Real>(settings.surface.foam_energy), Real(1));
                 foam[c] += std::min(std::floor(born / surface_quantum) * surface_quantum, std::max(Real(1) - foam[c], Real(0)));
             }

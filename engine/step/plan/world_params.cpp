@@ -139,8 +139,7 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     p.limiter = w.outflow_limiter ? 1.0F : 0.0F;
     p.infiltration = f(dt * m.conductivity);
     p.suction = f(m.suction);
-    // Of NUMERICS 2.25; the cube of a compression is by the metre of a cell.
-    p.foam_birth = f(m.water_density * dt / (s.surface.foam_energy * dx));
+    p.foam_birth = f(0.5 * m.water_density * dt / (s.surface.foam_energy * dx));
     p.foam_fade = f(fading_share(s.surface.foam_half_life, dt));
     p.wetness_fade = f(fading_share(s.surface.wetness_half_life, dt));
     p.inv_substeps = f(static_cast<double>(w.water_substeps) / w.substeps);
