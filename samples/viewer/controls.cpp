@@ -40,6 +40,11 @@ void press_keys(Session& session) {
         session.single_step();
     }
     if (ImGui::IsKeyPressed(GLFW_KEY_R, false)) session.restart();
+    if (ImGui::GetIO().KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_Z, true))
+        ImGui::GetIO().KeyShift ? session.redo() : session.undo();
+    if (ImGui::GetIO().KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_Y, true)) session.redo();
+    if (ImGui::IsKeyPressed(GLFW_KEY_F5, false)) session.save();
+    if (ImGui::IsKeyPressed(GLFW_KEY_F8, false)) session.load();
     if (ImGui::IsKeyPressed(GLFW_KEY_F12, false)) session.screenshot();
     if (ImGui::IsKeyPressed(GLFW_KEY_F9, false)) session.set_recording(!session.recording());
     for (int n = 0; n < 10; ++n) {
@@ -53,6 +58,7 @@ void handle_input(Session& session, double seconds) {
     const ImGuiIO& io = ImGui::GetIO();
     move_camera(session, seconds, io.WantCaptureMouse);
     try {
+        if (!ImGui::IsAnyMouseDown()) session.history().close(); // what one press did is undone as one
         if (!io.WantTextInput) press_keys(session);
         const bool inside = ImGui::IsMousePosValid() && io.MousePos.x >= 0 && io.MousePos.y >= 0 &&
                             io.MousePos.x < io.DisplaySize.x && io.MousePos.y < io.DisplaySize.y;

@@ -9,6 +9,7 @@ void handle_input(Session& session, double seconds);
 
 inline constexpr const char* controls_help = "left button: tool (look: orbit)   right: orbit   middle: pan   wheel: distance\n"
                                              "Shift + right: look round   W A S D Q E: fly   Space: pause   .: one step\n"
+                                             "Ctrl + Z, Y: undo, redo   F5, F8: save, load\n"
                                              "R: restart   F12: screenshot   F9: record   1 ... 9, 0: tools";
 
 } // namespace viewer

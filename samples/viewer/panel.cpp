@@ -49,7 +49,7 @@ void Panel::draw(Session& session, double frame_seconds) {
         if (ImGui::CollapsingHeader("Material")) material(session);
         if (ImGui::CollapsingHeader("Effects")) effects(session);
         if (ImGui::CollapsingHeader("Ledger")) ledger(session, frame_seconds);
-        if (ImGui::CollapsingHeader("Back in time")) time_travel(session);
+        if (ImGui::CollapsingHeader("Time", ImGuiTreeNodeFlags_DefaultOpen)) time_travel(session);
     } catch (const std::exception& error) {
         session.message = error.what();
     }
@@ -330,24 +330,31 @@ void Panel::ledger(Session& session, double seconds) {
 }
 
 void Panel::time_travel(Session& session) {
-    bool keeps = rollback_frames_ > 0;
-    ImGui::SliderInt("every n steps", &rollback_interval_, 1, 100);
-    if (ImGui::Checkbox("keep 64 earlier states", &keeps)) {
-        rollback_frames_ = keeps ? 64 : 0;
-        session.set_rollback(rollback_frames_, static_cast<uint32_t>(rollback_interval_));
-    }
-    const std::vector<uint64_t> steps = session.rollback_steps();
-    if (!steps.empty()) {
-        int kept = static_cast<int>(steps.size()) - 1;
-        char text[32];
-        std::snprintf(text, sizeof(text), "step %" PRIu64, steps.back());
-        if (ImGui::SliderInt("back to", &kept, 0, static_cast<int>(steps.size()) - 1, text)) {
-            session.paused = true;
-            session.roll_back(steps[static_cast<std::size_t>(kept)]);
-        }
-    }
-    if (ImGui::Button("check determinism (20 steps)")) determinism_ = session.check_determinism(20);
-    if (!determinism_.empty()) ImGui::TextWrapped("%s", determinism_.c_str());
+    History& history = session.history();
+    const auto action = [&](const char* label, const std::string& what, void (Session::*act)()) {
+        const std::string text = std::string(label) + (what.empty() ? "" : ": " + what);
+        if (ImGui::Button(text.c_str()) && !what.empty()) (session.*act)();
+    };
+    action("undo", history.undoable(), &Session::undo);
+    ImGui::SameLine();
+    action("redo", history.redoable(), &Session::redo);
+    const uint64_t first = history.first(), last = history.last();
+    uint64_t now = session.simulation().frame.total_steps;
+    ImGui::PushItemWidth(-1);
+    const double dt = session.simulation().info.dt;
+    char text[48];
+    std::snprintf(text, sizeof(text), "%.2f of %.2f s", dt * static_cast<double>(now), dt * static_cast<double>(last));
+    if (ImGui::SliderScalar("##scrub", ImGuiDataType_U64, &now, &first, &last, text, ImGuiSliderFlags_NoInput))
+        session.go_to(now);
+    ImGui::PopItemWidth();
+    ImGui::Text("%zu states kept, %.0f MB", history.kept_states(), 1e-6 * static_cast<double>(history.kept_bytes()));
+    if (ImGui::Button("save (F5)")) session.save();
+    ImGui::SameLine();
+    if (ImGui::Button("load (F8)")) session.load();
+    ImGui::SameLine();
+    if (ImGui::Button("replay all")) replay_ = history.replay();
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("from the first state by the command log: the hash must be the same");
+    if (!replay_.empty()) ImGui::TextWrapped("%s", replay_.c_str());
 }
 
 void Panel::profile(const Session& session) {

@@ -11,9 +11,7 @@ class Panel {
 
   private:
     float frame_milliseconds_ = 0;
-    int rollback_interval_ = 10;
-    uint32_t rollback_frames_ = 0;
-    std::string determinism_;
+    std::string replay_;
     wadi_world_stats stats_{};
     double stats_age_ = 1e9; // [s]
 

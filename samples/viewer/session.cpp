@@ -33,7 +33,9 @@ void Session::open(const std::string& name, const SimulationChoice& choice) {
     auto made = std::make_unique<Simulation>(gpu, choice); // throws before anything of the old world is touched
     const bool other_level = !simulation_ || choice.level_file != choice_.level_file;
     const std::vector<wadi_material_info> kept = other_level ? std::vector<wadi_material_info>() : material();
+    history_.reset();
     simulation_ = std::move(made);
+    history_ = std::make_unique<History>(*simulation_);
     take_over(kept);
     choice_ = choice;
     level_name = name;
@@ -98,6 +100,7 @@ std::vector<wadi_material_info> Session::material() const {
 }
 
 void Session::set_material(const std::string& name, double value) {
+    history_->begin(name);
     check(wadi_world_set_material(simulation_->world, name.c_str(), value), "changing the material");
 }
 
@@ -105,7 +108,10 @@ void Session::set_material(const std::string& name, double value) {
 void Session::take_over(const std::vector<wadi_material_info>& kept) {
     level_material_ = material();
     for (int turn = 0; turn < 3; ++turn) {
-        for (const wadi_material_info& info : kept) wadi_world_set_material(simulation_->world, info.name, info.value);
+        const std::vector<wadi_material_info> now = material();
+        for (std::size_t n = 0; n < std::min(kept.size(), now.size()); ++n) {
+            if (kept[n].value != now[n].value) wadi_world_set_material(simulation_->world, kept[n].name, kept[n].value);
+        }
     }
 }
 
@@ -192,6 +198,7 @@ void Session::queue_edits(double simulated_seconds, double seconds) {
     }
     last_pointed_ = pressed_ ? pointed_ : std::nullopt;
     if (edits.empty()) return;
+    if (!sources.empty() || pressed_) history_->begin(tool_names[static_cast<std::size_t>(tool)]);
     const wadi_result result = wadi_world_edit(simulation_->world, edits.data(), static_cast<uint32_t>(edits.size()));
     if (result != WADI_OK) message = wadi_get_last_error();
 }
@@ -202,10 +209,12 @@ void Session::advance(double seconds) {
     const bool stands = paused || budget_.running();
     const double simulated = stands ? 0 : seconds * static_cast<double>(speed);
     queue_edits(stands ? steps_due_ * simulation_->info.dt : simulated, seconds);
+    if (simulated > 0 || steps_due_ > 0) history_->follow();
     if (stands && steps_due_ > 0) simulation_->step(steps_due_);
     steps_due_ = 0;
     simulation_->show(host_field_of(picture.view));
     simulation_->update(static_cast<uint64_t>(simulated * 1e9));
+    history_->keep();
     count_rates(seconds);
     follow_section();
     for (const std::string& line : take_log()) message = line;
@@ -302,42 +311,41 @@ void Session::follow_section() {
     profile_asked_ = true;
 }
 
-std::string Session::check_determinism(uint32_t steps) {
-    std::size_t size = 0;
-    check(wadi_world_save(simulation_->world, nullptr, &size), "the size of a snapshot");
-    std::vector<char> snapshot(size);
-    check(wadi_world_save(simulation_->world, snapshot.data(), &size), "saving");
-    uint64_t hashes[2] = {};
-    for (uint64_t& hash : hashes) {
-        simulation_->step(steps);
-        check(wadi_world_get_hash(simulation_->world, &hash), "the state's hash");
-        check(wadi_world_load(simulation_->world, snapshot.data(), size), "loading");
-    }
-    char text[160];
-    std::snprintf(text, sizeof(text), "%s: %u steps twice from one snapshot, hash %016llx and %016llx",
-                  hashes[0] == hashes[1] ? "equal" : "DIFFERENT", steps, static_cast<unsigned long long>(hashes[0]),
-                  static_cast<unsigned long long>(hashes[1]));
-    return text;
-}
-
-void Session::set_rollback(uint32_t frames, uint32_t interval) {
-    check(wadi_world_set_rollback(simulation_->world, frames, interval), "keeping earlier states");
-}
-
-std::vector<uint64_t> Session::rollback_steps() const {
-    uint32_t count = 0;
-    check(wadi_world_get_rollback_steps(simulation_->world, nullptr, &count), "kept states");
-    std::vector<uint64_t> steps(count);
-    check(wadi_world_get_rollback_steps(simulation_->world, steps.data(), &count), "kept states");
-    return steps;
-}
-
-void Session::roll_back(uint64_t step) {
-    uint64_t reached = 0;
-    check(wadi_world_roll_back(simulation_->world, step, &reached), "rolling back");
-    simulated_at_ = static_cast<double>(reached) * simulation_->info.dt;
-    steps_at_ = reached;
+void Session::went(const std::string& how) {
+    simulated_at_ = 0;
+    check(wadi_world_get_time(simulation_->world, &simulated_at_, &steps_at_), "the time");
     profile_asked_ = false;
+    message = how + ", step " + std::to_string(steps_at_);
+}
+
+void Session::undo() {
+    const std::string what = history_->undoable();
+    history_->undo();
+    went("undone: " + what);
+}
+
+void Session::redo() {
+    const std::string what = history_->redoable();
+    history_->redo();
+    went("done again: " + what);
+}
+
+void Session::go_to(uint64_t step) {
+    paused = true;
+    history_->go_to(step);
+    went("went");
+}
+
+std::filesystem::path Session::save_file() const { return options_.out / "saved.wadi"; }
+
+void Session::save() {
+    history_->save(save_file());
+    message = "saved to " + save_file().string();
+}
+
+void Session::load() {
+    history_->load(save_file());
+    went("loaded from " + save_file().string());
 }
 
 void Session::set_profiling(bool on) {

@@ -1,6 +1,7 @@
 // What the window and the script act on: a world, how it is seen, and tools. Knows no window and no panel.
 #pragma once
 #include "budget.hpp"
+#include "history.hpp"
 #include "level_settings.hpp"
 #include "options.hpp"
 #include "renderer.hpp"
@@ -42,6 +43,16 @@ class Session {
     void draw(const Submission& swapchain, const std::function<void(VkCommandBuffer)>& after);
     void single_step() { steps_due_ += 1; }
 
+    /// The world's timeline. Steps and commands of others than this class go past it: none do.
+    History& history() { return *history_; }
+    /// History::begin(), undo() ... with what the viewer shows beside the world.
+    void undo();
+    void redo();
+    void go_to(uint64_t step); // and pauses
+    void save();               // to save_file()
+    void load();
+    std::filesystem::path save_file() const;
+
     /// The pointer at a pixel of the picture, with the tool's button down or not.
     void point(uint32_t x, uint32_t y, bool pressed);
     void point_away();
@@ -63,10 +74,6 @@ class Session {
     /// Begins again with what was found, if something was since the last call; every advance() does.
     void take_settings();
 
-    std::string check_determinism(uint32_t steps);
-    void set_rollback(uint32_t frames, uint32_t interval);
-    void roll_back(uint64_t step);
-    std::vector<uint64_t> rollback_steps() const;
     void set_profiling(bool on);
     std::vector<wadi_stage_timing> stage_timings() const;
 
@@ -98,6 +105,7 @@ class Session {
     Options options_;
     SimulationChoice choice_;
     std::unique_ptr<Simulation> simulation_;
+    std::unique_ptr<History> history_; // goes first
     std::vector<wadi_material_info> level_material_;
     Budget budget_;
     std::string untuned_variant_;                // of the level, ahead of the variant with found settings
@@ -113,6 +121,7 @@ class Session {
     double host_seconds_ = 0, simulated_at_ = 0; // of the rates
     uint64_t steps_at_ = 0;
 
+    void went(const std::string& how); // to another step
     void take_over(const std::vector<wadi_material_info>& material);
     void queue_edits(double simulated_seconds, double seconds);
     void follow_section();
