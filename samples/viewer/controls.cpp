@@ -14,7 +14,7 @@ void move_camera(Session& session, double seconds, bool over_panel) {
     Camera& camera = session.picture.camera;
     if (!over_panel) {
         const bool turns = ImGui::IsMouseDown(ImGuiMouseButton_Right) ||
-                           (session.tool == Tool::look && ImGui::IsMouseDown(ImGuiMouseButton_Left));
+                           (session.tools.tool == Tool::look && ImGui::IsMouseDown(ImGuiMouseButton_Left));
         if (turns && io.KeyShift)
             camera.look(TURN * io.MouseDelta.x, -TURN * io.MouseDelta.y);
         else if (turns)
@@ -47,8 +47,10 @@ void press_keys(Session& session) {
     if (ImGui::IsKeyPressed(GLFW_KEY_F8, false)) session.load();
     if (ImGui::IsKeyPressed(GLFW_KEY_F12, false)) session.screenshot();
     if (ImGui::IsKeyPressed(GLFW_KEY_F9, false)) session.set_recording(!session.recording());
-    for (int n = 0; n < 10; ++n) {
-        if (ImGui::IsKeyPressed(n == 9 ? GLFW_KEY_0 : GLFW_KEY_1 + n, false)) session.tool = static_cast<Tool>(n);
+    const std::size_t behind = ImGui::GetIO().KeyShift ? 10 : 0;
+    for (std::size_t n = 0; n < 10 && n + behind < std::size(tool_names); ++n) {
+        if (ImGui::IsKeyPressed(n == 9 ? GLFW_KEY_0 : GLFW_KEY_1 + static_cast<int>(n), false))
+            session.tools.tool = static_cast<Tool>(n + behind);
     }
 }
 
