@@ -127,6 +127,12 @@ Status CommandLog::trim() {
 Status CommandLog::set_material(int key, double value) {
     if (auto status = stepper_.finish_step(); !status) return status;
     if (auto status = check_room("set_material", state_.steps, false, 1); !status) return status;
+    auto status = change_material(key, value);
+    if (status) note(MaterialChange{state_.steps, key, value});
+    return status;
+}
+
+Status CommandLog::change_material(int key, double value) {
     if (auto status = check_material_change("set_material", state_.settings(), key, value); !status) return status;
     const Material before = state_.settings().material;
     Material material = before;
@@ -137,7 +143,6 @@ Status CommandLog::set_material(int key, double value) {
     } else if (status && before.young_modulus == 0 && material.young_modulus > 0) {
         status = put_in_balance(state_);
     }
-    if (status) note(MaterialChange{state_.steps, key, value});
     return status;
 }
 
@@ -181,14 +186,9 @@ Status CommandLog::check(const CommandList& list) const {
     for (const auto& [step, of_step] : counts)
         if (of_step.edits > LOG_EDITS_MOST || of_step.others > LOG_COMMANDS_MOST)
             return error(Code::bad_argument, "play_commands: " + too_many_text(step, of_step.edits > LOG_EDITS_MOST));
-    std::map<std::uint64_t, std::uint32_t> sources; // remembered at once, as edits are; the others when they run
-    for (const auto& command : list.commands)
-        if (std::holds_alternative<SourceChange>(command)) ++sources[step_of(command)];
     for (const auto& [step, of_step] : counts) {
         if (auto status = check_room("play_commands", step, true, of_step.edits); !status) return status;
-        const auto found = sources.find(step);
-        if (auto status = check_room("play_commands", step, false, found == sources.end() ? 0 : found->second); !status)
-            return status;
+        if (auto status = check_room("play_commands", step, false, of_step.others); !status) return status;
     }
     // A log lists its commands as they came, edits of later steps among them; they run by step.
     std::stable_sort(by_step.begin(), by_step.end(),
@@ -253,6 +253,7 @@ Status CommandLog::play(std::span<const std::byte> bytes) {
             note(*source);
             sources_.schedule(*source);
         } else {
+            note(command); // a log read before it runs has it, too
             played_.emplace(step_of(command), command);
         }
     }
@@ -273,9 +274,11 @@ Result<std::vector<std::uint32_t>> CommandLog::take_stamps(std::span<const Stamp
 }
 
 Status CommandLog::run(const Command& command) {
-    if (const auto* write = std::get_if<RegionWrite>(&command)) return write_region(write->layer, write->region, write->values);
-    if (const auto* change = std::get_if<MaterialChange>(&command)) return set_material(change->key, change->value);
-    return trim();
+    if (auto status = stepper_.finish_step(); !status) return status;
+    if (const auto* write = std::get_if<RegionWrite>(&command))
+        return wadi::write_region(state_, stepper_, write->layer, write->region, write->values);
+    if (const auto* change = std::get_if<MaterialChange>(&command)) return change_material(change->key, change->value);
+    return wadi::trim(state_, stepper_);
 }
 
 Status CommandLog::at_boundary() {

@@ -99,7 +99,9 @@ class CommandLog {
     /// Whether what is remembered has room for so many more of one step.
     Status check_room(const char* function, std::uint64_t step, bool edits, std::uint32_t more) const;
     Status check(const CommandList& list) const;
+    /// Of what was played; it is remembered already.
     Status run(const Command& command);
+    Status change_material(int key, double value);
 
     WorldState& state_;
     Stepper& stepper_;

@@ -14,7 +14,7 @@ void move_camera(Session& session, double seconds, bool over_panel) {
     Camera& camera = session.picture.camera;
     if (!over_panel) {
         const bool turns = ImGui::IsMouseDown(ImGuiMouseButton_Right) ||
-                           (session.tool == Tool::look && ImGui::IsMouseDown(ImGuiMouseButton_Left));
+                           (session.tools.tool == Tool::look && ImGui::IsMouseDown(ImGuiMouseButton_Left));
         if (turns && io.KeyShift)
             camera.look(TURN * io.MouseDelta.x, -TURN * io.MouseDelta.y);
         else if (turns)
@@ -40,10 +40,17 @@ void press_keys(Session& session) {
         session.single_step();
     }
     if (ImGui::IsKeyPressed(GLFW_KEY_R, false)) session.restart();
+    if (ImGui::GetIO().KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_Z, true))
+        ImGui::GetIO().KeyShift ? session.redo() : session.undo();
+    if (ImGui::GetIO().KeyCtrl && ImGui::IsKeyPressed(GLFW_KEY_Y, true)) session.redo();
+    if (ImGui::IsKeyPressed(GLFW_KEY_F5, false)) session.save();
+    if (ImGui::IsKeyPressed(GLFW_KEY_F8, false)) session.load();
     if (ImGui::IsKeyPressed(GLFW_KEY_F12, false)) session.screenshot();
     if (ImGui::IsKeyPressed(GLFW_KEY_F9, false)) session.set_recording(!session.recording());
-    for (int n = 0; n < 10; ++n) {
-        if (ImGui::IsKeyPressed(n == 9 ? GLFW_KEY_0 : GLFW_KEY_1 + n, false)) session.tool = static_cast<Tool>(n);
+    const std::size_t behind = ImGui::GetIO().KeyShift ? 10 : 0;
+    for (std::size_t n = 0; n < 10 && n + behind < std::size(tool_names); ++n) {
+        if (ImGui::IsKeyPressed(n == 9 ? GLFW_KEY_0 : GLFW_KEY_1 + static_cast<int>(n), false))
+            session.tools.tool = static_cast<Tool>(n + behind);
     }
 }
 
@@ -53,6 +60,7 @@ void handle_input(Session& session, double seconds) {
     const ImGuiIO& io = ImGui::GetIO();
     move_camera(session, seconds, io.WantCaptureMouse);
     try {
+        if (!ImGui::IsAnyMouseDown()) session.history().close(); // what one press did is undone as one
         if (!io.WantTextInput) press_keys(session);
         const bool inside = ImGui::IsMousePosValid() && io.MousePos.x >= 0 && io.MousePos.y >= 0 &&
                             io.MousePos.x < io.DisplaySize.x && io.MousePos.y < io.DisplaySize.y;

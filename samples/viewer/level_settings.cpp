@@ -11,7 +11,8 @@ using Json = nlohmann::ordered_json;
 
 Json read_json(const std::filesystem::path& file) {
     std::ifstream stream(file);
-    return Json::parse(stream, nullptr, false, true); // no exceptions, comments allowed
+    return Json::parse(stream, nullptr, false,
+                       true); // no exceptions, comments allowed
 }
 
 Json read_schema() {
@@ -24,8 +25,10 @@ Json read_schema() {
 
 } // namespace
 
-LevelSettings::LevelSettings(const std::filesystem::path& level_file) {
-    const Json level = level_file.extension() == ".json" ? read_json(level_file) : Json();
+LevelSettings::LevelSettings(const std::filesystem::path& level_file, const std::string& text) {
+    const Json level = !text.empty()                       ? Json::parse(text, nullptr, false, true)
+                       : level_file.extension() == ".json" ? read_json(level_file)
+                                                           : Json();
     const Json schema = read_schema();
     if (!level.is_object() || !schema.is_object()) return;
     level_ = level.dump();

@@ -17,8 +17,9 @@ inline constexpr const char* effect_forces[] = {"auto", "on", "off"};
 class LevelSettings {
   public:
     LevelSettings() = default;
-    /// Without effects for a level that is no JSON file (a terrain map) or where the schema is not found.
-    explicit LevelSettings(const std::filesystem::path& level_file);
+    /// Without effects for a level that is no JSON file (a terrain map) or where the schema is not found. `text` not empty:
+    /// instead of the file's own.
+    explicit LevelSettings(const std::filesystem::path& level_file, const std::string& text = {});
     std::vector<EffectSetting> effects;
     std::map<std::string, std::string> material_help; // by key; begins or ends with the unit
     /// A variant more, or another one of that name; `patch` as JSON.

@@ -117,7 +117,6 @@ FrameParams frame_params(const Picture& picture, const Grid& grid, int width, in
     p.rock = glm::vec4(look.rock, 0.15f * grid.dx);
     p.range = glm::vec4(picture.low, picture.high, longest / 40, longest / 160);
     p.section = picture.section.ends;
-    p.brush = picture.brush;
     p.grid = glm::ivec4(grid.nx, grid.ny, 0, 0);
     p.image = glm::ivec4(width, height, sample, 0);
     p.march_steps = glm::ivec4(quality.primary_steps, quality.reflection_steps, quality.refraction_steps, quality.sky_sectors);

@@ -72,8 +72,8 @@ struct Picture {
     float low = 0, high = 1; // of the view
     bool arrows = false;
     Section section;
-    glm::vec4 brush{0};
     float time = 0;  // moves ripples [s]
+    float scale = 1; // of the sides of what is drawn, and then brought to the picture's size: 0.25 ... 1
     float shift = 0; // of the middle to the right, in half widths: beside a panel
 };
 

@@ -33,9 +33,9 @@ int main_checked(int argc, char** argv) {
     std::string level, size, grid;
     bool only_list_levels = false, only_list_gpus = false;
     CLI::App app("Shows a Wadi level in three dimensions: in a window, or as PNG pictures without one.", "wadi-viewer");
-    app.add_option(
-        "level", level,
-        "level name (--list-levels), level file (.json), level folder or terrain map (.png, .r16, .r32, .raw, .hgt, .npy, .asc)");
+    app.add_option("level", level,
+                   "none: a screen to choose from; or a level name (--list-levels), level file (.json), level folder or terrain "
+                   "map (.png, .r16, .r32, .raw, .hgt, .npy, .asc)");
     app.add_option("--backend", options.simulation.backend, "of the simulation: auto, cpu, vulkan or cuda")
         ->capture_default_str();
     app.add_option("--device", options.simulation.device, "device number within the cpu or cuda backend; -1 = best")
@@ -56,8 +56,8 @@ int main_checked(int argc, char** argv) {
         ->capture_default_str();
     app.add_option("--quality", options.quality, "low, medium or high")->capture_default_str();
     app.add_option("--view", options.view,
-                   "picture, or a quantity as false colour: depth, speed, saturation, froude, sand, sand-speed, "
-                   "foam, height, sky, slope, strain, stress, active, limits")
+                   "picture, or a quantity as false colour: depth, speed, saturation, froude, sand, sand-speed, foam, height, "
+                   "sky, slope, strain, stress, active, limits")
         ->capture_default_str();
     app.add_flag("--arrows", options.arrows, "arrows of velocity");
     app.add_flag("--block", options.block, "the block alone, cut out, instead of land that goes on beyond it");
@@ -97,12 +97,14 @@ int main_checked(int argc, char** argv) {
         options.height = static_cast<uint32_t>(height);
     }
     if (!grid.empty()) parse_size("--grid", grid, 1, 16384, options.simulation.nx, options.simulation.ny);
-    if (level.empty()) throw std::runtime_error("name a level (--list-levels shows the levels, --help the options)");
+    const bool has_start_screen = !options.offscreen || !options.script.empty();
+    if (level.empty() && !has_start_screen)
+        throw std::runtime_error("name a level (--list-levels shows the levels, --help the options)");
     const std::string extension = std::filesystem::path(level).extension().string();
     if (extension == ".png" || extension == ".r16" || extension == ".npy" || extension == ".asc") {
         options.level_name = std::filesystem::path(level).stem().string();
         options.simulation.level_file = level;
-    } else {
+    } else if (!level.empty()) {
         const common::FoundLevel found = common::find_level(level);
         if (!found.error.empty()) throw std::runtime_error(found.error);
         options.level_name = found.name;
@@ -114,6 +116,7 @@ int main_checked(int argc, char** argv) {
     feature_bits(options.without);
     if (!options.offscreen) {
         options.panel = true;
+        options.hold = 100;
         return run_window(options);
     }
     return options.panel || !options.script.empty() ? run_scripted(options) : run_offscreen(options);

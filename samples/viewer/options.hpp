@@ -9,7 +9,7 @@
 namespace viewer {
 
 struct Options {
-    std::string level_name;
+    std::string level_name; // empty: the start screen
     SimulationChoice simulation;
     int gpu = -1;
     bool validate = false;
@@ -20,6 +20,7 @@ struct Options {
     bool arrows = false;
     std::string without; // features, see look.hpp
     bool block = false;
+    double hold = 0; // [ms] that a picture may take: fewer pixels are drawn where it takes longer; 0 = all are drawn
     // offscreen
     bool offscreen = false;
     uint64_t frames = 1;

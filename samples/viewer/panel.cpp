@@ -1,6 +1,6 @@
 #include "panel.hpp"
 #include "../common/levels.hpp"
-#include "controls.hpp"
+#include "material_presets.hpp"
 #include <algorithm>
 #include <cinttypes>
 #include <cmath>
@@ -9,7 +9,6 @@
 namespace viewer {
 namespace {
 
-constexpr float WIDTH = 330; // [pixels]
 constexpr double TUNING_MINUTES = 0.5;
 
 /// A list to choose from; true where another entry was chosen.
@@ -34,7 +33,7 @@ void bar(const char* name, double value, double whole, const char* unit) {
 
 } // namespace
 
-void Panel::draw(Session& session, double frame_seconds) {
+void Panel::draw(Session& session, LevelEditor& editor, double frame_seconds) {
     frame_milliseconds_ += 0.1f * (static_cast<float>(1e3 * frame_seconds) - frame_milliseconds_);
     ImGui::SetNextWindowPos(ImVec2(0, 0));
     ImGui::SetNextWindowSize(ImVec2(WIDTH, ImGui::GetIO().DisplaySize.y));
@@ -42,18 +41,17 @@ void Panel::draw(Session& session, double frame_seconds) {
     ImGui::PushItemWidth(150);
     session.picture.shift = WIDTH / ImGui::GetIO().DisplaySize.x;
     try {
-        simulation(session);
+        simulation(session, editor);
         if (ImGui::CollapsingHeader("Tools", ImGuiTreeNodeFlags_DefaultOpen)) tools(session);
         if (ImGui::CollapsingHeader("Picture", ImGuiTreeNodeFlags_DefaultOpen)) quality(session);
         if (ImGui::CollapsingHeader("Costs", ImGuiTreeNodeFlags_DefaultOpen)) costs(session);
         if (ImGui::CollapsingHeader("Material")) material(session);
         if (ImGui::CollapsingHeader("Effects")) effects(session);
         if (ImGui::CollapsingHeader("Ledger")) ledger(session, frame_seconds);
-        if (ImGui::CollapsingHeader("Back in time")) time_travel(session);
+        if (ImGui::CollapsingHeader("Time", ImGuiTreeNodeFlags_DefaultOpen)) time_travel(session);
     } catch (const std::exception& error) {
         session.message = error.what();
     }
-    if (ImGui::CollapsingHeader("Keys")) ImGui::TextWrapped("%s", controls_help);
     if (!session.message.empty()) {
         ImGui::Separator();
         ImGui::TextWrapped("%s", session.message.c_str());
@@ -63,7 +61,7 @@ void Panel::draw(Session& session, double frame_seconds) {
     if (session.picture.section.shown) profile(session);
 }
 
-void Panel::simulation(Session& session) {
+void Panel::simulation(Session& session, LevelEditor& editor) {
     static const std::vector<common::LevelEntry> levels = common::list_levels();
     int level = -1;
     for (std::size_t n = 0; n < levels.size(); ++n) {
@@ -78,6 +76,9 @@ void Panel::simulation(Session& session) {
         choice.nx = choice.ny = 0;
         session.open(levels[static_cast<std::size_t>(level)].name, choice);
     }
+    if (ImGui::Button("edit (F2)")) editor.shown = !editor.shown;
+    ImGui::SameLine();
+    if (ImGui::Button("write the world as a level")) session.write_world();
     static const std::vector<SimulationDevice> devices = simulation_devices();
     const auto device_at = [&](int n) { return devices[static_cast<std::size_t>(n)].label.c_str(); };
     const auto used = [&](const SimulationDevice& d) {
@@ -151,37 +152,69 @@ void Panel::budget(Session& session) {
 }
 
 void Panel::tools(Session& session) {
-    int tool = static_cast<int>(session.tool);
+    Tools& tools = session.tools;
+    Brush& brush = tools.brush;
+    int tool = static_cast<int>(tools.tool);
     if (choose(
             "tool", [](int n) { return tool_names[n]; }, static_cast<int>(std::size(tool_names)), tool))
-        session.tool = static_cast<Tool>(tool);
+        tools.tool = static_cast<Tool>(tool);
+    ImGui::TextWrapped("%s", tool_help(tools.tool));
     const glm::vec2 lengths = session.simulation().grid.lengths();
     const float longest = std::max(lengths.x, lengths.y), dx = session.simulation().grid.dx;
-    ImGui::SliderFloat("radius [m]", &session.brush_radius, dx, 0.2f * longest, "%.2f", ImGuiSliderFlags_Logarithmic);
-    ImGui::SliderFloat(session.tool == Tool::push ? "strength" : "strength [m/s]", &session.brush_strength, 0.01f, 0.1f * longest,
-                       "%.2f", ImGuiSliderFlags_Logarithmic);
-    for (std::size_t n = 0; n < session.sources.size(); ++n) {
-        PlacedSource& source = session.sources[n];
-        ImGui::PushID(static_cast<int>(n));
-        ImGui::Checkbox("##on", &source.on);
+    const auto is = [&](std::initializer_list<Tool> some) {
+        return std::find(some.begin(), some.end(), tools.tool) != some.end();
+    };
+    if (!is({Tool::look, Tool::section}))
+        ImGui::SliderFloat("radius [m]", &brush.radius, dx, 0.2f * longest, "%.2f", ImGuiSliderFlags_Logarithmic);
+    if (is({Tool::wall, Tool::stamp}))
+        ImGui::SliderFloat("height [m]", &brush.height, 0.01f, 0.1f * longest, "%.2f", ImGuiSliderFlags_Logarithmic);
+    else if (is({Tool::push}))
+        ImGui::SliderFloat("strength", &brush.strength, 0, 1, "%.2f");
+    else if (!is({Tool::look, Tool::section, Tool::smooth}))
+        ImGui::SliderFloat("rate [m/s]", &brush.rate, 0.01f, 0.1f * longest, "%.2f", ImGuiSliderFlags_Logarithmic);
+    if (is({Tool::sand, Tool::wall, Tool::stamp})) {
+        ImGui::SliderFloat("wet", &brush.wetness, 0, 1, "%.2f");
+        if (ImGui::IsItemHovered()) ImGui::SetTooltip("share of its pores that is full: 0 dry, 0.25 damp, 1 soaked");
+    }
+    if (is({Tool::stamp})) {
+        const std::vector<std::string>& names = built_in_stamps();
+        int stamp = static_cast<int>(std::find(names.begin(), names.end(), tools.stamp()) - names.begin());
+        if (choose(
+                "shape", [&](int n) { return names[static_cast<std::size_t>(n)].c_str(); }, static_cast<int>(names.size()),
+                stamp))
+            tools.set_stamp(names[static_cast<std::size_t>(stamp)]);
+        if (ImGui::InputText("or a picture", stamp_file_.data(), stamp_file_.size(), ImGuiInputTextFlags_EnterReturnsTrue))
+            tools.set_stamp(stamp_file_.data()); // an error is shown, and the shape stays
+    }
+    ImGui::TextWrapped("%s", tools.footprint().numbers.c_str());
+    springs(session);
+    ImGui::Text("sand:");
+    for (const MaterialPreset& preset : material_presets()) {
         ImGui::SameLine();
-        bool sand = source.layer == WADI_LAYER_SAND;
-        ImGui::Checkbox("sand", &sand);
-        source.layer = sand ? WADI_LAYER_SAND : WADI_LAYER_WATER;
-        ImGui::SameLine();
-        auto rate = static_cast<float>(source.rate);
-        ImGui::PushItemWidth(80);
-        ImGui::SliderFloat("m/s", &rate, 0.01f, 0.1f * longest, "%.2f", ImGuiSliderFlags_Logarithmic);
-        ImGui::PopItemWidth();
-        source.rate = static_cast<double>(rate);
-        ImGui::SameLine();
-        const bool removed = ImGui::SmallButton("x");
-        ImGui::PopID();
-        if (removed) session.sources.erase(session.sources.begin() + static_cast<std::ptrdiff_t>(n--));
+        if (ImGui::SmallButton(preset.name)) session.set_preset(preset.name);
     }
     if (ImGui::Button("screenshot")) session.screenshot();
     ImGui::SameLine();
     if (ImGui::Button("record (F9 stops)")) session.set_recording(true);
+}
+
+void Panel::springs(Session& session) {
+    const glm::vec2 lengths = session.simulation().grid.lengths();
+    const float most = 0.1f * std::max(lengths.x, lengths.y);
+    for (Spring spring : session.tools.springs()) {
+        if (spring.rate == 0) continue;
+        ImGui::PushID(static_cast<int>(spring.index));
+        ImGui::PushItemWidth(80);
+        bool changed = ImGui::SliderFloat(spring.rate > 0 ? "m/s, spring" : "m/s, drain", &spring.rate, -most, most, "%.2f");
+        ImGui::PopItemWidth();
+        ImGui::SameLine();
+        if (ImGui::SmallButton("close")) {
+            spring.rate = 0;
+            changed = true;
+        }
+        ImGui::PopID();
+        if (changed) session.tools.change(spring);
+    }
 }
 
 void Panel::quality(Session& session) {
@@ -195,6 +228,11 @@ void Panel::quality(Session& session) {
             "quality", [&](int n) { return presets[static_cast<std::size_t>(n)].name.c_str(); }, static_cast<int>(presets.size()),
             preset))
         picture.quality = presets[static_cast<std::size_t>(preset)];
+    bool holds = session.render_scale.target > 0;
+    if (ImGui::Checkbox("hold 10 pictures a second", &holds)) session.render_scale.target = holds ? 100 : 0;
+    ImGui::SameLine();
+    ImGui::Text("%.0f %%", 100.0 * static_cast<double>(session.render_scale.value()));
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("of the picture's width that is drawn, then enlarged");
     ImGui::SliderInt("samples", &picture.quality.samples, 1, 16);
     ImGui::SliderInt("reflection steps", &picture.quality.reflection_steps, 0, 256);
     ImGui::SliderInt("sky sectors", &picture.quality.sky_sectors, 4, 32);
@@ -330,24 +368,31 @@ void Panel::ledger(Session& session, double seconds) {
 }
 
 void Panel::time_travel(Session& session) {
-    bool keeps = rollback_frames_ > 0;
-    ImGui::SliderInt("every n steps", &rollback_interval_, 1, 100);
-    if (ImGui::Checkbox("keep 64 earlier states", &keeps)) {
-        rollback_frames_ = keeps ? 64 : 0;
-        session.set_rollback(rollback_frames_, static_cast<uint32_t>(rollback_interval_));
-    }
-    const std::vector<uint64_t> steps = session.rollback_steps();
-    if (!steps.empty()) {
-        int kept = static_cast<int>(steps.size()) - 1;
-        char text[32];
-        std::snprintf(text, sizeof(text), "step %" PRIu64, steps.back());
-        if (ImGui::SliderInt("back to", &kept, 0, static_cast<int>(steps.size()) - 1, text)) {
-            session.paused = true;
-            session.roll_back(steps[static_cast<std::size_t>(kept)]);
-        }
-    }
-    if (ImGui::Button("check determinism (20 steps)")) determinism_ = session.check_determinism(20);
-    if (!determinism_.empty()) ImGui::TextWrapped("%s", determinism_.c_str());
+    History& history = session.history();
+    const auto action = [&](const char* label, const std::string& what, void (Session::*act)()) {
+        const std::string text = std::string(label) + (what.empty() ? "" : ": " + what);
+        if (ImGui::Button(text.c_str()) && !what.empty()) (session.*act)();
+    };
+    action("undo", history.undoable(), &Session::undo);
+    ImGui::SameLine();
+    action("redo", history.redoable(), &Session::redo);
+    const uint64_t first = history.first(), last = history.last();
+    uint64_t now = session.simulation().frame.total_steps;
+    ImGui::PushItemWidth(-1);
+    const double dt = session.simulation().info.dt;
+    char text[48];
+    std::snprintf(text, sizeof(text), "%.2f of %.2f s", dt * static_cast<double>(now), dt * static_cast<double>(last));
+    if (ImGui::SliderScalar("##scrub", ImGuiDataType_U64, &now, &first, &last, text, ImGuiSliderFlags_NoInput))
+        session.go_to(now);
+    ImGui::PopItemWidth();
+    ImGui::Text("%zu states kept, %.0f MB", history.kept_states(), 1e-6 * static_cast<double>(history.kept_bytes()));
+    if (ImGui::Button("save (F5)")) session.save();
+    ImGui::SameLine();
+    if (ImGui::Button("load (F8)")) session.load();
+    ImGui::SameLine();
+    if (ImGui::Button("replay all")) replay_ = history.replay();
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("from the first state by the command log: the hash must be the same");
+    if (!replay_.empty()) ImGui::TextWrapped("%s", replay_.c_str());
 }
 
 void Panel::profile(const Session& session) {

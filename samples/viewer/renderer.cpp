@@ -2,6 +2,7 @@
 #include "shader_modules.hpp"
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <span>
 #include <stdexcept>
@@ -130,7 +131,7 @@ void Renderer::resize(uint32_t width, uint32_t height) {
         Image(gpu_, width, height, VK_FORMAT_R32G32B32A32_SFLOAT, VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
     colour_ = Image(gpu_, width, height, VK_FORMAT_R16G16B16A16_SFLOAT, VK_IMAGE_USAGE_STORAGE_BIT);
     picture_ = Image(gpu_, width, height, VK_FORMAT_R8G8B8A8_UNORM,
-                     VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | usage_);
+                     VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | usage_);
     if (nx_ > 0) make_descriptor_set();
 }
 
@@ -227,7 +228,7 @@ void Renderer::wait() {
     check(vkWaitForFences(gpu_.device, 1, &done_, VK_TRUE, UINT64_MAX), "vkWaitForFences");
     check(vkResetFences(gpu_.device, 1, &done_), "vkResetFences");
     under_way_ = false;
-    if (!timed()) return;
+    if (!marked_) return;
     std::array<uint64_t, MARKS> ticks{};
     check(vkGetQueryPoolResults(gpu_.device, marks_, 0, MARKS, sizeof(ticks), ticks.data(), sizeof(uint64_t),
                                 VK_QUERY_RESULT_64_BIT | VK_QUERY_RESULT_WAIT_BIT),
@@ -265,8 +266,14 @@ void Renderer::draw(const Picture& what, const Grid& grid, const Sources& source
     if (grid.nx != nx_ || grid.ny != ny_) make_grid_images(grid);
     bind_sources(sources);
     const auto samples = static_cast<uint32_t>(std::clamp(what.quality.samples, 1, MOST_SAMPLES));
+    const auto drawn_side = [&](uint32_t side) {
+        return std::clamp(static_cast<uint32_t>(std::lround(static_cast<float>(side) * what.scale)), 1u, side);
+    };
+    drawn_width_ = drawn_side(width());
+    drawn_height_ = drawn_side(height());
     for (uint32_t n = 0; n < samples; ++n) {
-        FrameParams params = frame_params(what, grid, static_cast<int>(width()), static_cast<int>(height()), static_cast<int>(n));
+        FrameParams params =
+            frame_params(what, grid, static_cast<int>(drawn_width_), static_cast<int>(drawn_height_), static_cast<int>(n));
         params.grid.z = static_cast<int>(levels_);
         params.grid.w = static_cast<int>(base_width_);
         params.image.w = static_cast<int>(base_height_);
@@ -274,9 +281,7 @@ void Renderer::draw(const Picture& what, const Grid& grid, const Sources& source
         std::memcpy(static_cast<char*>(params_.mapped) + n * params_stride_, &params, sizeof(params));
     }
 
-    VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-    begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
-    check(vkBeginCommandBuffer(commands_, &begin), "vkBeginCommandBuffer");
+    begin_commands();
     if (timed()) vkCmdResetQueryPool(commands_, marks_, 0, MARKS);
     // The plugin's passes and copies, and the last picture's readers, come first.
     VkMemoryBarrier ahead{VK_STRUCTURE_TYPE_MEMORY_BARRIER};
@@ -307,9 +312,9 @@ void Renderer::draw(const Picture& what, const Grid& grid, const Sources& source
     dispatch(light_pass_, across, down, 0);
     mark(1);
     for (uint32_t n = 0; n < samples; ++n) {
-        dispatch(see_, width(), height(), n);
+        dispatch(see_, drawn_width_, drawn_height_, n);
         if (n == 0) mark(2);
-        dispatch(shade_, width(), height(), n);
+        dispatch(shade_, drawn_width_, drawn_height_, n);
     }
     mark(3);
     dispatch(finish_, width(), height(), 0);
@@ -319,8 +324,54 @@ void Renderer::draw(const Picture& what, const Grid& grid, const Sources& source
     drawn.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
     vkCmdPipelineBarrier(commands_, VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 1, &drawn, 0,
                          nullptr, 0, nullptr);
+    submit(submission, [&](VkCommandBuffer commands) {
+        if (after) after(commands);
+        mark(5);
+    });
+    marked_ = timed();
+    drawn_ = true;
+}
+
+void Renderer::draw_images(const std::vector<PlacedImage>& images, const Submission& submission,
+                           const std::function<void(VkCommandBuffer)>& after) {
+    wait();
+    begin_commands();
+    const VkImageSubresourceRange whole{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+    const VkClearColorValue dark{{0.06f, 0.07f, 0.08f, 1}};
+    vkCmdClearColorImage(commands_, picture_.handle, VK_IMAGE_LAYOUT_GENERAL, &dark, 1, &whole);
+    VkMemoryBarrier written{VK_STRUCTURE_TYPE_MEMORY_BARRIER};
+    written.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+    written.dstAccessMask = VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT;
+    const auto order = [&] {
+        vkCmdPipelineBarrier(commands_, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT, 0, 1, &written, 0,
+                             nullptr, 0, nullptr);
+    };
+    order();
+    for (const PlacedImage& placed : images) {
+        const auto right = std::min(placed.left + placed.width, static_cast<int>(width())),
+                   bottom = std::min(placed.top + placed.height, static_cast<int>(height()));
+        if (placed.left < 0 || placed.top < 0 || right <= placed.left || bottom <= placed.top) continue;
+        VkImageBlit blit{};
+        blit.srcSubresource = blit.dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
+        blit.srcOffsets[1] = {static_cast<int32_t>(placed.image->width), static_cast<int32_t>(placed.image->height), 1};
+        blit.dstOffsets[0] = {placed.left, placed.top, 0};
+        blit.dstOffsets[1] = {right, bottom, 1};
+        vkCmdBlitImage(commands_, placed.image->handle, VK_IMAGE_LAYOUT_GENERAL, picture_.handle, VK_IMAGE_LAYOUT_GENERAL, 1,
+                       &blit, VK_FILTER_LINEAR);
+    }
+    order();
+    submit(submission, after);
+    marked_ = drawn_ = false;
+}
+
+void Renderer::begin_commands() {
+    VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+    begin.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+    check(vkBeginCommandBuffer(commands_, &begin), "vkBeginCommandBuffer");
+}
+
+void Renderer::submit(const Submission& submission, const std::function<void(VkCommandBuffer)>& after) {
     if (after) after(commands_);
-    mark(5);
     check(vkEndCommandBuffer(commands_), "vkEndCommandBuffer");
 
     std::vector<VkSemaphore> waits, signals;
@@ -355,7 +406,7 @@ void Renderer::draw(const Picture& what, const Grid& grid, const Sources& source
     submit.signalSemaphoreCount = static_cast<uint32_t>(signals.size());
     submit.pSignalSemaphores = signals.data();
     check(vkQueueSubmit(gpu_.queue, 1, &submit, done_), "vkQueueSubmit");
-    under_way_ = drawn_ = true;
+    under_way_ = true;
 }
 
 std::vector<uint8_t> Renderer::read_picture() {
@@ -379,7 +430,8 @@ std::optional<glm::vec3> Renderer::place_at(uint32_t x, uint32_t y) {
     gpu_.run_once([&](VkCommandBuffer commands) {
         VkBufferImageCopy copy{};
         copy.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
-        copy.imageOffset = {static_cast<int32_t>(x), static_cast<int32_t>(y), 0};
+        copy.imageOffset = {static_cast<int32_t>(x * drawn_width_ / width()), static_cast<int32_t>(y * drawn_height_ / height()),
+                            0};
         copy.imageExtent = {1, 1, 1};
         vkCmdCopyImageToBuffer(commands, seen_.handle, VK_IMAGE_LAYOUT_GENERAL, target.handle, 1, &copy);
     });

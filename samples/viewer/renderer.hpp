@@ -14,6 +14,12 @@ struct Milliseconds {
 };
 Milliseconds operator+(const Milliseconds& a, const Milliseconds& b);
 
+/// An image and where it belongs in the picture [pixels].
+struct PlacedImage {
+    const Image* image;
+    int left, top, width, height;
+};
+
 class Renderer {
   public:
     /// `usage`: of the picture, beside being written and copied from.
@@ -32,6 +38,9 @@ class Renderer {
     /// Submits a picture. `after` may add commands that use the picture; it lies in layout GENERAL before and after them.
     void draw(const Picture& what, const Grid& grid, const Sources& sources, bool foreign_memory, const Submission& submission,
               const std::function<void(VkCommandBuffer)>& after);
+    /// Submits a picture of images on a dark ground, instead of a world.
+    void draw_images(const std::vector<PlacedImage>& images, const Submission& submission,
+                     const std::function<void(VkCommandBuffer)>& after);
     Milliseconds times() const { return times_; }
     bool timed() const { return gpu_.nanoseconds_per_tick > 0; }
 
@@ -56,6 +65,8 @@ class Renderer {
     VkFence done_ = VK_NULL_HANDLE;
     VkQueryPool marks_ = VK_NULL_HANDLE;
     bool under_way_ = false, drawn_ = false;
+    bool marked_ = false;                         // the commands under way write all marks
+    uint32_t drawn_width_ = 0, drawn_height_ = 0; // of what finish_ brings to the picture's size
     Milliseconds times_;
 
     Buffer params_;
@@ -70,6 +81,8 @@ class Renderer {
     void make_layouts();
     void make_grid_images(const Grid& grid);
     void make_descriptor_set();
+    void begin_commands();
+    void submit(const Submission& submission, const std::function<void(VkCommandBuffer)>& after);
     void bind_sources(const Sources& sources);
     void barrier() const;
     void mark(uint32_t n) const;

@@ -1,4 +1,6 @@
 #include "script.hpp"
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -11,11 +13,13 @@ namespace {
 
 /// Commands and how many words follow.
 const std::map<std::string, std::size_t> commands = {
-    {"pointer", 2},  {"press", 1},  {"release", 1},     {"wheel", 1},  {"key", 1},     {"tool", 1},     {"radius", 1},
-    {"strength", 1}, {"speed", 1},  {"pause", 0},       {"resume", 0}, {"step", 0},    {"restart", 0},  {"screenshot", 0},
-    {"record", 1},   {"view", 1},   {"quality", 1},     {"arrows", 0}, {"section", 4}, {"backend", 1},  {"level", 2},
-    {"keep", 2},     {"back", 1},   {"determinism", 1}, {"print", 0},  {"resize", 2},  {"minimise", 0}, {"restore", 0},
-    {"material", 2}, {"effect", 2}, {"accuracy", 1},    {"device", 1}, {"budget", 2},
+    {"pointer", 2},  {"press", 1},   {"release", 1},     {"wheel", 1},      {"key", 1},    {"tool", 1},     {"radius", 1},
+    {"strength", 1}, {"rate", 1},    {"height", 1},      {"wet", 1},        {"stamp", 1},  {"numbers", 0},  {"preset", 1},
+    {"hold", 1},     {"scale", 0},   {"write-world", 0}, {"message", 0},    {"close", 0},  {"speed", 1},    {"pause", 0},
+    {"resume", 0},   {"step", 0},    {"restart", 0},     {"screenshot", 0}, {"record", 1}, {"view", 1},     {"quality", 1},
+    {"arrows", 0},   {"section", 4}, {"backend", 1},     {"level", 2},      {"undo", 0},   {"redo", 0},     {"scrub", 1},
+    {"save", 0},     {"load", 0},    {"replay", 0},      {"print", 0},      {"resize", 2}, {"minimise", 0}, {"restore", 0},
+    {"material", 2}, {"effect", 2},  {"accuracy", 1},    {"device", 1},     {"budget", 2},
 };
 
 std::size_t button_number(const std::string& name) {
@@ -25,12 +29,36 @@ std::size_t button_number(const std::string& name) {
     throw std::runtime_error("script: button \"" + name + "\" is none of left, right, middle");
 }
 
+/// A letter, "Tab", "Escape", "F1" ... "F12"; "ctrl+" ahead of it is heeded by the caller.
+int key_number(const std::string& name) {
+    if (name.size() == 1) return static_cast<unsigned char>(name[0]);
+    if (name == "Tab") return GLFW_KEY_TAB;
+    if (name == "Escape") return GLFW_KEY_ESCAPE;
+    for (int n = 1; n <= 12; ++n) {
+        if (name == "F" + std::to_string(n)) return GLFW_KEY_F1 + n - 1;
+    }
+    throw std::runtime_error("script: key \"" + name + "\" is no letter, Tab, Escape or F1 ... F12, with or without ctrl+ ahead");
+}
+
+void close_springs(Session& session) {
+    for (Spring spring : session.tools.springs()) {
+        spring.rate = 0;
+        session.tools.change(spring);
+    }
+}
+
 void print_state(Session& session) {
     wadi_world_stats stats = wadi_default_world_stats();
     check(wadi_world_get_stats(session.simulation().world, &stats), "statistics");
-    std::printf("state step %llu sand %.6f water %.6f sand_in %.6f water_in %.6f kept %zu hash %016llx\n",
-                static_cast<unsigned long long>(stats.steps), stats.sand_volume, stats.water_volume, stats.sand_in,
-                stats.water_in, session.rollback_steps().size(), static_cast<unsigned long long>(stats.hash));
+    const Simulation& simulation = session.simulation();
+    std::vector<float> heights(static_cast<std::size_t>(simulation.info.nx) * static_cast<std::size_t>(simulation.info.ny));
+    check(wadi_world_read_field(simulation.world, WADI_FIELD_TERRAIN, heights.data(), heights.size()), "reading the ground");
+    double ground = 0; // [m3]
+    for (float height : heights) ground += static_cast<double>(height) * simulation.info.dx * simulation.info.dx;
+    std::printf(
+        "state step %llu sand %.6f water %.6f sand_in %.6f water_in %.6f water_out %.6f kept %zu hash %016llx ground %.6f\n",
+        static_cast<unsigned long long>(stats.steps), stats.sand_volume, stats.water_volume, stats.sand_in, stats.water_in,
+        stats.water_out, session.history().kept_states(), static_cast<unsigned long long>(stats.hash), ground);
     std::fflush(stdout);
 }
 
@@ -42,14 +70,22 @@ void run(const Script::Line& line, Session& session) {
             std::string name = tool_names[n];
             for (char& c : name) c = c == ' ' ? '-' : c;
             if (name == line.words[0]) {
-                session.tool = static_cast<Tool>(n);
+                session.tools.tool = static_cast<Tool>(n);
                 return;
             }
         }
         throw std::runtime_error("script: unknown tool \"" + line.words[0] + "\"");
     }
-    if (command == "radius") session.brush_radius = number(0);
-    if (command == "strength") session.brush_strength = number(0);
+    Brush& brush = session.tools.brush;
+    if (command == "radius") brush.radius = number(0);
+    if (command == "rate") brush.rate = number(0);
+    if (command == "height") brush.height = number(0);
+    if (command == "strength") brush.strength = number(0);
+    if (command == "wet") brush.wetness = number(0);
+    if (command == "stamp") session.tools.set_stamp(line.words[0]);
+    if (command == "numbers") std::printf("numbers %s\n", session.tools.footprint().numbers.c_str());
+    if (command == "preset") session.set_preset(line.words[0]);
+    if (command == "close") close_springs(session);
     if (command == "speed") session.speed = number(0);
     if (command == "pause") session.paused = true;
     if (command == "resume") session.paused = false;
@@ -99,10 +135,19 @@ void run(const Script::Line& line, Session& session) {
     }
     if (command == "material") session.set_material(line.words[0], std::stod(line.words[1]));
     if (command == "effect") session.switch_effect(line.words[0], line.words[1] == "on");
-    if (command == "keep") session.set_rollback(static_cast<uint32_t>(number(0)), static_cast<uint32_t>(number(1)));
-    if (command == "back") session.roll_back(std::stoull(line.words[0]));
-    if (command == "determinism")
-        std::printf("determinism %s\n", session.check_determinism(static_cast<uint32_t>(number(0))).c_str());
+    if (command == "undo") session.undo();
+    if (command == "redo") session.redo();
+    if (command == "scrub") session.go_to(std::stoull(line.words[0]));
+    if (command == "save") session.save();
+    if (command == "load") session.load();
+    if (command == "replay") std::printf("replay %s\n", session.history().replay().c_str());
+    if (command == "hold") session.render_scale.target = std::stod(line.words[0]);
+    if (command == "scale") std::printf("scale %g\n", static_cast<double>(session.render_scale.value()));
+    if (command == "write-world") session.write_world();
+    if (command == "message") {
+        std::printf("message %s\n", session.message.c_str());
+        std::fflush(stdout);
+    }
     if (command == "print") print_state(session);
 }
 
@@ -155,10 +200,15 @@ void Script::apply_input(uint64_t frame) {
         if (x_ >= 0) io.MouseDown[n] = down_[n];
     }
     // A key is down for one frame.
-    for (const Line& line : lines(frame, "key")) io.KeysDown[static_cast<unsigned char>(line.words[0][0])] = true;
-    if (frame > 0) {
-        for (const Line& line : lines(frame - 1, "key")) io.KeysDown[static_cast<unsigned char>(line.words[0][0])] = false;
-    }
+    const auto set_keys = [&](uint64_t at, bool down) {
+        for (const Line& line : lines(at, "key")) {
+            const bool with_control = line.words[0].starts_with("ctrl+");
+            io.KeysDown[key_number(line.words[0].substr(with_control ? 5 : 0))] = down;
+            if (with_control) io.KeyCtrl = down;
+        }
+    };
+    if (frame > 0) set_keys(frame - 1, false);
+    set_keys(frame, true);
 }
 
 void Script::apply_commands(uint64_t frame, Session& session) const {

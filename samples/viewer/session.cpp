@@ -1,8 +1,12 @@
 #include "session.hpp"
+#include "../common/files.hpp"
+#include "level_writer.hpp"
+#include "material_presets.hpp"
 #include "picture_file.hpp"
 #include "video.hpp"
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <stdexcept>
@@ -29,31 +33,34 @@ Session::Session(const Gpu& device, Renderer& picture_renderer, const Options& o
 }
 
 void Session::open(const std::string& name, const SimulationChoice& choice) {
+    const bool other = !simulation_ || choice.level_file != choice_.level_file;
+    replace(name, choice, other ? Anew::level : Anew::world);
+}
+
+void Session::replace(const std::string& name, const SimulationChoice& choice, Anew anew) {
     renderer.wait();
     auto made = std::make_unique<Simulation>(gpu, choice); // throws before anything of the old world is touched
-    const bool other_level = !simulation_ || choice.level_file != choice_.level_file;
-    const std::vector<wadi_material_info> kept = other_level ? std::vector<wadi_material_info>() : material();
+    const std::vector<wadi_material_info> kept = anew == Anew::world ? material() : std::vector<wadi_material_info>();
+    history_.reset();
     simulation_ = std::move(made);
+    history_ = std::make_unique<History>(*simulation_);
     take_over(kept);
     choice_ = choice;
     level_name = name;
-    if (other_level) {
-        settings = LevelSettings(choice.level_file);
+    if (anew != Anew::world) settings = LevelSettings(choice.level_file, choice.text);
+    if (anew == Anew::level) {
+        watch_.watch(choice.level_file);
         budget_.stop();
         found_settings.clear();
         picture.camera = camera_preset(options_.camera, simulation_->grid.block,
                                        static_cast<float>(renderer.width()) / static_cast<float>(renderer.height()));
         picture.look.clarity = default_clarity(simulation_->grid);
         picture.section = {};
-        sources.clear();
         switched_off_.clear();
-        const glm::vec2 lengths = simulation_->grid.lengths();
-        brush_radius = 0.04f * std::max(lengths.x, lengths.y);
-        brush_strength = 0.5f * brush_radius;
     }
+    tools.enter(*simulation_, *history_, anew == Anew::level);
     profile.clear();
     profile_asked_ = false;
-    pointed_ = last_pointed_ = std::nullopt;
     profiling = false;
     host_seconds_ = simulated_at_ = 0;
     steps_at_ = 0;
@@ -85,8 +92,55 @@ void Session::take_settings() {
 
 void Session::restart() {
     SimulationChoice choice = choice_;
-    choice.text = settings.text();
+    if (const std::string text = settings.text(); !text.empty()) choice.text = text;
     open(level_name, choice);
+}
+
+// With what the library warns of in the world made just now.
+void Session::tell(const std::string& what) {
+    message = what;
+    for (const std::string& line : take_log()) message += "\n" + line;
+}
+
+std::string Session::level_text() const {
+    if (std::filesystem::path(choice_.level_file).extension() != ".json") return {};
+    std::ifstream file(choice_.level_file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+void Session::try_level(const std::string& text) {
+    SimulationChoice choice = choice_;
+    choice.text = text;
+    replace(level_name, choice, Anew::text);
+    tell("begun again with the edited level");
+}
+
+void Session::write_level_text(const std::string& text) {
+    try_level(text);
+    const std::string error = common::write_file(choice_.level_file, text);
+    if (!error.empty()) throw std::runtime_error("writing the level: " + error);
+    watch_.watch(choice_.level_file);
+    message = "wrote " + choice_.level_file;
+}
+
+void Session::write_world() {
+    const std::filesystem::path folder = options_.out / "level";
+    const std::string settings_text = settings.text();
+    write_level(*simulation_, choice_, settings_text.empty() ? level_text() : settings_text, folder);
+    message = "wrote " + (folder / "level.json").string();
+}
+
+// An editor saved the level: begins again with it, or tells why not.
+void Session::follow_file(double seconds) {
+    if (!watch_.changed(seconds)) return;
+    SimulationChoice choice = choice_;
+    choice.text.clear();
+    try {
+        replace(level_name, choice, Anew::text);
+        tell("the level's file changed: begun again");
+    } catch (const std::exception& error) {
+        message = std::string("the level's file changed, the world goes on: ") + error.what();
+    }
 }
 
 std::vector<wadi_material_info> Session::material() const {
@@ -98,14 +152,31 @@ std::vector<wadi_material_info> Session::material() const {
 }
 
 void Session::set_material(const std::string& name, double value) {
+    history_->begin(name);
     check(wadi_world_set_material(simulation_->world, name.c_str(), value), "changing the material");
+}
+
+void Session::set_preset(const std::string& name) {
+    const MaterialPreset& preset = material_preset(name);
+    const std::vector<wadi_material_info> before = material();
+    history_->begin(name + " sand");
+    for (const auto& [number, value] : preset.numbers) {
+        if (wadi_world_set_material(simulation_->world, number, value) == WADI_OK) continue;
+        const std::string why = wadi_get_last_error();
+        for (const wadi_material_info& info : before) wadi_world_set_material(simulation_->world, info.name, info.value);
+        throw std::runtime_error(name + " sand: " + why);
+    }
+    tools.brush.wetness = preset.wetness;
 }
 
 // Numbers that must stay in order may need another turn.
 void Session::take_over(const std::vector<wadi_material_info>& kept) {
     level_material_ = material();
     for (int turn = 0; turn < 3; ++turn) {
-        for (const wadi_material_info& info : kept) wadi_world_set_material(simulation_->world, info.name, info.value);
+        const std::vector<wadi_material_info> now = material();
+        for (std::size_t n = 0; n < std::min(kept.size(), now.size()); ++n) {
+            if (kept[n].value != now[n].value) wadi_world_set_material(simulation_->world, kept[n].name, kept[n].value);
+        }
     }
 }
 
@@ -154,61 +225,31 @@ void Session::switch_effect(const std::string& effect, bool on) {
         set_material(found->second[n].number, on && none ? found->second[n].usual : values[n]);
 }
 
-void Session::queue_edits(double simulated_seconds, double seconds) {
-    std::vector<wadi_edit> edits;
-    for (const PlacedSource& source : sources) {
-        if (!source.on || simulated_seconds <= 0) continue;
-        wadi_edit edit = wadi_default_edit();
-        edit.layer = source.layer;
-        edit.x0 = source.x;
-        edit.y0 = source.y;
-        edit.radius = source.radius;
-        edit.amount = source.rate * simulated_seconds;
-        edits.push_back(edit);
-    }
-    if (pressed_ && pointed_ && tool >= Tool::add_sand && tool <= Tool::push) {
-        wadi_edit edit = wadi_default_edit();
-        const glm::vec3 from = last_pointed_.value_or(*pointed_);
-        edit.capsule = 1;
-        edit.x0 = static_cast<double>(from.x);
-        edit.y0 = static_cast<double>(from.y);
-        edit.x1 = static_cast<double>(pointed_->x);
-        edit.y1 = static_cast<double>(pointed_->y);
-        edit.radius = static_cast<double>(brush_radius);
-        edit.softness = 1;
-        if (tool == Tool::push) {
-            edit.kind = WADI_EDIT_PUSH;
-            edit.strength = std::clamp(static_cast<double>(brush_strength), 0.0, 1.0);
-            edit.velocity_x = (edit.x1 - edit.x0) / std::max(seconds, 1e-3);
-            edit.velocity_y = (edit.y1 - edit.y0) / std::max(seconds, 1e-3);
-        } else {
-            const bool takes = tool == Tool::take_sand || tool == Tool::take_water || tool == Tool::lower;
-            edit.layer = tool == Tool::add_sand || tool == Tool::take_sand     ? WADI_LAYER_SAND
-                         : tool == Tool::add_water || tool == Tool::take_water ? WADI_LAYER_WATER
-                                                                               : WADI_LAYER_TERRAIN;
-            edit.amount = (takes ? -1 : 1) * static_cast<double>(brush_strength) * seconds;
-        }
-        edits.push_back(edit);
-    }
-    last_pointed_ = pressed_ ? pointed_ : std::nullopt;
-    if (edits.empty()) return;
-    const wadi_result result = wadi_world_edit(simulation_->world, edits.data(), static_cast<uint32_t>(edits.size()));
-    if (result != WADI_OK) message = wadi_get_last_error();
-}
-
 void Session::advance(double seconds) {
     seconds = recording_ ? RECORDED_FRAME : std::clamp(seconds, 0.0, 0.1);
     take_settings();
+    follow_file(seconds);
     const bool stands = paused || budget_.running();
     const double simulated = stands ? 0 : seconds * static_cast<double>(speed);
-    queue_edits(stands ? steps_due_ * simulation_->info.dt : simulated, seconds);
+    if (!budget_.running()) use_tool(seconds);
+    if (simulated > 0 || steps_due_ > 0) history_->follow();
     if (stands && steps_due_ > 0) simulation_->step(steps_due_);
     steps_due_ = 0;
     simulation_->show(host_field_of(picture.view));
     simulation_->update(static_cast<uint64_t>(simulated * 1e9));
+    history_->keep();
     count_rates(seconds);
     follow_section();
     for (const std::string& line : take_log()) message = line;
+}
+
+// What a tool does shows while the world stands, too: such a picture takes one step.
+void Session::use_tool(double seconds) {
+    try {
+        if (tools.act(seconds) && paused && steps_due_ == 0) steps_due_ = 1;
+    } catch (const std::exception& error) {
+        message = error.what();
+    }
 }
 
 void Session::count_rates(double seconds) {
@@ -224,6 +265,7 @@ void Session::count_rates(double seconds) {
 
 void Session::draw(const Submission& swapchain, const std::function<void(VkCommandBuffer)>& after) {
     picture.time = static_cast<float>(simulation_->frame.time + simulation_->frame.interpolation * simulation_->info.dt);
+    picture.scale = picture_is_kept() ? 1.0f : render_scale.value();
     renderer.wait(); // the last picture reads what is filled now
     const Sources& outputs = simulation_->sources(recording_);
     Submission submission = simulation_->next_submission();
@@ -246,31 +288,19 @@ void Session::draw(const Submission& swapchain, const std::function<void(VkComma
 void Session::point(uint32_t x, uint32_t y, bool pressed) {
     const bool begins = pressed && !pressed_;
     pressed_ = pressed;
-    picture.brush.w = 0;
-    if (tool == Tool::look) return;
-    pointed_ = renderer.place_at(x, y);
-    if (!pointed_) return;
-    if (tool != Tool::section) picture.brush = {pointed_->x, pointed_->y, brush_radius, 1};
-    if (tool == Tool::section && pressed) {
-        if (begins) picture.section.ends = {pointed_->x, pointed_->y, pointed_->x, pointed_->y};
-        picture.section.ends.z = pointed_->x;
-        picture.section.ends.w = pointed_->y;
-        picture.section.shown = true;
-    }
-    if (tool == Tool::spring && begins) {
-        PlacedSource source;
-        source.x = static_cast<double>(pointed_->x);
-        source.y = static_cast<double>(pointed_->y);
-        source.radius = static_cast<double>(brush_radius);
-        source.rate = static_cast<double>(brush_strength);
-        sources.push_back(source);
-    }
+    if (tools.tool == Tool::look) return tools.point(std::nullopt, false);
+    const std::optional<glm::vec3> place = renderer.place_at(x, y);
+    tools.point(place, pressed);
+    if (tools.tool != Tool::section || !pressed || !place) return;
+    if (begins) picture.section.ends = {place->x, place->y, place->x, place->y};
+    picture.section.ends.z = place->x;
+    picture.section.ends.w = place->y;
+    picture.section.shown = true;
 }
 
 void Session::point_away() {
     pressed_ = false;
-    pointed_ = last_pointed_ = std::nullopt;
-    picture.brush.w = 0;
+    tools.point(std::nullopt, false);
 }
 
 void Session::follow_section() {
@@ -302,42 +332,41 @@ void Session::follow_section() {
     profile_asked_ = true;
 }
 
-std::string Session::check_determinism(uint32_t steps) {
-    std::size_t size = 0;
-    check(wadi_world_save(simulation_->world, nullptr, &size), "the size of a snapshot");
-    std::vector<char> snapshot(size);
-    check(wadi_world_save(simulation_->world, snapshot.data(), &size), "saving");
-    uint64_t hashes[2] = {};
-    for (uint64_t& hash : hashes) {
-        simulation_->step(steps);
-        check(wadi_world_get_hash(simulation_->world, &hash), "the state's hash");
-        check(wadi_world_load(simulation_->world, snapshot.data(), size), "loading");
-    }
-    char text[160];
-    std::snprintf(text, sizeof(text), "%s: %u steps twice from one snapshot, hash %016llx and %016llx",
-                  hashes[0] == hashes[1] ? "equal" : "DIFFERENT", steps, static_cast<unsigned long long>(hashes[0]),
-                  static_cast<unsigned long long>(hashes[1]));
-    return text;
-}
-
-void Session::set_rollback(uint32_t frames, uint32_t interval) {
-    check(wadi_world_set_rollback(simulation_->world, frames, interval), "keeping earlier states");
-}
-
-std::vector<uint64_t> Session::rollback_steps() const {
-    uint32_t count = 0;
-    check(wadi_world_get_rollback_steps(simulation_->world, nullptr, &count), "kept states");
-    std::vector<uint64_t> steps(count);
-    check(wadi_world_get_rollback_steps(simulation_->world, steps.data(), &count), "kept states");
-    return steps;
-}
-
-void Session::roll_back(uint64_t step) {
-    uint64_t reached = 0;
-    check(wadi_world_roll_back(simulation_->world, step, &reached), "rolling back");
-    simulated_at_ = static_cast<double>(reached) * simulation_->info.dt;
-    steps_at_ = reached;
+void Session::went(const std::string& how) {
+    simulated_at_ = 0;
+    check(wadi_world_get_time(simulation_->world, &simulated_at_, &steps_at_), "the time");
     profile_asked_ = false;
+    message = how + ", step " + std::to_string(steps_at_);
+}
+
+void Session::undo() {
+    const std::string what = history_->undoable();
+    history_->undo();
+    went("undone: " + what);
+}
+
+void Session::redo() {
+    const std::string what = history_->redoable();
+    history_->redo();
+    went("done again: " + what);
+}
+
+void Session::go_to(uint64_t step) {
+    paused = true;
+    history_->go_to(step);
+    went("went");
+}
+
+std::filesystem::path Session::save_file() const { return options_.out / "saved.wadi"; }
+
+void Session::save() {
+    history_->save(save_file());
+    message = "saved to " + save_file().string();
+}
+
+void Session::load() {
+    history_->load(save_file());
+    went("loaded from " + save_file().string());
 }
 
 void Session::set_profiling(bool on) {

@@ -121,6 +121,9 @@ Simulation::Simulation(const Gpu& gpu, const SimulationChoice& choice) : gpu_(gp
         on_host_ = std::string(info.backend) == "cpu";
         if (std::string(info.backend) == "cuda") timeline_ = make_exportable_timeline(gpu);
 
+        wadi_world_stats stats = wadi_default_world_stats();
+        check(wadi_world_get_stats(world, &stats), "statistics");
+        quantum_ = stats.quantum;
         grid.nx = info.nx;
         grid.ny = info.ny;
         grid.dx = static_cast<float>(info.dx);

@@ -70,6 +70,8 @@ class Simulation {
     void update(uint64_t nanoseconds);
     /// Whole steps beside the clock; outputs follow with the next update.
     void step(uint32_t steps);
+    /// Depths are multiples of it [m]; 0: of nothing.
+    double quantum() const { return quantum_; }
     /// Outputs of the newest update. `whole`: waits until the host has those of the last step (CPU backend; the others never
     /// wait).
     const Sources& sources(bool whole);
@@ -85,6 +87,7 @@ class Simulation {
     Sources sources_{};
     std::array<Buffer, 7> staging_; // CPU backend
     Buffer host_field_buffer_;      // one row of zeros while there is none
+    double quantum_ = 0;
     HostField host_field_ = HostField::none;
     bool on_host_ = false;
     VkSemaphore timeline_ = VK_NULL_HANDLE;

@@ -29,7 +29,7 @@ using Window = std::unique_ptr<GLFWwindow, decltype(&glfwDestroyWindow)>;
 int run_window(const Options& options) {
     const Glfw glfw;
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
-    const std::string title = "Wadi: " + options.level_name;
+    const std::string title = options.level_name.empty() ? "Wadi" : "Wadi: " + options.level_name;
     const Window window(
         glfwCreateWindow(static_cast<int>(options.width), static_cast<int>(options.height), title.c_str(), nullptr, nullptr),
         glfwDestroyWindow);
@@ -80,8 +80,8 @@ int run_window(const Options& options) {
         }
         app.renderer.wait();
         std::printf("frames %llu, t = %.3f s, window %u x %u, minimised for %llu frames\n",
-                    static_cast<unsigned long long>(app.frames()), app.session.simulation().frame.time, app.renderer.width(),
-                    app.renderer.height(), static_cast<unsigned long long>(minimised_frames));
+                    static_cast<unsigned long long>(app.frames()), app.session ? app.session->simulation().frame.time : 0.0,
+                    app.renderer.width(), app.renderer.height(), static_cast<unsigned long long>(minimised_frames));
     }
     if (options.validate) std::printf("validation %u messages\n", validation_messages());
     return validation_messages() == 0 ? 0 : 3;

@@ -148,9 +148,10 @@ TEST_CASE("a log that was played is remembered as if it had been called") {
     const Site second;
     REQUIRE(wadi_world_set_command_log(second.id, 1) == WADI_OK);
     REQUIRE(wadi_world_play_commands(second.id, log.data(), log.size()) == WADI_OK);
+    CHECK(second.commands() == log); // before any of it has run
     second.step(41);
     const auto copy = second.commands();
-    CHECK(copy.size() == log.size());
+    CHECK(copy == log);
     const Site third;
     REQUIRE(wadi_world_play_commands(third.id, copy.data(), copy.size()) == WADI_OK);
     third.step(41);

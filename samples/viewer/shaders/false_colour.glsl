@@ -49,9 +49,5 @@ float arrow_cover(vec2 xy, float pixel) {
 vec3 draw_marks(vec3 colour, vec2 xy, float pixel) {
     if (F.view.y != 0) colour = mix(colour, vec3(0.95), arrow_cover(xy, pixel));
     if (F.view.z != 0) colour = mix(colour, vec3(0.9, 0.05, 0.02), stroke(xy, F.section.xy, F.section.zw, 1.2 * pixel, pixel));
-    if (F.brush.w > 0.0) {
-        float off = abs(length(xy - F.brush.xy) - F.brush.z);
-        colour = mix(colour, vec3(1.0, 0.85, 0.3), 1.0 - smoothstep(pixel, 2.2 * pixel, off));
-    }
     return colour;
 }

@@ -204,7 +204,7 @@ void main() {
         float x = (quantity_at(F.view.x, place.xy) - F.range.x) / (F.range.y - F.range.x);
         colour = ramp(x) * shape;
     }
-    bool marked = F.view.y != 0 || F.view.z != 0 || F.brush.w > 0.0;
+    bool marked = F.view.y != 0 || F.view.z != 0;
     WHERE (marked && (kind == KIND_SOLID || kind == KIND_WATER)) colour = draw_marks(colour, place.xy, pixel_size);
 
     if (F.image.z > 0) colour = mix(imageLoad(to_colour, pixel).rgb, colour, F.lens.z);
