@@ -37,7 +37,7 @@ play() { # FOLDER EXTENSION [FACTOR]
 
 in_wine "$work/program/host.exe" "$castle" "$here/scene.txt" "$work/host" >"$work/host/hashes.txt" 2>"$work/host/log.txt" ||
     { cat "$work/host/log.txt" >&2; fail "the C host failed"; }
-[ "$(grep -c '^[0-9a-f]\{16\}$' "$work/host/hashes.txt")" = 3 ] || fail "the C host printed no three hashes"
+[ "$(grep -c '^[0-9a-f]\{16\}$' "$work/host/hashes.txt")" = 4 ] || fail "the C host printed no four hashes"
 play "$work/play" "$libraries/wadi_godot.dll" || { cat "$work/play/log.txt" >&2; fail "the extension failed"; }
 diff -r -x log.txt "$work/host" "$work/play" >&2 || fail "the extension's results are not the host's"
 

@@ -46,6 +46,32 @@ static void print_hash(Thing* terrain) {
     free_value(&hash);
 }
 
+/* Sources of the scene by its numbers: those of the node, -1 for what is not open. */
+static bool act_on_source(Thing* terrain, const char* line, double factor) {
+    static int64_t open[4] = {-1, -1, -1, -1};
+    double v[4];
+    unsigned n;
+    int layer;
+    if (sscanf(line, "close %u", &n) == 1 && n < 4) {
+        good(CALL(terrain, "close_source", an_integer(open[n])), line);
+        open[n] = -1;
+        return true;
+    }
+    if (sscanf(line, "tap %u %d %lf %lf %lf", &n, &layer, v, v + 1, v + 3) == 5)
+        v[2] = 0.01; /* holds no middle of a cell */
+    else if (sscanf(line, "source %u %d %lf %lf %lf %lf", &n, &layer, v, v + 1, v + 2, v + 3) != 6)
+        return false;
+    if (n >= 4) return false;
+    const Variant at = a_place((float)v[0], 0, (float)v[1]), discharge = a_number(v[3] * factor);
+    if (open[n] >= 0) {
+        good(CALL(terrain, "set_source", an_integer(open[n]), an_integer(layer), at, a_number(v[2]), discharge), line);
+    } else {
+        open[n] = whole(CALL(terrain, "open_source", an_integer(layer), at, a_number(v[2]), discharge));
+        expect(open[n] >= 0, line);
+    }
+    return true;
+}
+
 static void act(Thing* terrain, const char* line, double factor) {
     double v[8];
     int layer, steps;
@@ -68,7 +94,7 @@ static void act(Thing* terrain, const char* line, double factor) {
              line);
     } else if (sscanf(line, "material %63s %lf", name, v) == 2) {
         good(CALL(terrain, "set_material", a_text(name), a_number(v[0])), line);
-    } else {
+    } else if (!act_on_source(terrain, line, factor)) {
         expect(false, line);
     }
 }
