@@ -76,7 +76,9 @@ class Gpu {
         VkInstanceCreateInfo instance_info{VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO, nullptr, 0, &application};
         instance_info.enabledExtensionCount = static_cast<uint32_t>(instance_extensions.size());
         instance_info.ppEnabledExtensionNames = instance_extensions.data();
-        check(vkCreateInstance(&instance_info, nullptr, &instance), "vkCreateInstance");
+        const VkResult made = vkCreateInstance(&instance_info, nullptr, &instance);
+        if (made == VK_ERROR_INCOMPATIBLE_DRIVER) throw Missing("no Vulkan driver; mesa-vulkan-drivers brings one in software");
+        check(made, "vkCreateInstance");
         undo_.add([this] { vkDestroyInstance(instance, nullptr); });
         choose();
         const float priority = 1;

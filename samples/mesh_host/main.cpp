@@ -121,8 +121,8 @@ int run(int argc, char** argv) {
     }
     uint64_t hash = 0;
     check(wadi_world_get_hash(world.id, &hash), "the state's hash");
-    std::printf("%llu frames, t = %.3f s, hash %016llx\n", static_cast<unsigned long long>(frames), world.frame.time,
-                static_cast<unsigned long long>(hash));
+    std::printf("%llu frames of %u x %u pixels, t = %.3f s, hash %016llx\n", static_cast<unsigned long long>(frames), size.width,
+                size.height, world.frame.time, static_cast<unsigned long long>(hash));
     return 0;
 }
 
