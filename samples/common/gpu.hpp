@@ -306,7 +306,7 @@ class Gpu {
     void choose() { // of devices that draw and compute: not a software device, if there is another
         VkPhysicalDevice devices[16];
         uint32_t count = 16;
-        vkEnumeratePhysicalDevices(instance, &count, devices);
+        check(vkEnumeratePhysicalDevices(instance, &count, devices), "vkEnumeratePhysicalDevices");
         for (uint32_t n = 0; n < count; ++n) {
             VkPhysicalDeviceProperties has;
             vkGetPhysicalDeviceProperties(devices[n], &has);

@@ -100,7 +100,7 @@ def test_holes(host):
         assert holes == 0, f"{place}: {holes} pixels of background"
     torn = [sum(background(*pixel) for pixel in pixels(host.changed("no morphing").picture(*scene, *place))) for place in places]
     print(f"holes: none; {torn[0]} and {torn[1]} pixels without morphing")
-    assert min(torn) > 0, "a mesh without morphing has no holes: this test sees nothing"
+    assert sum(torn) > 4, "a mesh without morphing has no holes: this test sees nothing"
 
 
 def test_water(host):
