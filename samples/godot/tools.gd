@@ -31,7 +31,8 @@ func point(place: Vector2, tool: int, working: bool, held: float, most: float) -
 		var out := Vector2.from_angle(TAU * n / POINTS)
 		for reach: float in [0.88, 1.0]:
 			var there := place + out * radius * reach
-			_ring.surface_add_vertex(Vector3(there.x, height.call(there) + 0.05 * radius, there.y))
+			var on := maxf(height.call(there), _at.y - 0.6 * radius) + 0.05 * radius  # not down a steep wall
+			_ring.surface_add_vertex(Vector3(there.x, on, there.y))
 	_ring.surface_end()
 	($Ring.material_override as StandardMaterial3D).albedo_color = COLOURS[tool]
 	_worked += 0.35 if working else 0.0
