@@ -17,10 +17,12 @@ namespace {
 constexpr std::uint32_t sand_laws = EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION | EFFECT_RETENTION;
 
 // With none of the sand's laws and with all that are legal, a few with some of them, and a few with each of what adds no pass but
-// its own to any other: the water's viscosity, a map of rain, a rate of infiltration. Under sanitizers a few of all.
+// its own to any other: the water's viscosity, a map of rain, a rate of infiltration, foam, wetness. Under sanitizers a few of
+// all.
 std::vector<std::uint32_t> legal_masks() {
-    constexpr std::array lone = {EFFECT_SHOCK_VISCOSITY, EFFECT_RAIN_MAP, EFFECT_INFILTRATION};
-    constexpr std::uint32_t any_lone = EFFECT_SHOCK_VISCOSITY | EFFECT_RAIN_MAP | EFFECT_INFILTRATION;
+    constexpr std::array lone = {EFFECT_SHOCK_VISCOSITY, EFFECT_RAIN_MAP, EFFECT_INFILTRATION, EFFECT_FOAM, EFFECT_WETNESS};
+    constexpr std::uint32_t any_lone =
+        EFFECT_SHOCK_VISCOSITY | EFFECT_RAIN_MAP | EFFECT_INFILTRATION | EFFECT_FOAM | EFFECT_WETNESS;
     std::uint32_t all = all_effects;
     for (const auto& choice : choice_table()) all |= choice.bit;
     all &= ~any_lone;
