@@ -155,7 +155,7 @@ def main():
     parser.add_argument("--coarse", type=int, default=1, help="cells N times as wide as the level's, for slow machines")
     parser.add_argument("--panels", type=pathlib.Path, help="keeps each panel in this folder, and takes from it what is there")
     parser.add_argument("--only", choices=("moments", "panels"), help="panels of three moments of each level, or all panels, and nothing put together; wants --panels")
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
     if options.coarse < 1 or (options.only and options.panels is None):
         parser.error("--coarse: allowed are 1 or more; --only wants --panels")
     folders = sorted(path.parent for path in LEVELS.glob("*/level.json"))

@@ -121,7 +121,7 @@ FrameParams frame_params(const Picture& picture, const Grid& grid, int width, in
     p.image = glm::ivec4(width, height, sample, 0);
     p.march_steps = glm::ivec4(quality.primary_steps, quality.reflection_steps, quality.refraction_steps, quality.sky_sectors);
     p.view = glm::ivec4(picture.view, picture.arrows ? 1 : 0, picture.section.shown ? 1 : 0, quality.smooth_edges ? 1 : 0);
-    p.features = glm::ivec4(static_cast<int>(look.features), 0, 0, 0);
+    p.features = glm::ivec4(static_cast<int>(look.features), grid.foam_drifts ? 1 : 0, 0, 0);
     return p;
 }
 

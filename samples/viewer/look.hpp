@@ -80,8 +80,9 @@ struct Picture {
 /// The grid that is drawn.
 struct Grid {
     int nx = 1, ny = 1;
-    float dx = 1; // [m]
-    Block block;  // low.z: where the block is cut off below
+    float dx = 1;             // [m]
+    Block block;              // low.z: where the block is cut off below
+    bool foam_drifts = false; // the world has effect foam
     glm::vec2 lengths() const { return {static_cast<float>(nx) * dx, static_cast<float>(ny) * dx}; }
 };
 

@@ -86,6 +86,15 @@ std::vector<SimulationDevice> simulation_devices() {
     return devices;
 }
 
+static bool has_effect(wadi_world_id world, const std::string& name) {
+    uint32_t count = 0;
+    check(wadi_world_get_effects(world, nullptr, &count), "effects");
+    std::vector<wadi_effect_info> effects(count);
+    check(wadi_world_get_effects(world, effects.data(), &count), "effects");
+    return std::any_of(effects.begin(), effects.end(),
+                       [&](const wadi_effect_info& one) { return one.on != 0 && one.name == name; });
+}
+
 Simulation::Simulation(const Gpu& gpu, const SimulationChoice& choice) : gpu_(gpu) {
     wadi_vulkan_host host = wadi_default_vulkan_host();
     host.instance = gpu.instance;
@@ -119,6 +128,7 @@ Simulation::Simulation(const Gpu& gpu, const SimulationChoice& choice) : gpu_(gp
         info = wadi_default_world_info();
         check(wadi_world_get_info(world, &info), "describing the world");
         on_host_ = std::string(info.backend) == "cpu";
+        grid.foam_drifts = has_effect(world, "foam");
         if (std::string(info.backend) == "cuda") timeline_ = make_exportable_timeline(gpu);
 
         wadi_world_stats stats = wadi_default_world_stats();

@@ -35,7 +35,7 @@ def main():
     parser.add_argument("levels", nargs="*", help="default: all")
     parser.add_argument("--backend", default="auto")
     parser.add_argument("--update", action="store_true")
-    options = parser.parse_args()
+    options = parser.parse_intermixed_args()
     levels = options.levels or sorted(file.parent.name for file in LEVELS.glob("*/expected.json"))
     rows, failed = [], []
     for level in levels:

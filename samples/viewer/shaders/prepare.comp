@@ -17,9 +17,10 @@ layout(set = 0, binding = 16, rgba16f) writeonly uniform image2D to_flow;
 
 int at(int source, ivec2 c, int floats) { return F.source[source].x + c.y * F.source[source].y + c.x * floats; }
 
-// The plugin's foam is that of fast water and of breaking fronts. A wide, even, fast sheet would be white all over by the first:
-// it keeps a share, and a front, where the water runs together, all of it.
+// With effect foam the plugin's is that which drifts and lies ashore. Else it is that of fast water and of breaking fronts. A wide,
+// even, fast sheet would be white all over by the first: it keeps a share, and a front, where the water runs together, all of it.
 float seen_foam(ivec2 c, float depth) {
+    if (F.features.y != 0) return foam[at(4, c, 1)];
     ivec2 low = max(c - 1, ivec2(0)), high = min(c + 1, F.grid.xy - 1);
     vec2 run = F.domain.x * vec2(max(high - low, ivec2(1)));
     float divergence = (water_velocity[at(5, ivec2(high.x, c.y), 2)] - water_velocity[at(5, ivec2(low.x, c.y), 2)]) / run.x +

@@ -180,6 +180,10 @@ void main() {
                 g.sun = mix(g.sun, lit.x, 0.5) * caustics_at(ground.xy, down, pixel_size) * exp(-0.35 * dot(F.water.rgb, vec3(0.33)) * down);
             }
             vec3 light_back = shade_ground(g);
+            WHERE (F.features.y != 0 && kind == KIND_SOLID) { // what the water has left
+                float left = textureLod(matter, uv, 0.0).y;
+                light_back = mix(light_back, foam_colour(g.normal, vec4(g.sun, g.sky, 0.0, 0.0)), foam_cover(carried_at(place.xy, vec2(0.0)), left, 0.0, pixel_size));
+            }
             if (turn == 0) colour = light_back;
             else mirror_colour = light_back;
         }

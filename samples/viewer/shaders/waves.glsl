@@ -29,7 +29,7 @@ vec2 ripple_slopes(Carried c, float speed, float pixel) {
 
 // Share of the surface under bubbles: a net that the flow carries, whose meshes of 62, 21 and 7 cm close as there is more foam.
 float foam_cover(Carried c, float foam, float depth, float pixel) {
-    foam *= smoothstep(0.0, 0.04, depth); // a film does not foam
+    if (F.features.y == 0) foam *= smoothstep(0.0, 0.04, depth); // a film does not foam
     float cover = 0.0, tone = 0.0, scale = max(1.0, 1.5 * F.domain.x);
     WHERE (drawn(FOAM) && foam > 0.01) {
         float net = 0.0;
