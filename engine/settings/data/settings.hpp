@@ -88,7 +88,7 @@ struct Method {
 /// What water leaves behind to be seen; moves nothing. NUMERICS 2.25 and 2.26.
 struct Surface {
     double foam_half_life = 4;
-    double foam_energy = 20;
+    double foam_energy = 500;
     double wetness_half_life = 30;
 };
 
