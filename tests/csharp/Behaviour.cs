@@ -227,7 +227,7 @@ static class Behaviour
         }
         string notes;
         Expect(Library.ListDevices(out notes).Any(d => d.Backend == "cpu" && d.Name.Length > 0 && d.IsSoftware), "devices");
-        Expect(Library.ListAccuracyPresets().Select(p => p.Name).SequenceEqual(new[] { "draft", "balanced", "accurate" }), "presets");
+        Expect(Library.ListAccuracyPresets().Select(p => p.Name).SequenceEqual(new[] { "draft", "balanced", "accurate", "fine" }), "presets");
         Expect(Library.DescribeTable("settings").Contains("friction") && Library.FieldName((Field)77) == null && Library.Version.Contains("."), "tables");
         var body = Body.Default;
         body.PositionX = body.PositionY = 3;

@@ -310,9 +310,11 @@ TEST_CASE("devices are listed, and a small buffer is filled no further") {
     REQUIRE(wadi_list_accuracy_presets(nullptr, &count) == WADI_OK);
     std::vector<wadi_accuracy_preset> presets(count);
     REQUIRE(wadi_list_accuracy_presets(presets.data(), &count) == WADI_OK);
-    REQUIRE(presets.size() == 3);
-    for (std::size_t n = 1; n < presets.size(); ++n) CHECK(presets[n].cells > presets[n - 1].cells);
+    REQUIRE(presets.size() == 4);
+    for (std::size_t n = 1; n < 3; ++n) CHECK(presets[n].cells > presets[n - 1].cells);
     CHECK(std::string(presets[1].name) == "balanced");
+    CHECK(std::string(presets[3].name) == "fine");
+    CHECK(presets[3].cells == 0); // the level's
     REQUIRE(wadi_list_devices(nullptr, &count, nullptr, 0) == WADI_OK);
     REQUIRE(count >= 1);
     std::vector<wadi_device_info> infos(count + 1);
