@@ -22,7 +22,7 @@ with tempfile.TemporaryDirectory() as folder:
     table = pathlib.Path(folder) / "perf.csv"
     table.write_text(run(sys.argv[1], "perf", "--backend", "cpu", "--max-size", 128, "--repeats", 2, "--output", "csv"))
     steps = [row for row in perf_table.read(table) if row["row"].startswith("step, ")]
-    assert len(steps) == 6, steps
+    assert len(steps) == 7, steps
     for row in steps:
         assert 0 < row["floor_ms"] < row["median_ms"] <= row["p95_ms"], row
         assert row["bytes_per_cell"] == {"step, all effects": 168, "step, sand of the paper": 132}.get(row["row"], row["bytes_per_cell"]), row
