@@ -48,7 +48,7 @@ func _points() -> int:
 
 
 func _medal() -> Score.Medal:
-	return Score.Medal.GOLD if _points() > 240 else Score.Medal.SILVER if _points() > 120 else Score.Medal.BRONZE
+	return Score.Medal.GOLD if _points() > 100 else Score.Medal.SILVER if _points() > 50 else Score.Medal.BRONZE
 
 
 ## A breach in each dam, begun before the water is there.
