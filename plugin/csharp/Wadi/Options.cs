@@ -61,7 +61,7 @@ namespace Wadi
         public string Method;
         /// <summary>One of the level's variants. Not for terrain maps.</summary>
         public string Variant;
-        /// <summary>"draft", "balanced" or "accurate": half, all or twice the level's cells along x and y.</summary>
+        /// <summary>"draft", "balanced" or "accurate": half, all or twice the level's cells along x and y; "fine": those of its fine_grid, for graphics cards.</summary>
         public string Accuracy;
         public ActiveTiles ActiveTiles;
         public Choice FusedStages;
