@@ -31,6 +31,15 @@ tests() { # PRESET CTEST_OPTION ...
     say "test $1 ${*:2}"
     ctest --preset "$1" -j "$jobs" "${@:2}"
 }
+failures() { # PRESET: of each of its tests that failed, what says so, or else its last lines
+    local name said logs=build/$1/Testing/Temporary
+    [ -s "$logs/LastTestsFailed.log" ] || return 0
+    cut -d : -f 2 "$logs/LastTestsFailed.log" | while read -r name; do
+        said=$(sed -n "\\|Testing: $name\$|,/^Test time =/p" "$logs/LastTest.log")
+        printf '\n-- %s, test %s:\n' "$1" "$name"
+        { grep -E -B 6 -A 3 'ERROR:|FAILED' <<<"$said" || tail -n 20 <<<"$said"; } | head -n 60 || true
+    done
+}
 preset() { # PRESET CMAKE_OPTION ...: all of it
     build "$@" && tests "$1"
 }
@@ -116,6 +125,7 @@ say "done"
 behind=$(tests/lanes.py stale)
 [ -z "$behind" ] || printf 'lanes that are older than the code that they guard ("tests/run.sh long LANE"):\n%s\n' "$behind"
 if [ ${#failed[@]} -ne 0 ]; then
+    for name in "${failed[@]}"; do failures "${name/quick/ci}"; done
     echo "FAILED: ${failed[*]}"
     exit 1
 fi

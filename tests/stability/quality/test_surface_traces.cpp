@@ -90,6 +90,7 @@ TEST_CASE("where nothing breaks there is no foam: a lake, a stream, a wave") {
 
 TEST_CASE("foam is at walls that water runs against and at the foot of a fall, and none above it") {
     auto scene = with_traces(flat_scene(60, 3, 0.25, 0.01));
+    scene.settings.surface.foam_energy = 150;
     scene.fill(scene.fields.terrain, [](double x, double) { return x < 6 ? 1.5 : 0; });
     scene.fill(scene.fields.water, [](double x, double) { return x < 6 ? 0.2 : 0.4; });
     scene.settings.sides[SIDE_WEST] = {SideKind::discharge, 0, 1e30, {{{0, 0.15}}}};
