@@ -37,6 +37,7 @@ struct LevelOverrides {
     std::optional<std::pair<int, int>> fine_grid; // cells along x and y of accuracy "fine"; none = what the level says
     std::optional<int> active_tiles;              // Settings::active_tiles
     std::optional<FusedStages> fused_stages;      // Settings::fused_stages
+    std::uint32_t drawn_effects = 0;              // Settings::drawn_effects
     /// Where the maps and series of the level may lie. By default whoever wrote the level chooses among the files beside it
     /// alone.
     FilesFrom files = FilesFrom::below;

@@ -83,6 +83,7 @@ Result<LevelGrid> apply_overrides(const LevelOverrides& overrides, Settings& set
     }
     if (auto status = check_memory(settings.grid); !status) return status;
     if (overrides.dt) settings.dt = *overrides.dt;
+    settings.drawn_effects = overrides.drawn_effects;
     if (overrides.fused_stages) settings.fused_stages = *overrides.fused_stages;
     if (overrides.active_tiles) settings.active_tiles = *overrides.active_tiles;
     if (overrides.method && *overrides.method != settings.method.name) choose_method(settings, *overrides.method);

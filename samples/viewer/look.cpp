@@ -56,9 +56,9 @@ int view_number(const std::string& name) {
 }
 
 const std::vector<std::string>& features() {
-    static const std::vector<std::string> list = {"foam",     "waves",   "flow-map", "reflection", "refraction",
-                                                  "caustics", "mud",     "grain",    "ripples",    "glitter",
-                                                  "rock",     "shadows", "wet-sand", "clouds",     "haze"};
+    static const std::vector<std::string> list = {"foam",     "waves",  "flow-map", "reflection", "refraction", "caustics",
+                                                  "mud",      "grain",  "ripples",  "glitter",    "rock",       "shadows",
+                                                  "wet-sand", "clouds", "haze",     "wetness"};
     return list;
 }
 

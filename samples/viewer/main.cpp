@@ -63,7 +63,7 @@ int main_checked(int argc, char** argv) {
     app.add_flag("--block", options.block, "the block alone, cut out, instead of land that goes on beyond it");
     app.add_option("--without", options.without,
                    "draw without some of: foam, waves, flow-map, reflection, refraction, caustics, mud, grain, ripples, glitter, "
-                   "rock, shadows, wet-sand, clouds, haze");
+                   "rock, shadows, wet-sand, clouds, haze, wetness");
     app.add_flag("--offscreen", options.offscreen, "no window: writes pictures");
     app.add_option("--frames", options.frames, "offscreen: pictures to write")
         ->check(CLI::Range(1, 1000000))

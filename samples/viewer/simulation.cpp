@@ -12,10 +12,11 @@
 namespace viewer {
 namespace {
 
-constexpr std::array<wadi_output, 7> outputs = {WADI_OUTPUT_SAND_SURFACE, WADI_OUTPUT_SAND_DEPTH, WADI_OUTPUT_WATER_DEPTH,
-                                                WADI_OUTPUT_SATURATION,   WADI_OUTPUT_FOAM,       WADI_OUTPUT_FLOW,
-                                                WADI_OUTPUT_SAND_VELOCITY};
-constexpr std::array<int, 7> floats = {1, 1, 1, 1, 1, 2, 2};
+constexpr std::array<wadi_output, 8> outputs = {WADI_OUTPUT_SAND_SURFACE,  WADI_OUTPUT_SAND_DEPTH, WADI_OUTPUT_WATER_DEPTH,
+                                                WADI_OUTPUT_SATURATION,    WADI_OUTPUT_FOAM,       WADI_OUTPUT_FLOW,
+                                                WADI_OUTPUT_SAND_VELOCITY, WADI_OUTPUT_WETNESS};
+constexpr std::array<int, outputs.size()> floats = {1, 1, 1, 1, 1, 2, 2, 1};
+static_assert(std::tuple_size_v<Sources> == outputs.size() + 1); // the host's field
 
 std::mutex log_mutex;
 std::vector<std::string> log_lines;
@@ -118,6 +119,7 @@ Simulation::Simulation(const Gpu& gpu, const SimulationChoice& choice) : gpu_(gp
     overrides.accuracy = fine                                                    ? "fine"
                          : choice.accuracy.empty() || choice.accuracy == "level" ? nullptr
                                                                                  : choice.accuracy.c_str();
+    overrides.draws = WADI_OUTPUT_BIT(WADI_OUTPUT_FOAM) | WADI_OUTPUT_BIT(WADI_OUTPUT_WETNESS);
     overrides.method = choice.method.empty() ? nullptr : choice.method.c_str();
     std::filesystem::path folder = std::filesystem::path(choice.level_file).parent_path();
     check(choice.text.empty()
@@ -128,7 +130,6 @@ Simulation::Simulation(const Gpu& gpu, const SimulationChoice& choice) : gpu_(gp
         info = wadi_default_world_info();
         check(wadi_world_get_info(world, &info), "describing the world");
         on_host_ = std::string(info.backend) == "cpu";
-        grid.foam_drifts = has_effect(world, "foam");
         if (std::string(info.backend) == "cuda") timeline_ = make_exportable_timeline(gpu);
 
         wadi_world_stats stats = wadi_default_world_stats();
@@ -321,6 +322,7 @@ bool Simulation::stage() {
 }
 
 const Sources& Simulation::sources(bool whole) {
+    grid.foam_drifts = has_effect(world, "foam"); // it may have come with the first water
     fill_host_field(whole);
     if (on_host_) {
         while (!stage() || (whole && staged_step_ != frame.total_steps)) {

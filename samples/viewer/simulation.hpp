@@ -34,7 +34,7 @@ struct Source {
     VkBuffer buffer = VK_NULL_HANDLE;
     int offset = 0, row_pitch = 0; // [floats]
 };
-using Sources = std::array<Source, 8>;
+using Sources = std::array<Source, 9>;
 
 /// Throws std::runtime_error with the plugin's message.
 void check(wadi_result result, const char* what);
@@ -85,7 +85,7 @@ class Simulation {
   private:
     const Gpu& gpu_;
     Sources sources_{};
-    std::array<Buffer, 7> staging_; // CPU backend
+    std::array<Buffer, std::tuple_size_v<Sources> - 1> staging_; // CPU backend
     Buffer host_field_buffer_;      // one row of zeros while there is none
     double quantum_ = 0;
     HostField host_field_ = HostField::none;

@@ -12,7 +12,8 @@ from pictures import read_png
 SCENES = {
     "ground": ("spring --grid 64x64 --start 0.01 --camera=-110,-24,0.06,0.3,0.3", "grain ripples glitter"),
     "sea": ("beach --grid 160x128 --start 0.2 --camera=-20,-30,0.2,0.5,0.3", "waves reflection refraction caustics"),
-    "shore": ("dam_break --grid 96x96 --start 3 --camera=-40,-12,0.3,0.5,0.5", "flow-map mud foam wet-sand"),
+    "shore": ("dam_break --grid 96x96 --start 3 --camera=-40,-12,0.3,0.5,0.5", "flow-map foam wet-sand"),
+    "swash": ("flush --grid 64x64 --start 4 --camera=low", "mud wetness"),
     "horizon": ("castle --grid 128x64 --start 0.1 --camera=-60,-2,0.6,0.5,0.5", "haze clouds"),
     "cliffs": ("canyon --grid 100x128 --start 0.1 --camera=-25,-30,0.3,0.5,0.7", "rock shadows"),
 }

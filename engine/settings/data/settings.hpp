@@ -167,6 +167,8 @@ struct Settings {
     TimeSeries evaporation;                             // [m/s]
     std::vector<ScriptedEdit> edits;                    // at most 1000; the world queues them itself
     std::vector<std::pair<std::string, Force>> effects; // names of shaders/effect_rows.hpp
+    /// Bits of the effects that the host draws: foam and wetness are on by themselves where it does.
+    std::uint32_t drawn_effects = 0;
     /// What each cell adds to material.manning, 0 ... 1 s/m^(1/3), in the order of InitialFields; empty = nothing.
     std::vector<float> roughness;
     /// How many times `rain` falls on each cell, 0 ... RAIN_TIMES_MOST, in the order of InitialFields; empty = once everywhere.
@@ -176,7 +178,6 @@ struct Settings {
     int active_tiles = tiles_where_cheap; // side [cells]; 0 = off; the two words above: the world chooses while it runs
     /// Every bit stays.
     FusedStages fused_stages = FusedStages::automatic;
-    /// Of active tiles [cells]; 0 = there are none.
     /// What the water's passes take for dt: the time step over method.water_substeps [s].
     double water_dt() const { return dt / method.water_substeps; }
     LiveSettings live() const { return {material, sources}; }
@@ -184,6 +185,7 @@ struct Settings {
         material = live.material;
         sources = live.sources;
     }
+    /// Of active tiles [cells]; 0 = there are none.
     int tile_side() const {
         return active_tiles == tiles_where_they_gain || active_tiles == tiles_where_cheap ? chosen_tile_side : active_tiles;
     }

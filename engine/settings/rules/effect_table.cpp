@@ -44,7 +44,10 @@ Why holds_shape(const Settings& s, Content) {
 }
 
 // Of what is only seen: it costs something and moves nothing.
-Why unasked(const Settings&, Content) { return {false, "the level does not ask for it"}; }
+template <std::uint32_t BIT> Why drawn(const Settings& s, Content) {
+    const bool on = (s.drawn_effects & BIT) != 0;
+    return {on, on ? "the host draws it" : "neither the level nor the host asks for it"};
+}
 
 constexpr Effect effects[] = {
     {row(EFFECT_WATER), "the level, a source, rain or a side (discharge, level, waves) brings water",
@@ -117,8 +120,8 @@ constexpr Effect effects[] = {
          if (s.rain_map.empty()) return {false, "the level has none"};
          return {ever_above_zero(s.rain), ever_above_zero(s.rain) ? "the level has a rain map" : "it never rains"};
      }},
-    {row(EFFECT_FOAM), "never: a level asks for it", unasked},
-    {row(EFFECT_WETNESS), "never: a level asks for it", unasked},
+    {row(EFFECT_FOAM), "the host draws it (`draws`)", drawn<EFFECT_FOAM>},
+    {row(EFFECT_WETNESS), "the host draws it (`draws`)", drawn<EFFECT_WETNESS>},
 };
 
 constexpr Choice choices[] = {

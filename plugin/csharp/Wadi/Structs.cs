@@ -176,6 +176,12 @@ namespace Wadi
         /// followed: no "..", no path from the root on. For levels of one's own
         /// </summary>
         public bool AnyFiles { get { return anyFiles != 0; } set { anyFiles = value ? 1 : 0; } }
+        /// <summary>
+        /// WADI_OUTPUT_BIT of WADI_OUTPUT_FOAM, of WADI_OUTPUT_WETNESS, both, or 0: what the host will draw of what water leaves.
+        /// Effects foam and wetness are then on wherever there is water and the level does not force them off. They move nothing,
+        /// cost a pass each, and 12 bytes a cell together
+        /// </summary>
+        public ulong Draws;
         /// <summary>A struct with the size that the library asks for and the header's defaults; texts stay null.</summary>
         public static unsafe RawLevelOverrides Default
         {

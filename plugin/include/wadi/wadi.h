@@ -245,6 +245,9 @@ typedef struct wadi_level_overrides {
     wadi_choice fused_stages;  /* ON = several stages in one pass wherever the effects allow, OFF = one by one. Every bit stays */
     wadi_bool any_files;       /* 1 = maps and series may lie anywhere that the process can read; 0 = in the level's folder and below it
                                   alone, links followed: no "..", no path from the root on. For levels of one's own */
+    uint64_t draws;            /* WADI_OUTPUT_BIT of WADI_OUTPUT_FOAM, of WADI_OUTPUT_WETNESS, both, or 0: what the host will draw of what
+                                  water leaves. Effects foam and wetness are then on wherever there is water and the level does not force
+                                  them off. They move nothing, cost a pass each, and 12 bytes a cell together */
 } wadi_level_overrides;
 static inline wadi_level_overrides wadi_default_level_overrides(void) {
     WADI_ZERO_STRUCT(wadi_level_overrides);

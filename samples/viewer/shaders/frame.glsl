@@ -6,7 +6,7 @@ layout(std140, set = 0, binding = 0) uniform Frame {
 // Cell (i, j) of the grid is texel (i, j).
 layout(set = 0, binding = 1) uniform sampler2D heights; // solid, water surface [m], the host's quantity, depth of sand [m]
 layout(set = 0, binding = 2) uniform sampler2D slopes;  // of the solid x, y; of the water x, y
-layout(set = 0, binding = 3) uniform sampler2D matter;  // saturation, foam, depth of water [m], speed of sand [m/s]
+layout(set = 0, binding = 3) uniform sampler2D matter;  // saturation, foam, how wet the ground is, speed of sand [m/s]
 layout(set = 0, binding = 4) uniform sampler2D flow;    // velocity of water, of sand [m/s]
 layout(set = 0, binding = 5) uniform sampler2D light;   // sun that arrives, sky that is open
 layout(set = 0, binding = 6) uniform sampler2D pyramid; // greatest height of patches between cell centres, see march.glsl
@@ -23,7 +23,7 @@ const int KIND_FAR_SOLID = 6, KIND_FAR_WATER = 7; // beyond the block, see beyon
 
 // What a picture may be drawn without. The numbers are those of the list in look.cpp.
 const int FOAM = 0, SMALL_WAVES = 1, FLOW_MAP = 2, REFLECTION = 3, REFRACTION = 4, CAUSTICS = 5, MUD = 6, GRAIN = 7, WIND_RIPPLES = 8, GLITTER = 9,
-          ROCK = 10, SHADOWS = 11, WET_SAND = 12, CLOUDS = 13, HAZE = 14;
+          ROCK = 10, SHADOWS = 11, WET_SAND = 12, CLOUDS = 13, HAZE = 14, WETNESS = 15;
 bool drawn(int feature) { return (F.features.x & (1 << feature)) != 0; }
 
 // The pyramid's levels lie in one texture, the base below and the others side by side on top of it: some drivers fetch wrong

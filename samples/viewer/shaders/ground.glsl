@@ -8,13 +8,15 @@ struct Ground {
     float pixel;    // size of a pixel there [m]
     float sand;     // depth [m]
     float pores;    // saturation, 0.5 = full
+    float wet;      // 1 where water is or has just been, less the longer it is away
     float sun, sky; // light that arrives, 0 ... 1
     float drowned;  // 1 under water
 };
 
 vec3 shade_ground(Ground g) {
     float cover = smoothstep(0.3 * F.rock.w, F.rock.w, g.sand);
-    float pores = drawn(WET_SAND) ? g.pores : 0.0, drowned = drawn(WET_SAND) ? g.drowned : 0.0;
+    float wet = drawn(WETNESS) ? g.wet : 0.0, film = smoothstep(0.5, 1.0, wet); // what has just run dry mirrors
+    float pores = max(drawn(WET_SAND) ? g.pores : 0.0, 0.45 * wet), drowned = drawn(WET_SAND) ? g.drowned : 0.0;
     float damp = mix(smoothstep(0.0, 0.22, pores), 1.0, drowned), soaked = mix(smoothstep(0.25, 0.48, pores), 1.0, drowned);
     float dry = (1.0 - damp) * cover;
 
@@ -41,8 +43,8 @@ vec3 shade_ground(Ground g) {
     vec3 halfway = normalize(F.sun.xyz + g.to_eye);
     float along = max(dot(n, halfway), 0.0);
     seen += sun * albedo * (0.50 * dry * pow(along, 9.0));
-    // A film of water on soaked sand reflects like water.
-    float sheen = soaked * cover * (1.0 - g.drowned);
+    // A film of water on soaked sand or wet rock reflects like water.
+    float sheen = (soaked * cover + 0.6 * film * (1.0 - cover)) * (1.0 - g.drowned);
     WHERE (sheen > 0.0) {
         float fresnel = 0.02 + 0.98 * pow(1.0 - clamp(dot(n, g.to_eye), 0.0, 1.0), 5.0);
         seen = mix(seen, sky_in(reflect(-g.to_eye, n)), sheen * 0.6 * fresnel * g.sky);
@@ -63,7 +65,9 @@ Ground ground_at(vec3 place, vec3 to_eye, float pixel) {
     g.to_eye = to_eye;
     g.pixel = pixel;
     g.sand = heights_at(place.xy).w;
-    g.pores = textureLod(matter, uv, 0.0).x;
+    vec4 state = textureLod(matter, uv, 0.0);
+    g.pores = state.x;
+    g.wet = state.z;
     g.sun = drawn(SHADOWS) ? lit.x : 1.0;
     g.sky = lit.y;
     g.drowned = 0.0;

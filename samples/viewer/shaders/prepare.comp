@@ -10,6 +10,7 @@ layout(std430, set = 0, binding = 10) readonly buffer Saturation { float saturat
 layout(std430, set = 0, binding = 11) readonly buffer Foam { float foam[]; };
 layout(std430, set = 0, binding = 12) readonly buffer Flow { float water_velocity[]; };
 layout(std430, set = 0, binding = 13) readonly buffer SandVelocity { float sand_velocity[]; };
+layout(std430, set = 0, binding = 30) readonly buffer Wetness { float wetness[]; };
 layout(std430, set = 0, binding = 27) readonly buffer HostField { float host_field[]; };
 layout(set = 0, binding = 14, rgba32f) writeonly uniform image2D to_heights;
 layout(set = 0, binding = 15, rgba16f) writeonly uniform image2D to_matter;
@@ -17,7 +18,7 @@ layout(set = 0, binding = 16, rgba16f) writeonly uniform image2D to_flow;
 
 int at(int source, ivec2 c, int floats) { return F.source[source].x + c.y * F.source[source].y + c.x * floats; }
 
-// With effect foam the plugin's is that which drifts and lies ashore. Else it is that of fast water and of breaking fronts. A wide,
+// With effect foam the output is that which drifts and lies ashore. Else it is that of fast water and of breaking fronts. A wide,
 // even, fast sheet would be white all over by the first: it keeps a share, and a front, where the water runs together, all of it.
 float seen_foam(ivec2 c, float depth) {
     if (F.features.y != 0) return foam[at(4, c, 1)];
@@ -57,10 +58,10 @@ void main() {
         level /= wet_weight;
         surface = depth > 0.25 * film ? max(level, solid + min(depth, film)) : min(level, below);
     }
-    imageStore(to_heights, c, vec4(solid, surface, host_field[at(7, c, 1)], sand));
+    imageStore(to_heights, c, vec4(solid, surface, host_field[at(8, c, 1)], sand));
 
     vec2 water_speed = vec2(water_velocity[at(5, c, 2)], water_velocity[at(5, c, 2) + 1]);
     vec2 sand_speed = vec2(sand_velocity[at(6, c, 2)], sand_velocity[at(6, c, 2) + 1]);
-    imageStore(to_matter, c, vec4(saturation[at(3, c, 1)], seen_foam(c, depth), depth, length(sand_speed)));
+    imageStore(to_matter, c, vec4(saturation[at(3, c, 1)], seen_foam(c, depth), wetness[at(7, c, 1)], length(sand_speed)));
     imageStore(to_flow, c, vec4(water_speed, sand_speed));
 }

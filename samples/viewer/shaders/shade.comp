@@ -66,7 +66,7 @@ vec3 foam_colour(vec3 normal, vec4 lit) {
     return 0.8 * (F.sunlight.rgb * (lit.x * facing) + ambient_on(normal, lit.y));
 }
 
-// The land beyond the block. Shadows and foam of the rim fade out from it.
+// The land beyond the block. Shadows, foam and wet ground of the rim fade out from it.
 vec3 shade_beyond(vec3 place, vec3 along, bool water, float pixel) {
     vec2 rim = on_block(place.xy), uv = texture_of(rim);
     float away = length(place.xy - rim) / max(F.domain.y, F.domain.z), near = exp(-20.0 * away);
@@ -77,6 +77,7 @@ vec3 shade_beyond(vec3 place, vec3 along, bool water, float pixel) {
     g.normal = normalize(vec3(-slope.xy, 1.0));
     g.sun = mix(1.0, g.sun, near);
     g.sky = mix(1.0, g.sky, near);
+    g.wet *= near;
     vec4 lit = vec4(g.sun, g.sky, 0.0, 0.0);
     vec3 colour = vec3(0.0);
     WHERE (water) {

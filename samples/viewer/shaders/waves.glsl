@@ -45,10 +45,10 @@ float foam_cover(Carried c, float foam, float depth, float pixel) {
             net += c.weight[n] * (0.22 * patchy + dot(wall, vec3(0.46, 0.30, 0.16)) + 0.40 * bend.x + 0.12 * ruffle.x);
         }
         tone = clamp(0.55 + 0.9 * (net - 0.35), 0.0, 1.0);
-        float amount = pow(clamp(1.25 * foam, 0.0, 1.0), 0.75);
+        float amount = 0.86 * pow(clamp(1.25 * foam, 0.0, 1.0), 0.75); // a full cover has small holes, too
         cover = smoothstep(0.92 - 0.95 * amount, 1.22 - 0.95 * amount, net + 0.22);
     }
-    return cover * (0.62 + 0.34 * tone);
+    return cover * (0.50 + 0.46 * tone);
 }
 
 // Sunlight that waves gather into a net on the bed below so much water [m]: 1 on average.

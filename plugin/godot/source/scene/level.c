@@ -22,6 +22,7 @@ static const Property properties[] = {
     {FIELD(String, method), HINT_ENUM_SUGGESTION, "robust,published", changed},
     {FIELD(String, accuracy), HINT_ENUM_SUGGESTION, "draft,balanced,accurate,fine", changed},
     {FIELD(Vector2i, cells), HINT_NONE, NULL, changed},
+    {FIELD(bool, drifting_foam), HINT_NONE, NULL, changed},
     {FIELD(String, settings), HINT_MULTILINE, NULL, changed},
     {FIELD(PackedFloat32Array, terrain), HINT_NONE, NULL, changed},
     {FIELD(PackedFloat32Array, sand), HINT_NONE, NULL, changed},
@@ -129,6 +130,7 @@ static wadi_result from_file(const Level* level, const char* path, const wadi_de
     overrides.variant = variant && *variant ? variant : NULL;
     overrides.method = method && *method ? method : NULL;
     overrides.accuracy = accuracy && *accuracy ? accuracy : NULL;
+    overrides.draws = level->drifting_foam ? WADI_OUTPUT_BIT(WADI_OUTPUT_FOAM) : 0;
     wadi_result result;
     if (!file_exists(path)) {
         snprintf(message, size, "level.file: there is no file \"%s\"", path);

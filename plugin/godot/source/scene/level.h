@@ -10,6 +10,7 @@ typedef struct Level {
     Object object;
     String file, variant, method, accuracy, settings;
     Vector2i cells;
+    uint8_t drifting_foam;
     PackedFloat32Array terrain, sand, water;
 } Level;
 
