@@ -59,15 +59,18 @@ inline double layer_height(const Layer& layer, double relative, const Below& bel
     return value;
 }
 
-/// The field at a place, whose height relative to the layer's top is given, after the layer.
+/// The field at a place, whose height relative to the layer's top is given, after the layer. `taken`: the share of the cell that
+/// the layer's mask takes; what fills up to a surface takes a cell or leaves it, so that it stays level.
 inline double after_layer(const Layer& layer, LayerTarget target, const LevelGrid& grid, double current, double relative,
-                          const Below& below) {
-    if (std::isinf(relative) || (layer.only_present && !(current > 0))) return current;
+                          const Below& below, double taken) {
+    if (layer.amount == Amount::surface) taken = taken < 0.5 ? 0 : 1;
+    if (std::isinf(relative) || taken == 0 || (layer.only_present && !(current > 0))) return current;
     const double height = layer_height(layer, relative, below);
     // Beyond the line where a sloping side meets the ground, the shape is over.
     if (has_sloping_sides(layer.shape) && relative < 0 && height <= 0) return current;
     double next = combined(current, height, layer.combine);
     if (target != LayerTarget::terrain) next = std::max(next, 0.0);
+    if (taken < 1) next = current + taken * (next - current);
     return nearest_quantum(next, grid.quantum, Halves::away);
 }
 
@@ -119,7 +122,7 @@ class Drawing {
         in_cut_cells(cells, pointers(lists_.sand), changed, [&](CutCell& at) {
             const Below below = below_of(at.cell, false);
             for (std::size_t n = 0; n < at.values.size(); ++n)
-                at.values[n] = stack(lists_.sand, LayerTarget::sand, at.samples, n, 0, below, at.changed);
+                at.values[n] = stack(lists_.sand, LayerTarget::sand, at, n, 0, below, at.changed);
             store(fields_.sand, at.cell, mean_of(at.values, at.samples, at.terms));
         });
         warn_unchanged(lists_.sand, changed);
@@ -137,14 +140,14 @@ class Drawing {
             at.sand_changed.resize(lists_.sand.size());
             at.sand.assign(at.samples.count(), 0.0);
             for (std::size_t n = 0; n < at.sand.size(); ++n)
-                at.sand[n] = stack(lists_.sand, LayerTarget::sand, at.samples, n, 0, below_of(at.cell, false), at.sand_changed);
+                at.sand[n] = stack(lists_.sand, LayerTarget::sand, at, n, 0, below_of(at.cell, false), at.sand_changed);
             // The sides of water's boxes part the cell further: in the mean its sand stays what was drawn.
             const double mean = mean_of(at.sand, at.samples, at.terms);
             Below below = below_of(at.cell, true);
             const double scale = mean > 0 ? below.sand / mean : 0;
             for (std::size_t n = 0; n < at.values.size(); ++n) {
                 below.sand_here = mean == at.sand[n] ? below.sand : at.sand[n] * scale;
-                at.values[n] = stack(lists_.water, LayerTarget::water, at.samples, n, lists_.sand.size(), below, at.changed);
+                at.values[n] = stack(lists_.water, LayerTarget::water, at, n, lists_.sand.size(), below, at.changed);
             }
             store(fields_.water, at.cell, mean_of(at.values, at.samples, at.terms));
         });
@@ -185,6 +188,25 @@ class Drawing {
     Below below_of(std::size_t cell, bool with_sand) const {
         const double sand = with_sand ? value_at(fields_.sand, cell) : 0;
         return {value_at(fields_.terrain, cell), sand, sand};
+    }
+
+    /// How much of a cell a layer's mask takes: by the terrain under sand, by terrain and sand under water.
+    double taken_of(const Layer& layer, LayerTarget target, std::size_t cell) const {
+        if (!layer.mask) return 1;
+        const bool sand = target == LayerTarget::water;
+        const auto width = static_cast<std::size_t>(grid_.nx);
+        const auto ground = [&](std::size_t at) {
+            return value_at(fields_.terrain, at) + (sand ? value_at(fields_.sand, at) : 0);
+        };
+        // Between the neighbours of both sides; at the rim to the one that is there.
+        const auto rise = [&](std::size_t place, std::size_t last, std::size_t step) {
+            const std::size_t low = cell - (place > 0 ? step : 0), high = cell + (place < last ? step : 0);
+            return low == high ? 0 : (ground(high) - ground(low)) / (static_cast<double>((high - low) / step) * grid_.dx);
+        };
+        return taken_share(
+            *layer.mask,
+            {ground(cell), {rise(cell % width, width - 1, 1), rise(cell / width, static_cast<std::size_t>(grid_.ny) - 1, width)}},
+            grid_.dx);
     }
 
     /// Draws every layer at the middles of cells; keeps the heights of maps in cut cells. `first`: number of the first layer
@@ -266,7 +288,8 @@ class Drawing {
             for (std::size_t k = 0; k < count; ++k) {
                 const float current = cells[k];
                 cells[k] = static_cast<float>(after_layer(layer, target, grid_, static_cast<double>(current), relative[k],
-                                                          below_of(start + k, target == LayerTarget::water)));
+                                                          below_of(start + k, target == LayerTarget::water),
+                                                          taken_of(layer, target, start + k)));
                 changed = changed || cells[k] != current;
             }
         }
@@ -318,13 +341,14 @@ class Drawing {
     }
 
     /// The layers' result in a sample of a cell. `first`: number of the first layer in the samples.
-    double stack(const std::vector<Layer>& layers, LayerTarget target, const CellSamples& samples, std::size_t sample,
-                 std::size_t first, const Below& below, std::vector<char>& changed) const {
+    double stack(const std::vector<Layer>& layers, LayerTarget target, const CutCell& at, std::size_t sample, std::size_t first,
+                 const Below& below, std::vector<char>& changed) const {
         double value = 0;
-        for (std::size_t place = 0; place < samples.near().size(); ++place) {
-            const std::size_t n = samples.near()[place] - first;
+        for (std::size_t place = 0; place < at.samples.near().size(); ++place) {
+            const std::size_t n = at.samples.near()[place] - first;
             if (n >= layers.size()) continue; // also those before the first: n has wrapped
-            const double next = after_layer(layers[n], target, grid_, value, samples.relative(sample, place), below);
+            const double next = after_layer(layers[n], target, grid_, value, at.samples.relative(sample, place), below,
+                                            taken_of(layers[n], target, at.cell));
             if (next != value) changed[n] = 1;
             value = next;
         }

@@ -2,6 +2,7 @@
 #pragma once
 #include "engine/compute/status.hpp"
 #include "engine/image/map.hpp"
+#include "engine/level/ground_mask.hpp"
 #include "engine/level/json_reader.hpp"
 #include "engine/level/level_files.hpp"
 #include "engine/level/shapes.hpp"
@@ -67,7 +68,8 @@ struct Layer {
     double top = 0;           // height, surface or wet
     bool inside_sand = false; // water up to a surface: in the pores of sand that stands above it, too
     Combine combine = Combine::add;
-    bool only_present = false; // only cells where the field is above zero
+    bool only_present = false;      // only cells where the field is above zero
+    std::optional<GroundMask> mask; // of sand: by the terrain; of water: by terrain and sand
 };
 
 /// The grid of a map's own samples over the same ground.

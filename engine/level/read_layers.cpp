@@ -171,6 +171,30 @@ void read_inside_sand(ObjectReader& reader, LayerTarget target, Layer& layer) {
     if (target == LayerTarget::water && layer.amount == Amount::surface) reader.boolean("inside_sand", layer.inside_sand);
 }
 
+std::optional<Point> read_bounds(ObjectReader& reader, const char* key, double least, double most) {
+    if (reader.find(key) == nullptr) return std::nullopt;
+    Point bounds = {least, most};
+    reader.pair(key, bounds, least, most);
+    if (bounds[0] > bounds[1]) reader.fail(key, "is [least, most]; the first number must not be above the second");
+    return bounds;
+}
+
+/// A word, or the ground that the layer falls on.
+void read_where(ObjectReader& reader, Layer& layer) {
+    const Json* where = reader.find("where");
+    if (where == nullptr || !where->is_object()) {
+        int word = 0;
+        reader.choice("where", {"everywhere", "present"}, word);
+        layer.only_present = word == 1;
+        return;
+    }
+    ObjectReader ground(*where, reader.path_of("where"), reader.status());
+    ground.boolean("present", layer.only_present);
+    layer.mask = {read_bounds(ground, "elevation", -HEIGHT_MOST, HEIGHT_MOST), read_bounds(ground, "slope", 0, SIDE_SLOPE_MOST)};
+    ground.finish();
+    if (!layer.mask->elevation && !layer.mask->slope) ground.fail("", "needs \"elevation\" or \"slope\", each [least, most]");
+}
+
 void read_combine(ObjectReader& reader, LayerTarget target, Layer& layer) {
     static const std::vector<std::string> all = {"add", "set", "max", "min", "subtract"};
     static const std::vector<std::string> filling = {"set", "max", "min"};
@@ -185,9 +209,7 @@ void read_combine(ObjectReader& reader, LayerTarget target, Layer& layer) {
         layer.combine = meaning[combine];
     }
     if (!of_column(target)) return;
-    int where = 0;
-    reader.choice("where", {"everywhere", "present"}, where);
-    layer.only_present = where == 1;
+    read_where(reader, layer);
 }
 
 /// Whether a layer is a map; fails unless it is either that or a shape.

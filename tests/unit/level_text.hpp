@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <doctest/doctest.h>
 #include <filesystem>
+#include <numeric>
 #include <string>
 
 namespace level_text {
@@ -35,6 +36,18 @@ inline bool says(const std::string& text, const std::string& part) { return text
 inline double at(const wadi::Level& level, const std::vector<float>& field, int i, int j) {
     return static_cast<double>(
         field.at(static_cast<std::size_t>(j) * static_cast<std::size_t>(level.settings.grid.nx) + static_cast<std::size_t>(i)));
+}
+
+/// The level of 10 m x 8 m on cells of 1/`fine` m.
+inline wadi::Level drawn(const std::string& layers, int fine) {
+    wadi::LevelOverrides overrides;
+    overrides.size = {10 * fine, 8 * fine};
+    return must(parse(layers, "", overrides));
+}
+
+/// What a field holds [m3].
+inline double volume(const wadi::Level& level, const std::vector<float>& field) {
+    return std::accumulate(field.begin(), field.end(), 0.0) * level.settings.grid.dx * level.settings.grid.dx;
 }
 
 inline std::filesystem::path samples() { return std::filesystem::path(WADI_SOURCE_DIR) / "samples" / "levels"; }

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <doctest/doctest.h>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
 using namespace wadi;
@@ -15,19 +14,6 @@ namespace {
 
 constexpr double PI = std::numbers::pi;
 constexpr double SMALLEST = 1.0 / (1 << 20); // the quantum of 16 m
-
-/// The level of 10 m x 8 m on cells of 1/`fine` m.
-Level drawn(const std::string& layers, int fine) {
-    LevelOverrides overrides;
-    overrides.size = {10 * fine, 8 * fine};
-    const auto result = parse_level(level_text::level(layers), "", overrides);
-    REQUIRE_MESSAGE(result, message(result));
-    return *result;
-}
-
-double volume(const Level& level, const std::vector<float>& field) {
-    return std::accumulate(field.begin(), field.end(), 0.0) * level.settings.grid.dx * level.settings.grid.dx;
-}
 
 std::string ridge(double angle) {
     const double x = 2 * std::cos(angle), y = 2 * std::sin(angle);
