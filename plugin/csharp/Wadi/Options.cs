@@ -68,6 +68,9 @@ namespace Wadi
         /// <summary>Maps and series may lie anywhere that the process can read, not in the level's folder alone. For levels of one's
         /// own.</summary>
         public bool AnyFiles;
+        /// <summary>OutputMask.Foam, OutputMask.Wetness or both: what you will draw of what water leaves. It is then there wherever there is
+        /// water and the level does not force it off. It moves nothing, and costs a pass each, and 12 bytes a cell together.</summary>
+        public OutputMask Draws;
 
         internal RawLevelOverrides Raw(CallMemory memory)
         {
@@ -81,6 +84,7 @@ namespace Wadi
             raw.ActiveTiles = ActiveTiles;
             raw.FusedStages = FusedStages;
             raw.AnyFiles = AnyFiles;
+            raw.Draws = (ulong)Draws;
             return raw;
         }
     }
