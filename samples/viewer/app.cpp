@@ -11,7 +11,7 @@ namespace viewer {
 App::App(const Gpu& gpu, const Options& options, GLFWwindow* window, uint32_t width, uint32_t height)
     : renderer(gpu, width, height, VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT), gui(gpu, renderer, window),
       script(options.script.empty() ? Script() : Script(options.script)), gpu_(gpu), options_(options),
-      shows_panel_(options.panel) {
+      has_window_(window != nullptr), shows_panel_(options.panel) {
     if (options.level_name.empty()) {
         start_ = std::make_unique<StartScreen>(gpu);
     } else {
@@ -78,7 +78,7 @@ void App::choose(const Submission& swapchain, const std::function<void(VkCommand
 }
 
 void App::play(double seconds, const Submission& swapchain, const std::function<void(VkCommandBuffer)>& after) {
-    handle_input(*session, seconds);
+    handle_input(*session, gamepad_, script.empty() && has_window_ ? read_gamepad() : script.pad(frames_), seconds);
     script.apply_commands(frames_, *session);
     session->picture.shift = 0;
     if (shows_panel_ && !session->picture_is_kept()) {

@@ -1,5 +1,6 @@
 // One frame of the viewer, in a window or without one: input, session, panel, picture.
 #pragma once
+#include "gamepad.hpp"
 #include "gui.hpp"
 #include "level_editor.hpp"
 #include "overlay.hpp"
@@ -34,6 +35,8 @@ class App {
     Panel panel_;
     Overlay overlay_;
     LevelEditor editor_;
+    Gamepad gamepad_;
+    bool has_window_;
     bool shows_panel_; // and what else is drawn over the picture
     bool panel_folded_ = false;
     uint64_t frames_ = 0;

@@ -56,12 +56,17 @@ void press_keys(Session& session) {
 
 } // namespace
 
-void handle_input(Session& session, double seconds) {
+void handle_input(Session& session, Gamepad& gamepad, const Pad& pad, double seconds) {
     const ImGuiIO& io = ImGui::GetIO();
     move_camera(session, seconds, io.WantCaptureMouse);
     try {
-        if (!ImGui::IsAnyMouseDown()) session.history().close(); // what one press did is undone as one
+        if (io.MouseDelta.x != 0 || io.MouseDelta.y != 0 || ImGui::IsAnyMouseDown()) gamepad.rest();
+        if (!ImGui::IsAnyMouseDown() && !pad.act) session.history().close(); // what one press did is undone as one
         if (!io.WantTextInput) press_keys(session);
+        if (gamepad.apply(pad, session, seconds)) {
+            session.point(static_cast<uint32_t>(io.DisplaySize.x / 2), static_cast<uint32_t>(io.DisplaySize.y / 2), pad.act);
+            return;
+        }
         const bool inside = ImGui::IsMousePosValid() && io.MousePos.x >= 0 && io.MousePos.y >= 0 &&
                             io.MousePos.x < io.DisplaySize.x && io.MousePos.y < io.DisplaySize.y;
         if (inside && !io.WantCaptureMouse) {

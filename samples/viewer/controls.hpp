@@ -1,11 +1,12 @@
-// Pointer and keys, as ImGui has them, to the camera and the tools.
+// Pointer and keys, as ImGui has them, and a gamepad, to the camera and the tools.
 #pragma once
+#include "gamepad.hpp"
 #include "session.hpp"
 
 namespace viewer {
 
 /// After ImGui::NewFrame(). Errors of the plugin become the session's message.
-void handle_input(Session& session, double seconds);
+void handle_input(Session& session, Gamepad& gamepad, const Pad& pad, double seconds);
 
 inline constexpr const char* controls_help =
     "left button: tool (look: orbit)   right: orbit   middle: pan   wheel: distance\n"

@@ -1,6 +1,7 @@
 #include "script.hpp"
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -19,7 +20,7 @@ const std::map<std::string, std::size_t> commands = {
     {"resume", 0},   {"step", 0},    {"restart", 0},     {"screenshot", 0}, {"record", 1}, {"view", 1},     {"quality", 1},
     {"arrows", 0},   {"section", 4}, {"backend", 1},     {"level", 2},      {"undo", 0},   {"redo", 0},     {"scrub", 1},
     {"save", 0},     {"load", 0},    {"replay", 0},      {"print", 0},      {"resize", 2}, {"minimise", 0}, {"restore", 0},
-    {"material", 2}, {"effect", 2},  {"accuracy", 1},    {"device", 1},     {"budget", 2},
+    {"material", 2}, {"effect", 2},  {"accuracy", 1},    {"device", 1},     {"budget", 2}, {"pad", 7},
 };
 
 std::size_t button_number(const std::string& name) {
@@ -209,6 +210,23 @@ void Script::apply_input(uint64_t frame) {
     };
     if (frame > 0) set_keys(frame - 1, false);
     set_keys(frame, true);
+}
+
+// Both sticks, both triggers, and letters of what is pressed, "-" for nothing.
+Pad Script::pad(uint64_t frame) const {
+    Pad pad;
+    for (auto at = frames_.upper_bound(frame); at != frames_.begin();) {
+        --at;
+        const auto line =
+            std::find_if(at->second.rbegin(), at->second.rend(), [](const Line& one) { return one.command == "pad"; });
+        if (line == at->second.rend()) continue;
+        const auto axis = [&](std::size_t n) { return std::stof(line->words[n]); };
+        const auto pressed = [&](char letter) { return line->words[6].find(letter) != std::string::npos; };
+        pad = {axis(0),      axis(1),      axis(2),      axis(3),      axis(4),      axis(5),
+               pressed('a'), pressed('u'), pressed('r'), pressed('p'), pressed('<'), pressed('>')};
+        break;
+    }
+    return pad;
 }
 
 void Script::apply_commands(uint64_t frame, Session& session) const {

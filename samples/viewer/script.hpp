@@ -1,5 +1,6 @@
 // Input from a file instead of a person: what happens at which frame. One line each: FRAME COMMAND [WORDS]; # begins a comment.
 #pragma once
+#include "gamepad.hpp"
 #include "session.hpp"
 #include <filesystem>
 #include <map>
@@ -15,6 +16,8 @@ class Script {
 
     /// Between Gui::begin_frame() and ImGui::NewFrame(): pointer, buttons, wheel and keys into ImGui's IO.
     void apply_input(uint64_t frame);
+    /// The gamepad: what the newest line "pad" up to this frame says.
+    Pad pad(uint64_t frame) const;
     /// Before the session advances: everything else. What changes the window is left to the caller.
     void apply_commands(uint64_t frame, Session& session) const;
 

@@ -86,7 +86,7 @@ class Simulation {
     const Gpu& gpu_;
     Sources sources_{};
     std::array<Buffer, std::tuple_size_v<Sources> - 1> staging_; // CPU backend
-    Buffer host_field_buffer_;      // one row of zeros while there is none
+    Buffer host_field_buffer_;                                   // one row of zeros while there is none
     double quantum_ = 0;
     HostField host_field_ = HostField::none;
     bool on_host_ = false;

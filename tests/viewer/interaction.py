@@ -108,6 +108,21 @@ def test_tools(session):
     assert still != moved, "the camera did not move"
 
 
+def test_gamepad(session):
+    """A gamepad pours sand in the middle of the picture, undoes it, takes the next tool and moves the camera; a stick hardly moved is not meant."""
+    rest = "pad 0 0 0 0 0 0"
+    out, _, (before, poured, undone, dug), _ = session.run(
+        f"0 tool pour-sand\n0 radius 8\n0 rate 3\n1 print\n2 {rest} a\n8 {rest} -\n9 print\n10 {rest} u\n11 {rest} -\n12 pause\n13 print\n"
+        f"14 resume\n14 {rest} >\n15 {rest} -\n16 {rest} a\n20 {rest} -\n21 print\n22 pause\n23 screenshot\n24 pad 0.1 0.1 0.1 0.1 0 0 -\n"
+        f"26 screenshot\n27 pad 0.8 0 0 0 0 0 -\n29 {rest} -\n30 screenshot\n31 pad 0 0 0.8 0 0 0 -\n33 {rest} -\n34 screenshot\n"
+        f"35 pad 0 0 0 0 0 1 -\n37 {rest} -\n38 screenshot\n", 40, size=POINTED)
+    assert float(poured["sand_in"]) > 50 and float(undone["sand"]) == float(before["sand"])
+    assert float(dug["sand"]) < float(undone["sand"]) - 1, "the next tool digs"
+    still, dead, moved, turned, nearer = (read_png(out / f"screenshot_0000{n}.png") for n in range(5))
+    assert still == dead, "a stick within its dead zone moves the camera"
+    assert still != moved and moved != turned and turned != nearer
+
+
 NUMBERS = re.compile(r"numbers (.*)")
 
 
@@ -472,7 +487,7 @@ def main():
             if window:
                 tests = (test_minimised, test_real_input)
             else:
-                tests = (test_painting, test_tools, test_shaping, test_springs, test_presets, test_time, test_undo, test_scrub, test_saves, test_accuracy, test_budget, test_device, test_changes, test_material, test_panel, test_start_screen, test_scale, test_hot_reload, test_write_world, test_one_queue, test_refusals)
+                tests = (test_painting, test_tools, test_gamepad, test_shaping, test_springs, test_presets, test_time, test_undo, test_scrub, test_saves, test_accuracy, test_budget, test_device, test_changes, test_material, test_panel, test_start_screen, test_scale, test_hot_reload, test_write_world, test_one_queue, test_refusals)
             chosen = [word for word in sys.argv[2:] if word != "--window"]
             for test in (test for test in tests if not chosen or test.__name__ in chosen):
                 start = time.time()
