@@ -1,6 +1,7 @@
 #include "panel.hpp"
 #include "../common/levels.hpp"
 #include "material_presets.hpp"
+#include "tool_bar.hpp"
 #include <algorithm>
 #include <cinttypes>
 #include <cmath>
@@ -154,11 +155,7 @@ void Panel::budget(Session& session) {
 void Panel::tools(Session& session) {
     Tools& tools = session.tools;
     Brush& brush = tools.brush;
-    int tool = static_cast<int>(tools.tool);
-    if (choose(
-            "tool", [](int n) { return tool_names[n]; }, static_cast<int>(std::size(tool_names)), tool))
-        tools.tool = static_cast<Tool>(tool);
-    ImGui::TextWrapped("%s", tool_help(tools.tool));
+    draw_tool_bar(tools.tool);
     const glm::vec2 lengths = session.simulation().grid.lengths();
     const float longest = std::max(lengths.x, lengths.y), dx = session.simulation().grid.dx;
     const auto is = [&](std::initializer_list<Tool> some) {

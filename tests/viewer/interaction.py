@@ -285,7 +285,11 @@ def test_panel(session):
     dark = sum(1 for row in rows for x in range(40, 300) if max(row[3 * x:3 * x + 3]) < 80) / (260 * len(rows))
     assert dark > 0.5, f"the panel covers {dark:.2f} of its place"
 
-
+    # The third picture of the tool bar pours sand, the first turns the view; the folded panel leaves the whole picture.
+    pour = "{0} pointer 450 200\n{0} press left\n{1} release left\n{1} print\n"
+    _, _, (poured, looked), _ = session.run("0 radius 6\n0 rate 3\n1 pointer 100 298\n2 press left\n3 release left\n" + pour.format(4, 6) +
+                                            "7 pointer 24 298\n8 press left\n9 release left\n" + pour.format(10, 12), 13, "--panel", size="560x330")
+    assert float(poured["sand_in"]) == float(looked["sand_in"]) > 10, (poured, looked)
     out, _, _, _ = session.run("1 key Tab\n", 5, "--panel", size="800x450")
     _, _, rows = read_png(out / "last.png")
     folded = sum(1 for row in rows for x in range(40, 300) if max(row[3 * x:3 * x + 3]) < 80) / (260 * len(rows))
