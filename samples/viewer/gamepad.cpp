@@ -3,12 +3,13 @@
 #include <GLFW/glfw3.h>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 namespace viewer {
 namespace {
 
-constexpr float DEAD = 0.15f; // share of a stick's way that is not meant
-constexpr float TURN_RATE = 2.0f;  // [radians per second]
+constexpr float DEAD = 0.15f;     // share of a stick's way that is not meant
+constexpr float TURN_RATE = 2.0f; // [radians per second]
 
 float meant(float axis) {
     const float size = std::max(std::fabs(axis) - DEAD, 0.0f) / (1 - DEAD);
@@ -27,8 +28,8 @@ Pad read_gamepad() {
         pad.left_y = -is.axes[GLFW_GAMEPAD_AXIS_LEFT_Y]; // GLFW counts down
         pad.right_x = is.axes[GLFW_GAMEPAD_AXIS_RIGHT_X];
         pad.right_y = -is.axes[GLFW_GAMEPAD_AXIS_RIGHT_Y];
-        pad.far = 0.5f * (is.axes[GLFW_GAMEPAD_AXIS_LEFT_TRIGGER] + 1); // -1 where it is not pressed
-        pad.near = 0.5f * (is.axes[GLFW_GAMEPAD_AXIS_RIGHT_TRIGGER] + 1);
+        pad.away = 0.5f * (is.axes[GLFW_GAMEPAD_AXIS_LEFT_TRIGGER] + 1); // -1 where it is not pressed
+        pad.closer = 0.5f * (is.axes[GLFW_GAMEPAD_AXIS_RIGHT_TRIGGER] + 1);
         pad.act = down(GLFW_GAMEPAD_BUTTON_A);
         pad.undo = down(GLFW_GAMEPAD_BUTTON_B);
         pad.redo = down(GLFW_GAMEPAD_BUTTON_Y);
@@ -43,7 +44,7 @@ Pad read_gamepad() {
 bool Gamepad::apply(const Pad& pad, Session& session, double seconds) {
     const float time = static_cast<float>(seconds);
     const glm::vec3 move{meant(pad.left_x), meant(pad.left_y), 0};
-    const float turn = meant(pad.right_x), tilt = meant(pad.right_y), away = meant(pad.far) - meant(pad.near);
+    const float turn = meant(pad.right_x), tilt = meant(pad.right_y), away = meant(pad.away) - meant(pad.closer);
     const auto pressed = [&](bool Pad::*button) { return pad.*button && !(before_.*button); };
     const bool steps = pressed(&Pad::last_tool) || pressed(&Pad::next_tool);
     points_ = points_ || pad.act || steps || move != glm::vec3{0} || turn != 0 || tilt != 0 || away != 0;

@@ -1,14 +1,13 @@
 // A gamepad in the place of pointer and keys: the tool acts in the middle of the picture.
 #pragma once
 #include "session.hpp"
-#include <array>
 
 namespace viewer {
 
 /// What is pressed. Axes: -1 ... 1, to the right and up; triggers: 0 ... 1.
 struct Pad {
     float left_x = 0, left_y = 0, right_x = 0, right_y = 0;
-    float far = 0, near = 0; // triggers
+    float away = 0, closer = 0; // triggers
     bool act = false, undo = false, redo = false, pause = false, last_tool = false, next_tool = false;
 };
 
