@@ -4,7 +4,6 @@
 #include "engine/settings/rules/messages.hpp"
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -110,7 +109,9 @@ float float_of(const Bytes& bytes, std::size_t n, bool swapped) {
     std::array<std::uint8_t, 4> each{};
     std::copy_n(&bytes[4 * n], 4, each.begin());
     if (swapped) std::reverse(each.begin(), each.end());
-    return std::bit_cast<float>(each);
+    float value = 0; // std::bit_cast is not in LLVM's library before version 14
+    std::memcpy(&value, each.data(), sizeof value);
+    return value;
 }
 
 /// Values that no ground has, or that are hardly numbers.

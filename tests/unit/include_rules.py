@@ -81,6 +81,9 @@ LIBRARIES = {
     "CLI/": ["samples", "tests"],
     "doctest/": ["tests"],
 }
+# What a library that Wadi is built with lacks: LLVM's before version 14 is Emscripten's in Debian 12.
+LACKING = re.compile(r"std::bit_cast[<(]")
+LIBRARY = ("engine/", "backends/cpu/", "backends/common/", "plugin/src/")
 SOURCES = {".c", ".h", ".cpp", ".hpp", ".cu", ".cuh", ".stage", ".glsl", ".comp", ".inl", ".in"}
 # Sources in C, whose calls count as arrows; comments and texts in them; what a file defines for others.
 C_SOURCES = "plugin/godot/source"
@@ -100,6 +103,8 @@ def breaches(root, path):
     if relative.startswith(("engine/", "backends/")):
         allowed = allowed + FOR_THE_HOST
     for number, line in enumerate(path.read_text(encoding="utf-8").splitlines(), 1):
+        if relative.startswith(LIBRARY) and LACKING.search(line):
+            yield f"{relative}:{number}: {LACKING.search(line)[0][:-1]} is not in every C++ library that this is built with"
         found = INCLUDE.match(line)
         if not found:
             continue
