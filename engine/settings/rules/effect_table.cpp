@@ -44,8 +44,8 @@ Why holds_shape(const Settings& s, Content) {
 }
 
 // Of what is only seen: it costs something and moves nothing.
-template <std::uint32_t BIT> Why drawn(const Settings& s, Content) {
-    const bool on = (s.drawn_effects & BIT) != 0;
+Why drawn(const Settings& s, std::uint32_t effect) {
+    const bool on = (s.drawn_effects & effect) != 0;
     return {on, on ? "the host draws it" : "neither the level nor the host asks for it"};
 }
 
@@ -120,8 +120,8 @@ constexpr Effect effects[] = {
          if (s.rain_map.empty()) return {false, "the level has none"};
          return {ever_above_zero(s.rain), ever_above_zero(s.rain) ? "the level has a rain map" : "it never rains"};
      }},
-    {row(EFFECT_FOAM), "the host draws it (`draws`)", drawn<EFFECT_FOAM>},
-    {row(EFFECT_WETNESS), "the host draws it (`draws`)", drawn<EFFECT_WETNESS>},
+    {row(EFFECT_FOAM), "the host draws it (`draws`)", [](const Settings& s, Content) { return drawn(s, EFFECT_FOAM); }},
+    {row(EFFECT_WETNESS), "the host draws it (`draws`)", [](const Settings& s, Content) { return drawn(s, EFFECT_WETNESS); }},
 };
 
 constexpr Choice choices[] = {
