@@ -23,12 +23,25 @@ Json read_schema() {
     return {};
 }
 
+Json read_level(const std::filesystem::path& level_file, const std::string& text) {
+    if (!text.empty()) return Json::parse(text, nullptr, false, true);
+    return level_file.extension() == ".json" ? read_json(level_file) : Json();
+}
+
 } // namespace
 
+double longest_side(const std::filesystem::path& level_file, const std::string& text) {
+    const Json level = read_level(level_file, text);
+    if (!level.is_object() || !level.contains("grid") || !level["grid"].is_object()) return 0;
+    const auto number = [&](const char* key) {
+        const auto found = level["grid"].find(key);
+        return found != level["grid"].end() && found->is_number() ? found->get<double>() : 0;
+    };
+    return std::max(number("nx"), number("ny")) * number("dx");
+}
+
 LevelSettings::LevelSettings(const std::filesystem::path& level_file, const std::string& text) {
-    const Json level = !text.empty()                       ? Json::parse(text, nullptr, false, true)
-                       : level_file.extension() == ".json" ? read_json(level_file)
-                                                           : Json();
+    const Json level = read_level(level_file, text);
     const Json schema = read_schema();
     if (!level.is_object() || !schema.is_object()) return;
     level_ = level.dump();

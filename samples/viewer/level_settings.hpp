@@ -14,6 +14,9 @@ struct EffectSetting {
 };
 inline constexpr const char* effect_forces[] = {"auto", "on", "off"};
 
+/// The longer side of a level [m]; 0 for one that is no JSON file. `text` not empty: instead of the file's own.
+double longest_side(const std::filesystem::path& level_file, const std::string& text);
+
 class LevelSettings {
   public:
     LevelSettings() = default;

@@ -1,4 +1,5 @@
 #include "simulation.hpp"
+#include "level_settings.hpp"
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -17,6 +18,8 @@ constexpr std::array<wadi_output, 8> outputs = {WADI_OUTPUT_SAND_SURFACE,  WADI_
                                                 WADI_OUTPUT_SAND_VELOCITY, WADI_OUTPUT_WETNESS};
 constexpr std::array<int, outputs.size()> floats = {1, 1, 1, 1, 1, 2, 2, 1};
 static_assert(std::tuple_size_v<Sources> == outputs.size() + 1); // the host's field
+
+constexpr double LONGEST_SHORE = 64; // [m]: of a level whose waves foam by the default foam_energy
 
 std::mutex log_mutex;
 std::vector<std::string> log_lines;
@@ -119,7 +122,10 @@ Simulation::Simulation(const Gpu& gpu, const SimulationChoice& choice) : gpu_(gp
     overrides.accuracy = fine                                                    ? "fine"
                          : choice.accuracy.empty() || choice.accuracy == "level" ? nullptr
                                                                                  : choice.accuracy.c_str();
-    overrides.draws = WADI_OUTPUT_BIT(WADI_OUTPUT_FOAM) | WADI_OUTPUT_BIT(WADI_OUTPUT_WETNESS);
+    // What covers a shore with foam covers a flood in a valley all over: there the foam of the moment shows more.
+    const double length = longest_side(choice.level_file, choice.text);
+    overrides.draws = WADI_OUTPUT_BIT(WADI_OUTPUT_WETNESS);
+    if (length > 0 && length <= LONGEST_SHORE) overrides.draws |= WADI_OUTPUT_BIT(WADI_OUTPUT_FOAM);
     overrides.method = choice.method.empty() ? nullptr : choice.method.c_str();
     std::filesystem::path folder = std::filesystem::path(choice.level_file).parent_path();
     check(choice.text.empty()
