@@ -13,14 +13,14 @@ using namespace wadi::test;
 
 namespace {
 
-constexpr int N = 28;
+constexpr int CELLS = 28;
 
 // A heap of sand, half wet, a lake against it and a film of water on the rest.
 AbiWorld site(const std::string& backend, const std::string& material = "", const std::string& more = "") {
     std::vector<float> terrain, sand, water;
-    for (int j = 0; j < N; ++j) {
-        for (int i = 0; i < N; ++i) {
-            const double x = (i + 0.5) / N, y = (j + 0.5) / N;
+    for (int j = 0; j < CELLS; ++j) {
+        for (int i = 0; i < CELLS; ++i) {
+            const double x = (i + 0.5) / CELLS, y = (j + 0.5) / CELLS;
             terrain.push_back(static_cast<float>(0.2 * x + 0.1 * std::sin(6 * y)));
             sand.push_back(static_cast<float>(std::max(0.0, 1.2 - 3 * std::hypot(x - 0.5, y - 0.5))));
             water.push_back(x < 0.35 ? 0.9F : 0.1F * static_cast<float>(y));
@@ -28,7 +28,7 @@ AbiWorld site(const std::string& backend, const std::string& material = "", cons
     }
     const std::string json = R"({"format_version": 1, "name": "site", "grid": {"nx": 28, "ny": 28, "dx": 0.25}, "dt": 0.012, )" +
                              more + R"("material": {)" + material + "}}";
-    return world_of(backend, json, N, N, terrain, sand, water);
+    return world_of(backend, json, CELLS, CELLS, terrain, sand, water);
 }
 
 void set(const AbiWorld& world, const std::string& name, double value) {

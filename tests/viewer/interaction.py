@@ -11,43 +11,7 @@ import time
 from pathlib import Path
 
 from pictures import black_pixels, read_png, sandy, share
-
-STATE = re.compile(r"state step (\d+) sand ([\d.]+) water ([\d.]+) sand_in ([\d.]+) water_in ([\d.]+) water_out ([\d.]+) kept (\d+) hash (\w+) ground (-?[\d.]+)")
-POINTED = "320x180" # pictures in which a script points at places
-SMALL, SPOT = "160x90", (72, 58) # the same where nobody looks at them, and the place in them
-
-
-# Sessions test input, not the land beyond the block, which takes half of a picture's time: they draw the block alone.
-class Session:
-    def __init__(self, program, folder, window):
-        self.program, self.folder, self.window, self.number = str(Path(program).resolve()), folder, window, 0
-        self.size = "640x360" if window else "96x54" # a window has the panel in it
-        # A place beside the damp column, in a window and in POINTED. The panel moves the middle of the picture by half its 330 pixels.
-        self.place = "452 229" if window else "143 115"
-
-    def start(self, script, frames, *arguments, backend="cpu", size=None, level="dam_break", environment=()):
-        self.number += 1
-        out = self.folder / str(self.number)
-        out.mkdir()
-        (out / "script.txt").write_text(script)
-        command = [self.program, *([level] if level else []), "--script", out / "script.txt", "--frames", frames, "--quality", "low", "--out", out, "--every", 0.1, "--grid", "96x96",
-                   "--validate", "--block", "--backend", backend, "--size", size or self.size, *arguments]
-        if not self.window:
-            command.append("--offscreen")
-        return out, subprocess.Popen([str(c) for c in command], cwd=self.folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                                     env={**os.environ, **dict(environment)})
-
-    def finish(self, process, code=0, before=""):
-        text, errors = process.communicate(timeout=600)
-        text = before + text
-        assert process.returncode == code, f"exit code {process.returncode}, not {code}\n{text}\n{errors}"
-        if code == 0:
-            assert "validation 0 messages" in text, text
-        return text, [dict(zip(("step", "sand", "water", "sand_in", "water_in", "water_out", "kept", "hash", "ground"), found)) for found in STATE.findall(text)], errors
-
-    def run(self, script, frames, *arguments, code=0, **options):
-        out, process = self.start(script, frames, *arguments, **options)
-        return (out, *self.finish(process, code))
+from session import POINTED, SMALL, SPOT, STATE, Session, start_display
 
 
 def test_accuracy(session):
@@ -109,14 +73,18 @@ def test_tools(session):
 
 
 def test_gamepad(session):
-    """A gamepad pours sand in the middle of the picture, undoes it, takes the next tool and moves the camera; a stick hardly moved is not meant."""
+    """A gamepad pours sand in the middle of the picture, undoes it and brings it back, pauses, takes the next tool and moves the camera. A stick
+    hardly moved is not meant."""
     rest = "pad 0 0 0 0 0 0"
-    out, _, (before, poured, undone, dug), _ = session.run(
-        f"0 tool pour-sand\n0 radius 8\n0 rate 3\n1 print\n2 {rest} a\n8 {rest} -\n9 print\n10 {rest} u\n11 {rest} -\n12 pause\n13 print\n"
-        f"14 resume\n14 {rest} >\n15 {rest} -\n16 {rest} a\n20 {rest} -\n21 print\n22 pause\n23 screenshot\n24 pad 0.1 0.1 0.1 0.1 0 0 -\n"
-        f"26 screenshot\n27 pad 0.8 0 0 0 0 0 -\n29 {rest} -\n30 screenshot\n31 pad 0 0 0.8 0 0 0 -\n33 {rest} -\n34 screenshot\n"
-        f"35 pad 0 0 0 0 0 1 -\n37 {rest} -\n38 screenshot\n", 40, size=POINTED)
+    tap = lambda frame, button: f"{frame} {rest} {button}\n{frame + 1} {rest} -\n"
+    out, _, (before, poured, undone, paused, redone, dug), _ = session.run(
+        f"0 tool pour-sand\n0 radius 8\n0 rate 3\n1 print\n2 {rest} a\n8 {rest} -\n9 print\n" + tap(10, "u") + tap(12, "p") + "13 print\n14 print\n" +
+        tap(15, "r") + "16 print\n" + tap(17, "u") + tap(19, "p") + tap(21, ">") + f"23 {rest} a\n27 {rest} -\n28 print\n29 pause\n30 screenshot\n"
+        f"31 pad 0.1 0.1 0.1 0.1 0 0 -\n33 screenshot\n34 pad 0.8 0 0 0 0 0 -\n36 {rest} -\n37 screenshot\n38 pad 0 0 0.8 0 0 0 -\n40 {rest} -\n41 screenshot\n"
+        f"42 pad 0 0 0 0 0 1 -\n44 {rest} -\n45 screenshot\n", 47, size=POINTED)
     assert float(poured["sand_in"]) > 50 and float(undone["sand"]) == float(before["sand"])
+    assert paused == undone, "the world goes on although it is paused"
+    assert redone["sand"] == poured["sand"], "what was undone does not come back"
     assert float(dug["sand"]) < float(undone["sand"]) - 1, "the next tool digs"
     still, dead, moved, turned, nearer = (read_png(out / f"screenshot_0000{n}.png") for n in range(5))
     assert still == dead, "a stick within its dead zone moves the camera"
@@ -463,19 +431,6 @@ def test_real_input(session):
     print(f"real input: {poured} m3 of sand; {text.splitlines()[-2]}")
     assert poured > 1
     assert re.search(r"window 660 x 370, minimised for [1-9]\d* frames", text), text
-
-
-def start_display(folder):
-    """An Xvfb of our own, whose number comes through a pipe, and a window manager."""
-    read, write = os.pipe()
-    server = subprocess.Popen(["Xvfb", "-displayfd", str(write), "-screen", "0", "1280x800x24"], pass_fds=[write], stderr=subprocess.DEVNULL)
-    os.close(write)
-    with os.fdopen(read) as pipe:
-        os.environ["DISPLAY"] = ":" + pipe.readline().strip()
-    rules = folder / "twmrc"
-    fonts = "".join(f'{use}Font "fixed"\n' for use in ("Title", "Resize", "Menu", "Icon", "IconManager")) # the server's own
-    rules.write_text(fonts + 'RandomPlacement\nNoTitle\nBorderWidth 0\nNoGrabServer\nIconManagerDontShow\n"F11" = : all : f.iconify\n"F10" = : all : f.delete\n')
-    return [subprocess.Popen(["twm", "-quiet", "-f", str(rules)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL), server]
 
 
 def main():
