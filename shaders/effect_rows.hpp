@@ -38,6 +38,7 @@ inline constexpr EffectRow effect_rows[] = {
     {EFFECT_RAIN_MAP, "rain_map", EFFECT_RAIN, "how much of the rain falls on each cell"},
     {EFFECT_FOAM, "foam", EFFECT_WATER, "foam is born where water breaks, drifts, fades and is left on the shore"},
     {EFFECT_WETNESS, "wetness", EFFECT_WATER, "ground that water has left stays wet and dries"},
+    {EFFECT_SILT, "silt", EFFECT_WATER | EFFECT_SAND, "water that runs over sand gets muddy, carries that along and clears"},
 };
 
 /// Choices: bits of the same mask above those, from settings and never from content. Without what it needs a choice has nothing
@@ -59,6 +60,9 @@ inline constexpr EffectRow choice_rows[] = {
 };
 
 inline constexpr std::uint32_t all_effects = (1u << std::size(effect_rows)) - 1;
+
+/// What is only seen and moves nothing.
+inline constexpr std::uint32_t only_seen = EFFECT_FOAM | EFFECT_WETNESS | EFFECT_SILT;
 
 /// The paper's own stages know nothing of these.
 inline constexpr std::uint32_t never_published = EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION | EFFECT_RETENTION |

@@ -104,6 +104,9 @@ struct WorldParams {
     float foam_birth;           // rho_w dt/(2 E dx): cover born in a step per depth, wave speed and squared compression [s3/m4]
     float foam_fade;            // share of the foam that fades in a step
     float wetness_fade;         // share of the wetness that dries in a step
+    float silt_fall;            // dt w_s: how far silt sinks in a step [m]
+    float silt_rate;            // dt M: picked up in a step where the stress is twice the least one [kg/m2]
+    float inv_silt_speed2;      // 1 over the squared speed of 1 m of water that has the least one [s2/m2]
 
     // sand substep
     float ks;                   // dts/dx [s/m]

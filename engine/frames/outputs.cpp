@@ -29,6 +29,7 @@ constexpr Kind kinds[] = {
     {"packed", "publish_packed", "packed_surface", nullptr, {4}},
     {"packed_half", "publish_packed_half", "packed_surface", nullptr, {4, 2}},
     {"wetness", nullptr, "wetness", nullptr, {1}},
+    {"silt", nullptr, "silt", nullptr, {1}},
 };
 static_assert(std::size(kinds) == static_cast<std::size_t>(Output::count));
 

@@ -22,6 +22,7 @@ enum class Output : std::uint32_t {
     packed,
     packed_half,
     wetness,
+    silt,
     count
 };
 constexpr std::uint32_t bit(Output output) { return 1u << static_cast<std::uint32_t>(output); }

@@ -140,12 +140,14 @@ Result<std::unique_ptr<compute::Device>> open(const wadi_device_options& options
     return backends::open_device(options.backend != nullptr ? options.backend : "auto", options.device, o);
 }
 
-constexpr std::uint64_t draws_foam = WADI_OUTPUT_BIT(WADI_OUTPUT_FOAM), draws_wetness = WADI_OUTPUT_BIT(WADI_OUTPUT_WETNESS);
+constexpr std::uint64_t draws_foam = WADI_OUTPUT_BIT(WADI_OUTPUT_FOAM), draws_wetness = WADI_OUTPUT_BIT(WADI_OUTPUT_WETNESS),
+                        draws_silt = WADI_OUTPUT_BIT(WADI_OUTPUT_SILT);
 
 LevelOverrides to_overrides(const wadi_level_overrides& o) {
     LevelOverrides overrides;
     if ((o.draws & draws_foam) != 0) overrides.drawn_effects |= EFFECT_FOAM;
     if ((o.draws & draws_wetness) != 0) overrides.drawn_effects |= EFFECT_WETNESS;
+    if ((o.draws & draws_silt) != 0) overrides.drawn_effects |= EFFECT_SILT;
     if (o.nx != 0 || o.ny != 0) overrides.size = {o.nx, o.ny};
     if (o.dt != 0) overrides.dt = o.dt;
     if (o.method != nullptr) overrides.method = o.method;
@@ -190,10 +192,11 @@ struct Asked {
         if (status && (overrides.fused_stages < -1 ||
                        overrides.fused_stages > 1)) // no setting refuses it later: its kind has no such value
             status = error(Code::bad_argument, call + "overrides.fused_stages is neither 1, -1 nor 0 (as the level says)");
-        if (status && (overrides.draws & ~(draws_foam | draws_wetness)) != 0)
+        if (status && (overrides.draws & ~(draws_foam | draws_wetness | draws_silt)) != 0)
             status = error(Code::bad_argument, call + "overrides.draws has bits beside those of WADI_OUTPUT_FOAM (" +
-                                                   std::to_string(draws_foam) + ") and WADI_OUTPUT_WETNESS (" +
-                                                   std::to_string(draws_wetness) + ")");
+                                                   std::to_string(draws_foam) + "), WADI_OUTPUT_WETNESS (" +
+                                                   std::to_string(draws_wetness) + ") and WADI_OUTPUT_SILT (" +
+                                                   std::to_string(draws_silt) + ")");
         if (status && options.most != nullptr) {
             auto limits = to_cost(call + "options.most", options.most);
             status = limits.status();

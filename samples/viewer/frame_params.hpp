@@ -9,6 +9,6 @@ struct FrameParams {
     using ivec4 = glm::ivec4;
 #include "shaders/frame_params.inc"
 };
-static_assert(sizeof(FrameParams) == (23 + 9) * 16, "shaders/frame_params.inc holds 16-byte members only");
+static_assert(sizeof(FrameParams) == (23 + 10) * 16, "shaders/frame_params.inc holds 16-byte members only");
 
 } // namespace viewer

@@ -17,7 +17,7 @@ constexpr uint32_t GROUP = 8; // local size of the passes
 constexpr std::array<uint32_t, 7> sampled_bindings = {1, 2, 3, 4, 5, 6, 25};
 constexpr uint32_t first_storage = 14, storage_count = 11, summit_storage = 26, noise_sampled = 28, noise_storage = 29;
 constexpr uint32_t NOISE_SIZE = 64; // texels along each axis of the noise: shaders/noise.glsl
-constexpr std::array<uint32_t, 9> source_bindings = {7, 8, 9, 10, 11, 12, 13, 30, 27};
+constexpr std::array<uint32_t, 10> source_bindings = {7, 8, 9, 10, 11, 12, 13, 30, 31, 27};
 
 template <std::size_t N> VkPipeline make_pipeline(const Gpu& gpu, VkPipelineLayout layout, const uint32_t (&words)[N]) {
     VkShaderModuleCreateInfo module_info{VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO};

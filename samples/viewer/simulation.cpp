@@ -13,10 +13,10 @@
 namespace viewer {
 namespace {
 
-constexpr std::array<wadi_output, 8> outputs = {WADI_OUTPUT_SAND_SURFACE,  WADI_OUTPUT_SAND_DEPTH, WADI_OUTPUT_WATER_DEPTH,
+constexpr std::array<wadi_output, 9> outputs = {WADI_OUTPUT_SAND_SURFACE,  WADI_OUTPUT_SAND_DEPTH, WADI_OUTPUT_WATER_DEPTH,
                                                 WADI_OUTPUT_SATURATION,    WADI_OUTPUT_FOAM,       WADI_OUTPUT_FLOW,
-                                                WADI_OUTPUT_SAND_VELOCITY, WADI_OUTPUT_WETNESS};
-constexpr std::array<int, outputs.size()> floats = {1, 1, 1, 1, 1, 2, 2, 1};
+                                                WADI_OUTPUT_SAND_VELOCITY, WADI_OUTPUT_WETNESS,    WADI_OUTPUT_SILT};
+constexpr std::array<int, outputs.size()> floats = {1, 1, 1, 1, 1, 2, 2, 1, 1};
 static_assert(std::tuple_size_v<Sources> == outputs.size() + 1); // the host's field
 
 constexpr double LONGEST_SHORE = 64; // [m]: of a level whose waves foam by the default foam_energy
@@ -124,7 +124,7 @@ Simulation::Simulation(const Gpu& gpu, const SimulationChoice& choice) : gpu_(gp
                                                                                  : choice.accuracy.c_str();
     // What covers a shore with foam covers a flood in a valley all over: there the foam of the moment shows more.
     const double length = longest_side(choice.level_file, choice.text);
-    overrides.draws = WADI_OUTPUT_BIT(WADI_OUTPUT_WETNESS);
+    overrides.draws = WADI_OUTPUT_BIT(WADI_OUTPUT_WETNESS) | WADI_OUTPUT_BIT(WADI_OUTPUT_SILT);
     if (length > 0 && length <= LONGEST_SHORE) overrides.draws |= WADI_OUTPUT_BIT(WADI_OUTPUT_FOAM);
     overrides.method = choice.method.empty() ? nullptr : choice.method.c_str();
     std::filesystem::path folder = std::filesystem::path(choice.level_file).parent_path();

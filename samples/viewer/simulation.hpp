@@ -34,7 +34,7 @@ struct Source {
     VkBuffer buffer = VK_NULL_HANDLE;
     int offset = 0, row_pitch = 0; // [floats]
 };
-using Sources = std::array<Source, 9>;
+using Sources = std::array<Source, 10>;
 
 /// Throws std::runtime_error with the plugin's message.
 void check(wadi_result result, const char* what);

@@ -38,6 +38,7 @@ template <class Real> const Field<Real>* cell_field(const Solver<Real>& s, const
         {"felt_water", &s.felt_water},
         {"surface_foam", &s.foam},
         {"wetness", &s.wetness},
+        {"silt", &s.silt},
     };
     const auto found = fields.find(base);
     return found == fields.end() ? nullptr : found->second;

@@ -17,9 +17,8 @@ namespace {
 using compute::Device;
 using compute::ProgramBuilder;
 
-constexpr std::uint32_t ALL =
-    (all_effects & ~(EFFECT_BED_SHEAR | EFFECT_ROUGHNESS | EFFECT_RAIN_MAP | EFFECT_FOAM | EFFECT_WETNESS)) |
-    EFFECT_SHOCK_VISCOSITY; // without what is off unless a level asks for it
+constexpr std::uint32_t ALL = (all_effects & ~(EFFECT_BED_SHEAR | EFFECT_ROUGHNESS | EFFECT_RAIN_MAP | only_seen)) |
+                              EFFECT_SHOCK_VISCOSITY; // without what is off unless a level asks for it
 constexpr std::uint32_t SAND_LAWS = EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION | EFFECT_RETENTION; // ours, the paper has none
 constexpr double wake_up_ms = 700, warm_up_ms = 150; // busy ahead of the first row, and of each
 constexpr int burst = 4;                             // submissions in flight while the host is timed: below every backend's queue
@@ -391,7 +390,7 @@ Status run_perf(Session& session, const PerfOptions& options, bool first) {
         constexpr std::pair<const char*, std::uint32_t> steps[] = {
             {"step, all effects", ALL},
             {"step, all effects and infiltration", ALL | EFFECT_INFILTRATION},
-            {"step, all effects, foam and wetness", ALL | EFFECT_FOAM | EFFECT_WETNESS},
+            {"step, all effects, what is seen", ALL | only_seen},
             {"step, sand of the paper", ALL & ~SAND_LAWS},
             {"step, published", (ALL & ~never_published) | EFFECT_PUBLISHED},
             {"step, water only", EFFECT_WATER},

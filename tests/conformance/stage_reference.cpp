@@ -46,6 +46,7 @@ constexpr Step<Real> steps[] = {
     {"integrate_water_velocity", &Solver<Real>::integrate_water_velocity, EFFECT_WATER, EFFECT_PUBLISHED},
     {"carry_foam", &Solver<Real>::carry_foam, EFFECT_FOAM},
     {"wet_ground", &Solver<Real>::wet_ground, EFFECT_WETNESS},
+    {"carry_silt", &Solver<Real>::carry_silt, EFFECT_SILT},
     {"compute_bed_load", &Solver<Real>::compute_bed_load, EFFECT_BED_SHEAR},
     {"compute_saturation", &Solver<Real>::compute_saturation, EFFECT_COHESION, EFFECT_PUBLISHED},
     {"open_sand_sides", &Solver<Real>::update_open_sand_sides, EFFECT_OPEN_SIDES | EFFECT_SAND},

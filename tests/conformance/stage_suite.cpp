@@ -31,7 +31,7 @@ std::string vector_of(const std::string& base) {
 
 // What one bit more or less of a cut to whole quanta makes.
 double cut_to(const std::string& stage, const WorldParams& params) {
-    if (stage == "carry_foam" || stage == "wet_ground") return 0x1p-20; // quanta of their own
+    if (stage == "carry_foam" || stage == "wet_ground" || stage == "carry_silt") return 0x1p-20; // quanta of their own
     const bool truncates = stage == "compute_water_flux" || stage == "compute_sand_flux" || stage == "diffuse_mixed_height";
     return truncates ? static_cast<double>(params.quantum) : 0.0;
 }

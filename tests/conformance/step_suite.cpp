@@ -83,8 +83,9 @@ constexpr Row against_reference[] = {
     {"33x17", WET | ELASTIC | EFFECT_COHESION | SLOPES | EFFECT_RETENTION, "slope", "porous", 2},
     {"33x17", WET | SECOND, "slope", "porous", 3},
     {"33x17", EFFECT_WATER | SEEN, "dam_break", "default", 6},
-    {"33x17", WET | SEEN, "slope", "default", 3},
+    {"33x17", WET | only_seen, "slope", "default", 3},
     {"33x17", EFFECT_WATER | SEEN | PUBLISHED, "dam_break", "default", 4},
+    {"33x17", EFFECT_WATER | EFFECT_SAND | EFFECT_SILT | PUBLISHED, "dam_break", "default", 4},
     {"33x17", ALL, "flat", "default", 2},
     {"1x1", ALL, "flat", "default", 2},
 };

@@ -1,5 +1,4 @@
 #include "engine/settings/data/method_presets.hpp"
-#include "engine/settings/rules/effects.hpp"
 #include "tests/fuzz/fuzz_case.hpp"
 #include "tests/fuzz/random.hpp"
 #include <algorithm>
@@ -283,9 +282,8 @@ Case make_case(std::uint64_t seed) {
         for (const auto& [time, rate] : s.rain.samples) most = std::max(most, rate);
         s.rain_map = drawn(s.grid, relief(random, s.grid, std::min(random.log(1e-3, 90), 0.9 / most)));
     }
-    const auto found = effects_required(s, content_of(c.scene.fields));
-    for (const char* name : {"foam", "wetness"})
-        if (random.chance(0.3) && found && (found->mask & EFFECT_WATER) != 0) s.effects.push_back({name, Force::on});
+    for (const char* name : {"foam", "wetness", "silt"})
+        if (random.chance(0.3)) s.effects.push_back({name, Force::on});
     return c;
 }
 

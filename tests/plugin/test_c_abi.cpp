@@ -169,6 +169,7 @@ TEST_CASE("a world from arrays steps, reads back and keeps its ledger") {
     CHECK(std::string(wadi_field_name(WADI_FIELD_MIXED_VELOCITY_Y)) == "vm");
     CHECK(std::string(wadi_field_name(WADI_FIELD_STRETCH_YY)) == "Vyy");
     CHECK(std::string(wadi_field_name(WADI_FIELD_WETNESS)) == "wet");
+    CHECK(std::string(wadi_field_name(WADI_FIELD_SILT)) == "silt");
     CHECK(wadi_field_name(WADI_FIELD_COUNT) == nullptr);
 }
 

@@ -5,21 +5,25 @@
 
 using namespace plugin_test;
 
-TEST_CASE("a host that draws foam and wetness has them wherever there is water, unless the level forbids it") {
+TEST_CASE(
+    "a host that draws foam, wetness and silt has them wherever there is water, silt over sand, unless the level forbids it") {
     const std::string level = R"({"format_version": 1, "name": "shore", "grid": {"nx": 24, "ny": 8, "dx": 0.5}, "dt": 0.01,
         "terrain": [{"shape": "plane", "height": 0, "slope_x": 0.1}])";
     const std::string water = R"(, "water": [{"shape": "box", "from": [0, 0], "to": [4, 4], "height": 2}])";
-    constexpr uint64_t foam = WADI_OUTPUT_BIT(WADI_OUTPUT_FOAM), wetness = WADI_OUTPUT_BIT(WADI_OUTPUT_WETNESS);
+    constexpr uint64_t foam = WADI_OUTPUT_BIT(WADI_OUTPUT_FOAM), wetness = WADI_OUTPUT_BIT(WADI_OUTPUT_WETNESS),
+                       silt = WADI_OUTPUT_BIT(WADI_OUTPUT_SILT);
     struct Case {
         const char* level;
         uint64_t draws;
         std::string on;
     };
+    const std::string sand = water + R"(, "sand": [{"shape": "plane", "height": 0.2}])";
     const std::string off = water + R"(, "effects": {"foam": "off"})", asks = water + R"(, "effects": {"foam": "on"})";
     for (const auto& [rest, draws, on] :
          {Case{water.c_str(), 0, ""}, Case{water.c_str(), foam, "foam "}, Case{water.c_str(), wetness, "wetness "},
           Case{water.c_str(), foam | wetness, "foam wetness "}, Case{off.c_str(), foam | wetness, "wetness "},
-          Case{asks.c_str(), wetness, "foam wetness "}, Case{"", foam | wetness, ""}}) {
+          Case{asks.c_str(), wetness, "foam wetness "}, Case{"", foam | wetness, ""}, Case{water.c_str(), silt, ""},
+          Case{sand.c_str(), silt, "silt "}, Case{sand.c_str(), foam, "foam "}}) {
         CAPTURE(rest);
         CAPTURE(draws);
         auto overrides = wadi_default_level_overrides();
@@ -35,7 +39,7 @@ TEST_CASE("a host that draws foam and wetness has them wherever there is water, 
             std::vector<wadi_effect_info> effects(count);
             REQUIRE(wadi_world_get_effects(id, effects.data(), &count) == WADI_OK);
             std::string found;
-            for (const std::string name : {"foam", "wetness"})
+            for (const std::string name : {"foam", "wetness", "silt"})
                 for (const wadi_effect_info& one : effects)
                     if (one.on != 0 && one.name == name) found += name + " ";
             return found;
@@ -59,6 +63,6 @@ TEST_CASE("a host that draws foam and wetness has them wherever there is water, 
     CHECK(wadi_create_world_from_level_text((level + "}").c_str(), nullptr, nullptr, &overrides, nullptr, &id) ==
           WADI_ERROR_BAD_ARGUMENT);
     CHECK(std::string(wadi_get_last_error()) ==
-          "wadi_create_world_from_level_text: overrides.draws has bits beside those of WADI_OUTPUT_FOAM (256) and "
-          "WADI_OUTPUT_WETNESS (8192)");
+          "wadi_create_world_from_level_text: overrides.draws has bits beside those of WADI_OUTPUT_FOAM (256), "
+          "WADI_OUTPUT_WETNESS (8192) and WADI_OUTPUT_SILT (16384)");
 }

@@ -195,8 +195,9 @@ TEST_CASE("packed outputs hold what its four outputs hold, those of 16 bits the 
     }
 }
 
-TEST_CASE("foam that drifts and wetness are what a level with these effects publishes, on every backend") {
-    const std::string traces = R"(, "effects": {"foam": "on", "wetness": "on"}, "surface": {"wetness_half_life": 5})";
+TEST_CASE("foam that drifts, wetness and silt are what a level with these effects publishes, on every backend") {
+    const std::string traces =
+        R"(, "effects": {"foam": "on", "wetness": "on", "silt": "on"}, "surface": {"wetness_half_life": 5})";
     for (const auto& backend : backends()) {
         CAPTURE(backend);
         const World world(backend, 40, 36, 0.01, 0, 1.5F, traces), plain(backend);
@@ -222,6 +223,10 @@ TEST_CASE("foam that drifts and wetness are what a level with these effects publ
         CHECK(plain.read(WADI_FIELD_FOAM) == none);
         CHECK(plain.read(WADI_FIELD_WETNESS) == none);
         CHECK(host(plain, WADI_OUTPUT_WETNESS) == none);
+        CHECK(host(world, WADI_OUTPUT_SILT) == world.read(WADI_FIELD_SILT));
+        CHECK(host(world, WADI_OUTPUT_SILT) != none);
+        CHECK(plain.read(WADI_FIELD_SILT) == none);
+        CHECK(host(plain, WADI_OUTPUT_SILT) == none);
     }
 }
 

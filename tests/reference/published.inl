@@ -277,6 +277,7 @@ template <class Real> void Solver<Real>::step_published_water() {
     push_water();
     carry_foam();
     wet_ground();
+    carry_silt();
     if (has(EFFECT_BED_SHEAR)) compute_bed_load();
 }
 

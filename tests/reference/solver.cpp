@@ -129,7 +129,8 @@ template <class Real> Solver<Real>::Solver(const Settings& world, std::uint32_t 
                                &felt_water,
                                &mixed_diffused,
                                &foam,
-                               &wetness})
+                               &wetness,
+                               &silt})
         field->assign(nx * ny, Real(0));
     Vxx.assign(nx * ny, Real(1));
     Vyy.assign(nx * ny, Real(1));
@@ -281,6 +282,7 @@ template <class Real> template <class Other> void Solver<Real>::copy_from(const 
     field(&A::mixed_diffused, &B::mixed_diffused);
     field(&A::foam, &B::foam);
     field(&A::wetness, &B::wetness);
+    field(&A::silt, &B::silt);
     rained = static_cast<Real>(other.rained);
     water_added = other.water_added;
     sand_added = other.sand_added;
@@ -316,6 +318,7 @@ template <class Real> void Solver<Real>::step_robust() {
         integrate_water_velocity();
         carry_foam();
         wet_ground();
+        carry_silt();
     }
     if (has(EFFECT_BED_SHEAR)) compute_bed_load();
     if (has(EFFECT_COHESION)) compute_saturation();

@@ -94,6 +94,7 @@ template <class Real> class Solver {
     void integrate_water_velocity();             // 2.3, 2.4 -> pure_velocity, mixed_velocity, mixed_push
     void carry_foam();                           // 2.25 -> foam
     void wet_ground();                           // 2.26 -> wetness
+    void carry_silt();                           // 2.27 -> silt
     void compute_bed_load();                     // 2.11 -> bed_load
     void compute_saturation();                   // 2.7 -> saturation
     void update_open_sand_sides();               // 2.9, sand: in every substep
@@ -143,7 +144,7 @@ template <class Real> class Solver {
     Field<Real> rotation;             // 2.13: angle, or (Fyx - Fxy)/2
     Field<Real> wedge_depth;          // 2.18: sand above the failing plane [m]
     Field<Real> pore_water;           // 2.24: what pores hold at most, -1 where they are full under water [m]
-    Field<Real> foam, wetness;        // 2.25, 2.26
+    Field<Real> foam, wetness, silt;  // 2.25 to 2.27
     Faces<Real> sand_velocity, pure_velocity, mixed_velocity; // us, uw, um [m/s]
 
     // Intermediate fields. Fluxes are depths per step, k q [m].
@@ -268,7 +269,9 @@ template <class Real> class Solver {
     Real in_pores(std::size_t cell) const;
     static constexpr Real surface_quantum = Real(1) / Real(1048576); // of 2.25
     Real open_water(std::size_t cell) const;
+    static Real less_share(Real amount, Real share, Real least);
     Real after_fading(Real amount, double half_life, Real least) const;
+    Field<Real> drift(const Field<Real>& held, const Field<Real>& moves, Real pace) const;
     bool waits(std::size_t cell) const;
     Real seen_depth(std::size_t cell) const;
     Real transport_depth(std::size_t cell) const;

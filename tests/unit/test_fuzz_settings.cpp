@@ -83,6 +83,7 @@ TEST_CASE("random worlds draw what levels have beside their settings: kinds of s
                              "rain map",
                              "foam on",
                              "wetness on",
+                             "silt on",
                              "velocities",
                              "method robust",
                              "method published"})

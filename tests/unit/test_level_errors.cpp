@@ -88,6 +88,7 @@ TEST_CASE("level errors: material, method, effects") {
     refuses(R"("material": {"friction": 12})", "material.friction: 12 is outside 0 ... 10");
     refuses(R"("surface": {"foam_half_life": -1})", "surface.foam_half_life: -1 is outside 0 ... 100000");
     refuses(R"("surface": {"foam_energy": 0})", "surface.foam_energy: 0 is outside 0.001 ... 1e+09");
+    refuses(R"("surface": {"silt_speed": 0})", "surface.silt_speed: 0 is outside 0.001 ... 100");
     refuses(R"("surface": {"foam_hal_life": 1})", "surface.foam_hal_life: unknown key, did you mean \"foam_half_life\"?");
     refuses(R"("material": {"frction": 1})", "material.frction: unknown key, did you mean \"friction\"?");
     refuses(R"("material": {"young_modulsu": 1})", "did you mean \"young_modulus\"?");

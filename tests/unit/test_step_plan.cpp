@@ -17,12 +17,12 @@ namespace {
 constexpr std::uint32_t sand_laws = EFFECT_SLOPE_NORMAL | EFFECT_INTERNAL_FRICTION | EFFECT_RETENTION;
 
 // With none of the sand's laws and with all that are legal, a few with some of them, and a few with each of what adds no pass but
-// its own to any other: the water's viscosity, a map of rain, a rate of infiltration, foam, wetness. Under sanitizers a few of
-// all.
+// its own to any other: the water's viscosity, a map of rain, a rate of infiltration, foam, wetness, silt. Under sanitizers a few
+// of all.
 std::vector<std::uint32_t> legal_masks() {
-    constexpr std::array lone = {EFFECT_SHOCK_VISCOSITY, EFFECT_RAIN_MAP, EFFECT_INFILTRATION, EFFECT_FOAM, EFFECT_WETNESS};
-    constexpr std::uint32_t any_lone =
-        EFFECT_SHOCK_VISCOSITY | EFFECT_RAIN_MAP | EFFECT_INFILTRATION | EFFECT_FOAM | EFFECT_WETNESS;
+    constexpr std::array lone = {EFFECT_SHOCK_VISCOSITY, EFFECT_RAIN_MAP, EFFECT_INFILTRATION, EFFECT_FOAM,
+                                 EFFECT_WETNESS,         EFFECT_SILT};
+    constexpr std::uint32_t any_lone = EFFECT_SHOCK_VISCOSITY | EFFECT_RAIN_MAP | EFFECT_INFILTRATION | only_seen;
     std::uint32_t all = all_effects;
     for (const auto& choice : choice_table()) all |= choice.bit;
     all &= ~any_lone;
@@ -183,7 +183,7 @@ TEST_CASE("an effect that is off has no pass and no buffer") {
     CHECK_FALSE(runs(single, "compute_momentum_exchange"));
 
     const auto full = make_step_plan(everything, 3);
-    CHECK(full.bytes_per_cell() <= 196);
+    CHECK(full.bytes_per_cell() <= 204);
     for (const auto& effect : effect_table()) {
         std::uint32_t without = everything & ~effect.bit;
         for (const auto& other : effect_table()) {
@@ -262,8 +262,8 @@ TEST_CASE("choices of method are passes of their own at their place in the order
     CHECK(order(second_sand.substep_passes) == order(first_sand.substep_passes));
     CHECK(second_sand.field_buffers() == first_sand.field_buffers());
     CHECK(second_sand.reach > first_sand.reach);
-    constexpr std::uint32_t all =
-        all_effects & ~(EFFECT_BED_SHEAR | EFFECT_ROUGHNESS | EFFECT_RAIN_MAP | EFFECT_FOAM | EFFECT_WETNESS | sand_laws);
+    constexpr std::uint32_t all = all_effects & ~(EFFECT_BED_SHEAR | EFFECT_ROUGHNESS | EFFECT_RAIN_MAP | EFFECT_FOAM |
+                                                  EFFECT_WETNESS | EFFECT_SILT | sand_laws);
     CHECK(make_step_plan(all, 3).bytes_per_cell() == 132);
     CHECK(!is_legal(EFFECT_SAND | EFFECT_SLOPE_NORMAL | EFFECT_PUBLISHED));
     CHECK(!is_legal(EFFECT_SAND | EFFECT_ELASTOPLASTIC | EFFECT_DIRECT_STRAIN));
@@ -295,6 +295,12 @@ TEST_CASE("effects follow from the scene, with a reason, and a level may force t
     const auto bad = effects_required(scene.settings, content_of(scene.fields));
     CHECK(bad.status().code == Code::bad_argument);
     CHECK(bad.status().message.find("effects.diffusion: on, but it needs mixture") != std::string::npos);
+    for (const char* seen : {"foam", "wetness", "silt"}) { // on where there is what it needs, so that a world may run dry
+        auto none = flat_scene(8, 8, 1, 0.01);
+        none.settings.effects = {{seen, Force::on}};
+        CHECK(effects_required(none.settings, {})->mask == 0);
+        CHECK(effect_names(effects_required(none.settings, {.sand = true, .water = true})->mask).find(seen) != std::string::npos);
+    }
     scene.settings.effects = {{"steam", Force::on}};
     CHECK(effects_required(scene.settings, content_of(scene.fields)).status().message.find("effects.steam") != std::string::npos);
 }
@@ -358,7 +364,7 @@ TEST_CASE("fields: a name without a row is refused; no name, number or symbol st
         CHECK_MESSAGE(hosts.insert(row.host).second, row.name);
         CHECK(find_host_field(row.host) == &row);
     }
-    CHECK(hashed == 17);
+    CHECK(hashed == 18);
     CHECK(*hosts.rbegin() + 1 == static_cast<int>(hosts.size())); // as wadi_field, without a gap
     CHECK(find_host_field(-1) == nullptr);
 }

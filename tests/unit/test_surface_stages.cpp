@@ -1,5 +1,5 @@
-// Stages carry_foam and wet_ground alone, on the CPU: sums of foam to the last quantum, where it goes, how fast what is left
-// fades (NUMERICS 2.25, 2.26).
+// Stages carry_foam, wet_ground and carry_silt alone, on the CPU: sums to the last quantum, what goes where, how fast it fades or
+// sinks, what is picked up (NUMERICS 2.25 to 2.27).
 #include "backends/cpu/stages.hpp"
 #include "engine/step/plan/world_params.hpp"
 #include "shaders/effects.h"
@@ -12,20 +12,21 @@ using namespace wadi;
 namespace {
 
 constexpr float quantum = 0x1p-20F;
-constexpr std::uint32_t mask = EFFECT_WATER | EFFECT_FOAM | EFFECT_WETNESS;
+constexpr std::uint32_t mask = EFFECT_WATER | EFFECT_FOAM | EFFECT_WETNESS, muddy = EFFECT_WATER | EFFECT_SAND | EFFECT_SILT;
 
 /// Fields of a grid, in the order of the stages' buffers.
 struct SurfaceTrial {
     FieldLayout layout;
     WorldParams params;
-    std::vector<float> water, velocity_x, velocity_y, foam, next, wetness;
+    std::vector<float> water, velocity_x, velocity_y, foam, next, wetness, sand, sand_x, sand_y, silt;
 
     SurfaceTrial(int nx, int ny) : layout{nx, ny} {
         Settings settings;
         settings.grid = {nx, ny, 0.25};
         settings.dt = 0x1p-6;
         params = derive_params(settings, mask);
-        for (auto* field : {&water, &velocity_x, &velocity_y, &foam, &next, &wetness}) field->assign(layout.size(), 0.0F);
+        for (auto* field : {&water, &velocity_x, &velocity_y, &foam, &next, &wetness, &sand, &sand_x, &sand_y, &silt})
+            field->assign(layout.size(), 0.0F);
     }
     float& at(std::vector<float>& field, int i, int j) const { return field[layout.index(i, j)]; }
     void fill(std::vector<float>& field, float value, int columns, int rows) const {
@@ -38,7 +39,7 @@ struct SurfaceTrial {
             for (int i = 0; i < layout.nx; ++i) sum += static_cast<double>(field[layout.index(i, j)]);
         return sum;
     }
-    void run(const char* stage, std::vector<std::vector<float>*> fields) {
+    void run(const char* stage, std::vector<std::vector<float>*> fields, std::uint32_t effects = mask) {
         fields.resize(compute::stage_table()[static_cast<std::size_t>(compute::find_stage(stage))].bindings.size());
         std::vector<void*> buffers;
         std::vector<unsigned long long> sizes;
@@ -48,7 +49,7 @@ struct SurfaceTrial {
         }
         const StepInput input{};
         const compute::Range2 cells{0, 0, layout.nx, layout.ny};
-        const cpu::StageCall call{cpu::instruction_sets().front().select[compute::find_stage(stage)](mask),
+        const cpu::StageCall call{cpu::instruction_sets().front().select[compute::find_stage(stage)](effects),
                                   buffers.data(),
                                   sizes.data(),
                                   params,
@@ -61,6 +62,10 @@ struct SurfaceTrial {
         std::swap(foam, next);
     }
     void wet() { run("wet_ground", {&water, &wetness}); }
+    void carry_silt() {
+        run("carry_silt", {&water, &velocity_x, &velocity_y, &sand, &sand_x, &sand_y, &silt, &next}, muddy);
+        std::swap(silt, next);
+    }
 
     /// Any water, foam of up to half a cover and velocities beyond the clamp, so that limiters act; walls around.
     void stir(unsigned seed) {
@@ -200,4 +205,84 @@ TEST_CASE("half of foam and wetness is gone after their half-lives, and all of i
     run(100);
     CHECK(trial.at(trial.foam, 1, 1) == 0.5F);
     CHECK(trial.at(trial.wetness, 1, 1) == 0.5F);
+}
+
+TEST_CASE("silt that water carries keeps its sum to the last quantum and lies where there is none") {
+    SurfaceTrial trial(37, 23);
+    trial.stir(11);
+    trial.params.silt_fall = 0;
+    trial.params.silt_rate = 0;
+    std::swap(trial.silt, trial.foam);
+    const auto start = trial.silt;
+    double due = 0, wet = 0;
+    for (int n = 0; n < 5; ++n) {
+        due = 0;
+        for (int j = 0; j < 23; ++j)
+            for (int i = 0; i < 37; ++i)
+                if (trial.at(trial.water, i, j) > trial.params.dry_threshold)
+                    due += static_cast<double>(trial.at(trial.silt, i, j));
+        if (n == 0) wet = due;
+        trial.carry_silt();
+        CHECK(trial.total(trial.silt) == due);
+        for (const float amount : trial.silt) CHECK(amount >= 0);
+    }
+    CHECK(wet < trial.total(start)); // the control: some lay where there was no water
+    CHECK(trial.silt != start);
+}
+
+TEST_CASE("silt leaves through open sides, sinks by its depth, is picked up by water that passes sand, and has an end") {
+    SurfaceTrial trial(12, 5);
+    trial.params.silt_fall = 0;
+    trial.params.silt_rate = 0;
+    trial.fill(trial.water, 1, 12, 5);
+    trial.fill(trial.silt, 0.5F, 12, 5);
+    trial.fill(trial.velocity_x, -1.7F, 13, 5); // outer faces, too
+    const float moved = std::floor(trial.params.k * (1.7F * 0.5F) / quantum) * quantum;
+    trial.carry_silt();
+    CHECK(trial.at(trial.silt, 0, 2) == 0.5F);
+    CHECK(trial.at(trial.silt, 11, 2) == 0.5F - moved);
+    CHECK(trial.total(trial.silt) == 0.5 * 60 - 5 * static_cast<double>(moved));
+
+    trial.fill(trial.velocity_x, 0, 13, 5);
+    trial.params.silt_fall = 0x1p-7F;
+    for (const float depth : {1.0F, 0.25F, 0x1p-7F, 0x1p-8F}) { // the last two: all of it reaches the ground
+        trial.fill(trial.water, depth, 12, 5);
+        trial.fill(trial.silt, 0.5F, 12, 5);
+        trial.carry_silt();
+        const float share = std::min(0x1p-7F / depth, 1.0F);
+        CHECK(trial.at(trial.silt, 6, 2) == std::max(0.5F - (std::floor(0.5F * share / quantum) + 1) * quantum, 0.0F));
+    }
+    trial.fill(trial.water, 1, 12, 5);
+    trial.fill(trial.silt, 0x1p-15F, 12, 5);
+    trial.carry_silt();
+    CHECK(trial.total(trial.silt) == 0); // less than anybody sees
+
+    trial.params.silt_fall = 0;
+    trial.params.silt_rate = 0.01F;
+    trial.params.inv_silt_speed2 = 4; // from 0.5 m/s on
+    const auto rises = [&](float water_speed, float sand_speed, float sand, float depth = 1) {
+        trial.fill(trial.silt, 0, 12, 5);
+        trial.fill(trial.velocity_x, water_speed, 13, 5);
+        trial.fill(trial.sand_x, sand_speed, 13, 5);
+        trial.fill(trial.sand, sand, 12, 5);
+        trial.fill(trial.water, depth + sand, 12, 5);
+        trial.carry_silt();
+        return trial.at(trial.silt, 6, 2);
+    };
+    const float due = std::floor(0.03F / quantum) * quantum; // 0.01 (1/0.25 - 1)
+    CHECK(std::abs(rises(1, 0, 0.5F) - due) <= quantum);
+    CHECK(std::abs(rises(-1, 0, 0.5F) - due) <= quantum);
+    CHECK(std::abs(rises(0, 1, 0.5F) - due) <= quantum); // a slide stirs up still water
+    CHECK(rises(1, 1, 0.5F) == 0);                       // sand that goes along
+    CHECK(rises(0.5F, 0, 0.5F) == 0);
+    CHECK(rises(1, 0, 0) == 0);                               // rock
+    CHECK(std::abs(rises(1, 0, 0.5F, 8) - 0.01F) <= quantum); // 0.01 (4/8^(1/3) - 1)
+    CHECK(std::abs(rises(1, 0, 0.5F, 0.125F) - 0.07F) <= 2 * quantum);
+    trial.params.silt_rate = 1e6F;
+    CHECK(rises(1, 0, 0.5F) == 8);
+    trial.fill(trial.sand, 0.5F, 12, 5);
+    trial.fill(trial.water, 0.5F, 12, 5); // all of it in the pores: none runs over the sand
+    trial.fill(trial.silt, 1, 12, 5);
+    trial.carry_silt();
+    CHECK(trial.total(trial.silt) == 0);
 }

@@ -75,6 +75,7 @@ inline constexpr double RAIN_MOST = 1;                  // rain and evaporation 
 inline constexpr double RAIN_TIMES_MOST = 100;          // of rain by a map
 inline constexpr double FADING_MOST = 1e5;              // half-lives of foam and wetness [s]
 inline constexpr double FOAM_ENERGY_LEAST = 1e-3;       // [J/m2]
+inline constexpr double SILT_SPEED_LEAST = 1e-3;        // [m/s]
 inline constexpr double RATE_MOST = 1e4;                // of a source [m/s]
 inline constexpr double MANNING_MOST = 1;               // n of a material, of a cell's roughness [s/m^(1/3)]
 inline constexpr double SPEED_MOST = 1e4;               // set by a source or as an initial velocity [m/s]

@@ -85,11 +85,14 @@ struct Method {
     bool published() const { return name == "published"; }
 };
 
-/// What water leaves behind to be seen; moves nothing. NUMERICS 2.25 and 2.26.
+/// What water carries and leaves behind to be seen; moves nothing. NUMERICS 2.25 to 2.27.
 struct Surface {
     double foam_half_life = 4;
     double foam_energy = 500;
     double wetness_half_life = 30;
+    double silt_speed = 0.7;
+    double silt_rate = 0.005;
+    double silt_settling = 0.01;
 };
 
 /// A value over time: linear between samples, constant outside. One sample = constant.
@@ -167,7 +170,7 @@ struct Settings {
     TimeSeries evaporation;                             // [m/s]
     std::vector<ScriptedEdit> edits;                    // at most 1000; the world queues them itself
     std::vector<std::pair<std::string, Force>> effects; // names of shaders/effect_rows.hpp
-    /// Bits of the effects that the host draws: foam and wetness are on by themselves where it does.
+    /// Bits of the effects that the host draws: foam, wetness and silt are on by themselves where it does.
     std::uint32_t drawn_effects = 0;
     /// What each cell adds to material.manning, 0 ... 1 s/m^(1/3), in the order of InitialFields; empty = nothing.
     std::vector<float> roughness;

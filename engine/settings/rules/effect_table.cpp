@@ -122,6 +122,7 @@ constexpr Effect effects[] = {
      }},
     {row(EFFECT_FOAM), "the host draws it (`draws`)", [](const Settings& s, Content) { return drawn(s, EFFECT_FOAM); }},
     {row(EFFECT_WETNESS), "the host draws it (`draws`)", [](const Settings& s, Content) { return drawn(s, EFFECT_WETNESS); }},
+    {row(EFFECT_SILT), "the host draws it (`draws`)", [](const Settings& s, Content) { return drawn(s, EFFECT_SILT); }},
 };
 
 constexpr Choice choices[] = {

@@ -34,7 +34,8 @@ Result<EffectChoice> effects_required(const Settings& settings, Content content)
         }
         const std::uint32_t lacking = effect.needs & ~choice.mask;
         Why want = effect.why(settings, content);
-        if (force == Force::on) {
+        // What is only seen waits for what it needs, so that a world may begin or run dry.
+        if (force == Force::on && (lacking == 0 || (effect.bit & only_seen) == 0)) {
             if (lacking != 0)
                 return error(Code::bad_argument,
                              std::string("effects.") + effect.name + ": on, but it needs " + effect_names(lacking));

@@ -39,6 +39,7 @@ constexpr FieldRow rows[] = {
      "water in the pores, -1 where they are full under water (NUMERICS 2.24)"},
     {"surface_foam", state, cell, in_hash, 16, "foam", "1", EFFECT_FOAM, "foam on the water and what it left ashore; 1 covers the cell"},
     {"wetness", state, cell, in_hash, 17, "wet", "1", EFFECT_WETNESS, "how wet the ground is: 1 under water, then drying"},
+    {"silt", state, cell, in_hash, 18, "silt", "kg/m2", EFFECT_SILT, "what makes water muddy, per area of the ground"},
     {"roughness", fixed, cell, no_hash, no_host, "", "s/m^(1/3)", EFFECT_ROUGHNESS, "Manning's n beyond that of the material"},
     {"rain_share", fixed, cell, no_hash, no_host, "", "1/65536", EFFECT_RAIN_MAP, "how much falls of the rain where it rains most"},
     {"water_scale", scratch, cell, no_hash, no_host, "", "1", EFFECT_WATER, "outflow limiter of pure water"},

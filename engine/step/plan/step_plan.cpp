@@ -92,6 +92,7 @@ void plan_water(PlanBuilder b) {
 void plan_surface(PlanBuilder b) {
     if (b.has(EFFECT_FOAM)) b.run("carry_foam", {"surface_foam"});
     if (b.has(EFFECT_WETNESS)) b.run("wet_ground");
+    if (b.has(EFFECT_SILT)) b.run("carry_silt", {"silt"});
 }
 
 // What the sand's substeps take from the water, once for all of them.

@@ -142,6 +142,9 @@ WorldParams derive_params(const Settings& s, std::uint32_t effects) {
     p.foam_birth = f(0.5 * m.water_density * dt / (s.surface.foam_energy * dx));
     p.foam_fade = f(fading_share(s.surface.foam_half_life, dt));
     p.wetness_fade = f(fading_share(s.surface.wetness_half_life, dt));
+    p.silt_fall = f(dt * s.surface.silt_settling);
+    p.silt_rate = f(dt * s.surface.silt_rate);
+    p.inv_silt_speed2 = f(1 / (s.surface.silt_speed * s.surface.silt_speed));
     p.inv_substeps = f(static_cast<double>(w.water_substeps) / w.substeps);
 
     p.ks = f(ks);

@@ -108,7 +108,12 @@ namespace Wadi
         PackedHalf = 12,
         /// <summary>with effect wetness how wet the ground is, 1 under water, less the longer it is dry, else 0; 1 float</summary>
         Wetness = 13,
-        Count = 14,
+        /// <summary>
+        /// with effect silt what makes the water muddy, per area of the ground [kg/m2], else 0; 1 float. Grains of 0.08 mm hide 1 -
+        /// exp(-7 s) of the ground below them, finer ones more
+        /// </summary>
+        Silt = 14,
+        Count = 15,
     }
 
     public enum OutputSet
@@ -177,7 +182,9 @@ namespace Wadi
         Foam = 16,
         /// <summary>effect wetness: 1 under water, less the longer the ground is dry</summary>
         Wetness = 17,
-        Count = 18,
+        /// <summary>effect silt: what makes the water muddy, per area of the ground, at most 8 [kg/m2]</summary>
+        Silt = 18,
+        Count = 19,
     }
 
     /// <summary>
@@ -248,6 +255,7 @@ namespace Wadi
         Packed = 1u << 11,
         PackedHalf = 1u << 12,
         Wetness = 1u << 13,
+        Silt = 1u << 14,
         /// <summary>For World.SetOutputs: lowest and highest elevation of tiles and their changes.</summary>
         Tiles = 0x80000000u,
     }

@@ -232,7 +232,7 @@ namespace Wadi
 
         /// <summary>
         /// Short name used by tools: "H", "hs", "W", "hw", "surface", "phi", "uw", "vw", "us", "vs", "um", "vm", "Vxx", "Vxy", "Vyy",
-        /// "limits", "foam", "wet"; NULL if unknown.
+        /// "limits", "foam", "wet", "silt"; NULL if unknown.
         /// </summary>
         [DllImport(Library, CallingConvention = CallingConvention.Cdecl, ExactSpelling = true)]
         public static extern byte* wadi_field_name(Field field);

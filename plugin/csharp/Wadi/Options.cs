@@ -68,8 +68,9 @@ namespace Wadi
         /// <summary>Maps and series may lie anywhere that the process can read, not in the level's folder alone. For levels of one's
         /// own.</summary>
         public bool AnyFiles;
-        /// <summary>OutputMask.Foam, OutputMask.Wetness or both: what you will draw of what water leaves. It is then there wherever there is
-        /// water and the level does not force it off. It moves nothing, and costs a pass each, and 12 bytes a cell together.</summary>
+        /// <summary>Any of OutputMask.Foam, OutputMask.Wetness and OutputMask.Silt: what you will draw of what water carries and leaves. It
+        /// is then there wherever there is water, silt where there is sand, too, and the level does not force it off. It moves nothing, and
+        /// costs a pass each and 8, 4 and 8 bytes a cell.</summary>
         public OutputMask Draws;
 
         internal RawLevelOverrides Raw(CallMemory memory)

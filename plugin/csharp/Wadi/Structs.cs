@@ -177,9 +177,9 @@ namespace Wadi
         /// </summary>
         public bool AnyFiles { get { return anyFiles != 0; } set { anyFiles = value ? 1 : 0; } }
         /// <summary>
-        /// WADI_OUTPUT_BIT of WADI_OUTPUT_FOAM, of WADI_OUTPUT_WETNESS, both, or 0: what the host will draw of what water leaves.
-        /// Effects foam and wetness are then on wherever there is water and the level does not force them off. They move nothing,
-        /// cost a pass each, and 12 bytes a cell together
+        /// WADI_OUTPUT_BIT of WADI_OUTPUT_FOAM, WADI_OUTPUT_WETNESS and WADI_OUTPUT_SILT, any of them, or 0: what the host will draw
+        /// of what water carries and leaves. Effects foam and wetness are then on wherever there is water, silt where there is sand,
+        /// too, and the level does not force them off. They move nothing, cost a pass each, and 8, 4 and 8 bytes a cell
         /// </summary>
         public ulong Draws;
         /// <summary>A struct with the size that the library asks for and the header's defaults; texts stay null.</summary>

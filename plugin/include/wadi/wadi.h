@@ -245,9 +245,10 @@ typedef struct wadi_level_overrides {
     wadi_choice fused_stages;  /* ON = several stages in one pass wherever the effects allow, OFF = one by one. Every bit stays */
     wadi_bool any_files;       /* 1 = maps and series may lie anywhere that the process can read; 0 = in the level's folder and below it
                                   alone, links followed: no "..", no path from the root on. For levels of one's own */
-    uint64_t draws;            /* WADI_OUTPUT_BIT of WADI_OUTPUT_FOAM, of WADI_OUTPUT_WETNESS, both, or 0: what the host will draw of what
-                                  water leaves. Effects foam and wetness are then on wherever there is water and the level does not force
-                                  them off. They move nothing, cost a pass each, and 12 bytes a cell together */
+    uint64_t draws;            /* WADI_OUTPUT_BIT of WADI_OUTPUT_FOAM, WADI_OUTPUT_WETNESS and WADI_OUTPUT_SILT, any of them, or 0: what the
+                                  host will draw of what water carries and leaves. Effects foam and wetness are then on wherever there is
+                                  water, silt where there is sand, too, and the level does not force them off. They move nothing, cost a
+                                  pass each, and 8, 4 and 8 bytes a cell */
 } wadi_level_overrides;
 static inline wadi_level_overrides wadi_default_level_overrides(void) {
     WADI_ZERO_STRUCT(wadi_level_overrides);
@@ -431,7 +432,9 @@ typedef enum wadi_output WADI_ENUM {
     WADI_OUTPUT_PACKED_HALF = 12,   /* the same, each rounded to a 16-bit float (11 bits: a surface 16 ... 32 m up to 16 mm), at most
                                        65504; 8 bytes */
     WADI_OUTPUT_WETNESS = 13,       /* with effect wetness how wet the ground is, 1 under water, less the longer it is dry, else 0; 1 float */
-    WADI_OUTPUT_COUNT = 14
+    WADI_OUTPUT_SILT = 14,          /* with effect silt what makes the water muddy, per area of the ground [kg/m2], else 0; 1 float. Grains
+                                       of 0.08 mm hide 1 - exp(-7 s) of the ground below them, finer ones more */
+    WADI_OUTPUT_COUNT = 15
 } wadi_output;
 /** Outputs, each by WADI_OUTPUT_BIT. */
 typedef uint32_t wadi_output_mask;
@@ -551,7 +554,8 @@ typedef enum wadi_field WADI_ENUM {
     WADI_FIELD_LIMITS = 15,          /* which limits hold the cell in the next step: a sum of wadi_limit bits, 0 = none */
     WADI_FIELD_FOAM = 16,            /* effect foam: 1 covers the cell, at most 4 where currents pile it up */
     WADI_FIELD_WETNESS = 17,         /* effect wetness: 1 under water, less the longer the ground is dry */
-    WADI_FIELD_COUNT = 18
+    WADI_FIELD_SILT = 18,            /* effect silt: what makes the water muddy, per area of the ground, at most 8 [kg/m2] */
+    WADI_FIELD_COUNT = 19
 } wadi_field;
 /** Bits of WADI_FIELD_LIMITS, of a cell or any of its four faces. wadi_world_stats counts the same, by faces. */
 typedef enum wadi_limit WADI_ENUM {
@@ -564,7 +568,7 @@ typedef enum wadi_limit WADI_ENUM {
     WADI_LIMIT_HEIGHT = 64        /* the column stands above method.largest_height: its heights are rounded, the books drift */
 } wadi_limit;
 /** Short name used by tools: "H", "hs", "W", "hw", "surface", "phi", "uw", "vw", "us", "vs", "um", "vm", "Vxx", "Vxy", "Vyy", "limits",
- *  "foam", "wet"; NULL if unknown. */
+ *  "foam", "wet", "silt"; NULL if unknown. */
 WADI_API const char* wadi_field_name(wadi_field field);
 
 /** Reads a field, count = nx * ny floats.

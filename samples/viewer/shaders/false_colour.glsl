@@ -16,7 +16,7 @@ float quantity_at(int view, vec2 xy) {
     if (view == 3) return m.x;
     if (view == 4) return depth > 0.0 ? length(v.xy) / sqrt(9.81 * max(depth, 1e-3)) : 0.0;
     if (view == 5) return h.w;
-    if (view == 6) return m.w;
+    if (view == 6) return length(v.zw);
     if (view == 7) return m.y;
     if (view == 8) return max(h.x, h.y);
     if (view == 9) return textureLod(light, uv, 0.0).y;

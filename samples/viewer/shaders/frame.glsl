@@ -6,7 +6,7 @@ layout(std140, set = 0, binding = 0) uniform Frame {
 // Cell (i, j) of the grid is texel (i, j).
 layout(set = 0, binding = 1) uniform sampler2D heights; // solid, water surface [m], the host's quantity, depth of sand [m]
 layout(set = 0, binding = 2) uniform sampler2D slopes;  // of the solid x, y; of the water x, y
-layout(set = 0, binding = 3) uniform sampler2D matter;  // saturation, foam, how wet the ground is, speed of sand [m/s]
+layout(set = 0, binding = 3) uniform sampler2D matter;  // saturation, foam, how wet the ground is, silt in the water [kg/m2]
 layout(set = 0, binding = 4) uniform sampler2D flow;    // velocity of water, of sand [m/s]
 layout(set = 0, binding = 5) uniform sampler2D light;   // sun that arrives, sky that is open
 layout(set = 0, binding = 6) uniform sampler2D pyramid; // greatest height of patches between cell centres, see march.glsl

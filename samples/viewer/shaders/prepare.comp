@@ -11,6 +11,7 @@ layout(std430, set = 0, binding = 11) readonly buffer Foam { float foam[]; };
 layout(std430, set = 0, binding = 12) readonly buffer Flow { float water_velocity[]; };
 layout(std430, set = 0, binding = 13) readonly buffer SandVelocity { float sand_velocity[]; };
 layout(std430, set = 0, binding = 30) readonly buffer Wetness { float wetness[]; };
+layout(std430, set = 0, binding = 31) readonly buffer Silt { float silt[]; };
 layout(std430, set = 0, binding = 27) readonly buffer HostField { float host_field[]; };
 layout(set = 0, binding = 14, rgba32f) writeonly uniform image2D to_heights;
 layout(set = 0, binding = 15, rgba16f) writeonly uniform image2D to_matter;
@@ -58,10 +59,10 @@ void main() {
         level /= wet_weight;
         surface = depth > 0.25 * film ? max(level, solid + min(depth, film)) : min(level, below);
     }
-    imageStore(to_heights, c, vec4(solid, surface, host_field[at(8, c, 1)], sand));
+    imageStore(to_heights, c, vec4(solid, surface, host_field[at(9, c, 1)], sand));
 
     vec2 water_speed = vec2(water_velocity[at(5, c, 2)], water_velocity[at(5, c, 2) + 1]);
     vec2 sand_speed = vec2(sand_velocity[at(6, c, 2)], sand_velocity[at(6, c, 2) + 1]);
-    imageStore(to_matter, c, vec4(saturation[at(3, c, 1)], seen_foam(c, depth), wetness[at(7, c, 1)], length(sand_speed)));
+    imageStore(to_matter, c, vec4(saturation[at(3, c, 1)], seen_foam(c, depth), wetness[at(7, c, 1)], silt[at(8, c, 1)]));
     imageStore(to_flow, c, vec4(water_speed, sand_speed));
 }

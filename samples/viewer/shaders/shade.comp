@@ -52,10 +52,10 @@ vec3 shade_wall(vec3 place, vec3 normal, float pixel) {
     return albedo * (F.sunlight.rgb * max(dot(normal, F.sun.xyz), 0.0) + ambient_on(normal, foot));
 }
 
-// What comes through `path` metres of water from below. lights: what shines into it; mud: share of stirred sand, see mud_in.
-vec3 through_water(vec3 below, float path, float mud, vec3 lights) {
-    vec3 through = exp(-(F.water.rgb + mud * vec3(2.2, 3.2, 5.0)) * path);
-    vec3 glow = mix(F.water_glow.rgb, 1.5 * F.sand_wet.rgb, clamp(1.4 * mud, 0.0, 1.0));
+// What comes through `path` metres of water from below. lights: what shines into it; mud: see mud_in.
+vec3 through_water(vec3 below, float path, vec3 mud, vec3 lights) {
+    vec3 through = exp(-(F.water.rgb + mud) * path);
+    vec3 glow = mix(F.water_glow.rgb, 1.5 * F.sand_wet.rgb, mud / (F.water.rgb + mud + 1e-6));
     return below * through + glow * lights * (1.0 - through);
 }
 
@@ -86,12 +86,12 @@ vec3 shade_beyond(vec3 place, vec3 along, bool water, float pixel) {
         Carried carried = carried_at(place.xy, moving.xy);
         vec3 normal = normalize(vec3(-slope.zw - ripple_slopes(carried, length(moving.xy), pixel) * cover, 1.0));
         vec3 mirrored = reflect(along, normal);
-        float path = depth / max(-refract(along, normal, 0.75).z, 0.1), mud = mud_in(place, length(moving.xy), state.w, depth, h.w) * cover;
+        float path = depth / max(-refract(along, normal, 0.75).z, 0.1);
         g.drowned = cover;
         g.sun *= caustics_at(place.xy, depth, pixel) * exp(-0.35 * dot(F.water.rgb, vec3(0.33)) * depth);
         g.place = vec3(place.xy, h.x);
         vec3 lights = F.sunlight.rgb * (0.75 * lit.x * F.sun.z) + ambient_on(vec3(0.0, 0.0, 1.0), lit.y);
-        colour = through_water(shade_ground(g), path, mud, lights);
+        colour = through_water(shade_ground(g), path, mud_in(state.w, depth) * cover, lights);
         colour = mix(colour, sky_in(normalize(vec3(mirrored.xy, max(mirrored.z, 0.01)))), drawn(REFLECTION) ? fresnel_of(normal, along) * cover : 0.0);
         colour += F.sunlight.rgb * (lit.x * cover * 2.5 * pow(max(dot(mirrored, F.sun.xyz), 0.0), 350.0));
         colour = mix(colour, foam_colour(normal, lit), near * foam_cover(carried, state.y, depth, pixel) * cover);
@@ -121,9 +121,9 @@ void main() {
 
     // Water bends the ray down to the ground below and mirrors another.
     vec3 ground = place, normal = vec3(0.0, 0.0, 1.0), mirrored = along;
-    float path = 0.0, foam = 0.0, cover = 0.0, fresnel = 0.0, mud = 0.0;
+    float path = 0.0, foam = 0.0, cover = 0.0, fresnel = 0.0;
     vec4 lit = vec4(1.0);
-    vec3 mirror_colour = vec3(0.0);
+    vec3 mirror_colour = vec3(0.0), mud = vec3(0.0);
     bool lost = false; // the bent ray leaves the block without meeting ground
     WHERE (water) {
         vec4 state = textureLod(matter, uv, 0.0);
@@ -133,7 +133,7 @@ void main() {
         vec4 h = heights_at(place.xy);
         cover = smoothstep(0.0, 3.0 * F.water.w, h.y - h.x);
         Carried carried = carried_at(place.xy, velocity);
-        mud = mud_in(place, length(velocity), state.w, h.y - h.x, h.w) * cover;
+        mud = mud_in(state.w, h.y - h.x) * cover;
         foam = foam_cover(carried, state.y, h.y - h.x, pixel_size) * cover;
         vec2 slope = textureLod(slopes, uv, 0.0).zw + ripple_slopes(carried, length(velocity), pixel_size) * cover;
         normal = wall ? normalize(to_wall + vec3(0.15 * slope, 0.0)) : normalize(vec3(-slope, 1.0));

@@ -1,5 +1,5 @@
-// What water leaves to be seen (NUMERICS 2.25, 2.26): how much foam a bore makes, where there is none, what lies on the shore;
-// and that it moves nothing.
+// What water carries and leaves to be seen (NUMERICS 2.25 to 2.27): how much foam a bore makes, where there is none, what lies on
+// the shore; where water is muddy and when it clears; and that all of it moves nothing.
 #include "tests/stability/quality.hpp"
 #include <cstring>
 
@@ -222,4 +222,85 @@ TEST_CASE("a world with traces falls asleep once they have faded, by the bits of
     CHECK(largest(cells_of(*world, "surface_foam")) == 0);
     CHECK(largest(cells_of(*world, "wetness")) == 0);
     CHECK(hash_of(*world) == hash_of(*dense));
+}
+
+TEST_CASE("a stream over sand gets muddy and one over rock clears, as the law of its load says") {
+    // q = 0.4 m2/s over 25 m of sand and 25 m of rock. With the load F = S q/h that passes a section, dF/dx = E - w_s F/q.
+    constexpr double q = 0.4, sinks = 0.02, rate = 0.01, least = 0.5, dx = 0.25;
+    auto scene = flat_scene(200, 3, dx, 0.01);
+    scene.settings.effects = {{"silt", Force::on}};
+    scene.settings.surface.silt_speed = least;
+    scene.settings.surface.silt_rate = rate;
+    scene.settings.surface.silt_settling = sinks;
+    scene.fill(scene.fields.terrain, [](double x, double) { return x < 25 ? -0.2 : 0; });
+    scene.fill(scene.fields.sand, [](double x, double) { return x < 25 ? 0.2 : 0; });
+    scene.fill(scene.fields.water, [](double x, double) { return x < 25 ? 0.6 : 0.4; });
+    scene.fill(scene.fields.velocity_x, [](double, double) { return 1; });
+    scene.settings.sides[SIDE_WEST] = {SideKind::discharge, 0, 1e30, {{{0, q * 3 * dx}}}};
+    scene.settings.sides[SIDE_EAST] = {SideKind::level, 0, 1e30, {{{0, 0.4}}}};
+    scene.settings.material.friction = 5; // sand that stays
+    auto stream = make_world(scene);
+    step(*stream, 6000);
+    const auto silt = cells_of(*stream, "silt"), depth = cells_of(*stream, "water_depth");
+    double passes = 0;
+    for (int i = 0; i < 199; ++i) {
+        const double h = depth.at(i, 1), u = q / h;
+        const double end = i < 100 ? rate * (u * u / (least * least) / std::cbrt(h) - 1) * q / sinks : 0;
+        passes = end + (passes - end) * std::exp(-sinks * dx / q);
+        if (i % 40 != 30) continue;
+        MESSAGE("cell " << i << ": " << silt.at(i, 1) << " kg/m2, by the law " << passes / u);
+        CHECK(silt.at(i, 1) == doctest::Approx(passes / u).epsilon(0.02));
+    }
+    CHECK(silt.at(98, 1) > 2 * silt.at(190, 1));
+}
+
+TEST_CASE("mud moves nothing, is saved, goes by the same bits with tiles and fused, and settles so that the world falls asleep") {
+    auto scene = beach(48, 8);
+    scene.settings.surface.silt_speed = 0.2;
+    scene.settings.surface.silt_settling = 0.05;
+    scene.fill(scene.fields.sand, [](double x, double) { return x > 3 && x < 7 ? 0.3 : 0; });
+    auto muddy = scene;
+    muddy.settings.effects = {{"silt", Force::on}};
+    auto plain = make_world(scene), stirred = make_world(muddy);
+    for (World* world : {plain.get(), stirred.get()}) step(*world, 300);
+    CHECK(largest(cells_of(*stirred, "silt")) > 0.01);
+    CHECK(largest(cells_of(*plain, "silt")) == 0);
+    CHECK(plain->plan().water_passes.size() + 1 == stirred->plan().water_passes.size());
+    for (const auto& [name, values] : state_of(*plain)) {
+        const auto other = stirred->reader().read_raw(name);
+        REQUIRE(other);
+        CHECK_MESSAGE(std::memcmp(values.data(), other->data(), values.size() * 4) == 0, name);
+    }
+    auto loaded = make_world(muddy);
+    REQUIRE(loaded->snapshots().load(save(*stirred)));
+    CHECK(hash_of(*loaded) == hash_of(*stirred));
+    on_every_backend(muddy, [&](World& world) {
+        step(world, 300);
+        CHECK(hash_of(world) == hash_of(*stirred));
+    });
+    auto tiled = muddy;
+    tiled.settings.active_tiles = 8;
+    for (const auto fused : {FusedStages::never, FusedStages::always}) {
+        tiled.settings.fused_stages = fused;
+        auto world = make_world(tiled);
+        step(*world, 300);
+        CHECK(hash_of(*world) == hash_of(*stirred));
+    }
+
+    // Still water clears, and a world at rest sleeps.
+    auto pond = flat_scene(32, 16, 0.25, 0.02);
+    pond.settings.effects = {{"silt", Force::on}};
+    pond.settings.surface.silt_speed = 0.1;
+    pond.settings.surface.silt_settling = 0.1;
+    pond.settings.active_tiles = 8;
+    pond.fill(pond.fields.sand, [](double, double) { return 0.1; });
+    pond.fill(pond.fields.water, [](double x, double) { return x < 2 ? 0.45 : 0.3; });
+    auto world = make_world(pond);
+    step(*world, 50);
+    const double early = largest(cells_of(*world, "silt"));
+    CHECK(early > 1e-3);
+    int steps = 50;
+    for (; steps < 6000 && largest(cells_of(*world, "silt")) > 0; steps += 50) step(*world, 50);
+    MESSAGE("up to " << early << " kg/m2, clear after " << steps << " steps");
+    CHECK(largest(cells_of(*world, "silt")) == 0);
 }

@@ -22,7 +22,7 @@ static const Property properties[] = {
     {FIELD(bool, wait_for_device), HINT_NONE, NULL, world_settings_changed},
     {FIELD(int, outputs), HINT_FLAGS,
      "Terrain,Sand Surface,Surface,Sand Depth,Water Depth,Saturation,Flow,Sand Velocity,Foam,Normal,Smooth Surface,Packed,Packed "
-     "Half,Wetness",
+     "Half,Wetness,Silt",
      world_outputs_changed},
     {0},
 };
@@ -91,6 +91,7 @@ static const Constant constants[] = {
     {"OUTPUT_PACKED", WADI_OUTPUT_PACKED, "Output"},
     {"OUTPUT_PACKED_HALF", WADI_OUTPUT_PACKED_HALF, "Output"},
     {"OUTPUT_WETNESS", WADI_OUTPUT_WETNESS, "Output"},
+    {"OUTPUT_SILT", WADI_OUTPUT_SILT, "Output"},
     {"LAYER_TERRAIN", WADI_LAYER_TERRAIN, "Layer"},
     {"LAYER_SAND", WADI_LAYER_SAND, "Layer"},
     {"LAYER_WATER", WADI_LAYER_WATER, "Layer"},
