@@ -61,9 +61,11 @@ vec3 through_water(vec3 below, float path, vec3 mud, vec3 lights) {
 
 float fresnel_of(vec3 normal, vec3 along) { return 0.02 + 0.98 * pow(1.0 - clamp(-dot(normal, along), 0.0, 1.0), 5.0); }
 
-vec3 foam_colour(vec3 normal, vec4 lit) {
+// Foam takes the colour of the water that it is whipped from; mud: see mud_in.
+vec3 foam_colour(vec3 normal, vec4 lit, vec3 mud) {
     float facing = 0.35 + 0.65 * max(dot(normal, F.sun.xyz), 0.0);
-    return 0.8 * (F.sunlight.rgb * (lit.x * facing) + ambient_on(normal, lit.y));
+    vec3 white = mix(vec3(0.8), 1.6 * F.sand_wet.rgb, 0.75 * (1.0 - exp(-mud)));
+    return white * (F.sunlight.rgb * (lit.x * facing) + ambient_on(normal, lit.y));
 }
 
 // The land beyond the block. Shadows, foam and wet ground of the rim fade out from it.
@@ -87,14 +89,15 @@ vec3 shade_beyond(vec3 place, vec3 along, bool water, float pixel) {
         vec3 normal = normalize(vec3(-slope.zw - ripple_slopes(carried, length(moving.xy), pixel) * cover, 1.0));
         vec3 mirrored = reflect(along, normal);
         float path = depth / max(-refract(along, normal, 0.75).z, 0.1);
+        vec3 mud = mud_in(state.w, depth) * cover;
         g.drowned = cover;
         g.sun *= caustics_at(place.xy, depth, pixel) * exp(-0.35 * dot(F.water.rgb, vec3(0.33)) * depth);
         g.place = vec3(place.xy, h.x);
         vec3 lights = F.sunlight.rgb * (0.75 * lit.x * F.sun.z) + ambient_on(vec3(0.0, 0.0, 1.0), lit.y);
-        colour = through_water(shade_ground(g), path, mud_in(state.w, depth) * cover, lights);
+        colour = through_water(shade_ground(g), path, mud, lights);
         colour = mix(colour, sky_in(normalize(vec3(mirrored.xy, max(mirrored.z, 0.01)))), drawn(REFLECTION) ? fresnel_of(normal, along) * cover : 0.0);
         colour += F.sunlight.rgb * (lit.x * cover * 2.5 * pow(max(dot(mirrored, F.sun.xyz), 0.0), 350.0));
-        colour = mix(colour, foam_colour(normal, lit), near * foam_cover(carried, state.y, depth, pixel) * cover);
+        colour = mix(colour, foam_colour(normal, lit, mud), near * foam_cover(carried, state.y, depth, pixel) * cover);
     }
     WHERE (!water) colour = shade_ground(g);
     return colour;
@@ -183,7 +186,7 @@ void main() {
             vec3 light_back = shade_ground(g);
             WHERE (F.features.y != 0 && kind == KIND_SOLID) { // what the water has left
                 float left = textureLod(matter, uv, 0.0).y;
-                light_back = mix(light_back, foam_colour(g.normal, vec4(g.sun, g.sky, 0.0, 0.0)), foam_cover(carried_at(place.xy, vec2(0.0)), left, 0.0, pixel_size));
+                light_back = mix(light_back, foam_colour(g.normal, vec4(g.sun, g.sky, 0.0, 0.0), vec3(0.0)), foam_cover(carried_at(place.xy, vec2(0.0)), left, 0.0, pixel_size));
             }
             if (turn == 0) colour = light_back;
             else mirror_colour = light_back;
@@ -198,7 +201,7 @@ void main() {
         colour = through_water(colour, path, mud, lights);
         float glint = pow(max(dot(reflect(along, normal), F.sun.xyz), 0.0), 350.0);
         colour = mix(colour, mirror_colour, fresnel) + F.sunlight.rgb * (lit.x * cover * 2.5 * glint);
-        colour = mix(colour, foam_colour(normal, lit), wall ? 0.0 : foam);
+        colour = mix(colour, foam_colour(normal, lit, mud), wall ? 0.0 : foam);
     }
     WHERE (kind >= KIND_FAR_SOLID) colour = shade_beyond(place, along, kind == KIND_FAR_WATER, pixel_size);
     WHERE (goes_on() && kind >= KIND_SOLID) colour = through_air(colour, along, distance);
