@@ -20,5 +20,6 @@ from .output import OutputView
 from .recording import Recording
 from .world import QUERY_DTYPE, Material, Save, World, level_cost
 
-__version__ = "0.1.0"
+#: Of the library that is loaded.
+__version__ = version()
 __all__ = [name for name in dir() if not name.startswith("_")]
