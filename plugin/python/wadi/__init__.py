@@ -7,7 +7,7 @@
 
 World is where to begin. Functions and classes of this package say in their texts what they take, give and refuse.
 """
-from . import _native
+from . import cuda, plot
 from ._library import (BadArgumentError, BadFileError, BusyError, CancelledError, DeviceLostError, Error, InternalError, NotFoundError,
                        NotReadyError, NotSupportedError, OutOfMemoryError, accuracy_presets, describe, devices, field_name, levels, program,
                        version)
@@ -16,6 +16,7 @@ from ._native import (AccuracyPreset, ActiveTiles, Body, BodyShape, Cost, Device
                       UpdateSettings, WorldInfo, WorldStats)
 from .buoyancy import buoyancy_force, buoyancy_points
 from .extras import MissingExtraError
+from .maps import HeightMap, import_map, read_geotiff, write_asc, write_geotiff
 from .output import OutputView
 from .recording import Recording
 from .world import QUERY_DTYPE, Material, Save, World, level_cost

@@ -596,6 +596,13 @@ class World:
         check(native.wadi_world_get_hash(self.id, byref(found)))
         return found.value
 
+    def to_xarray(self, fields=("terrain", "sand_depth", "water_depth", "free_surface")):
+        """Fields of the state now as an xarray.Dataset with units and coordinates, those of the map where there is one. Needs xarray:
+        wadi[xarray]."""
+        from .dataset import of_world
+
+        return of_world(self, fields)
+
     # ---- Points ----
 
     def ask(self, points):
