@@ -10,8 +10,9 @@ packages_of[demo]="build-essential cmake ninja-build python3 libglm-dev nlohmann
 packages_of[viewer]="${packages_of[demo]} ffmpeg" # for its videos
 packages_of[import]="${packages_of[demo]} libtiff-dev libtinyexr-dev" # TIFFs and EXRs in wadi-import
 packages_of[docs]="mkdocs mkdocs-material python3-pymdownx doxygen nodejs libjs-katex fonts-katex" # the site: plugin/docs
-# To run all tests: the site, the viewer in a window, validation layers, the C# binding, arrays in Python.
-packages_of[tests]="${packages_of[viewer]} ${packages_of[docs]} libtiff-dev libtinyexr-dev doctest-dev python3-numpy pkg-config vulkan-validationlayers xvfb twm xdotool mono-mcs mono-runtime unzip"
+packages_of[python]="python3-numpy python3-pytest python3-matplotlib python3-xarray python3-rasterio python3-tqdm" # the package of plugin/python and all that it can use
+# To run all tests: the site, the viewer in a window, validation layers, the C# binding, Python.
+packages_of[tests]="${packages_of[viewer]} ${packages_of[docs]} ${packages_of[python]} libtiff-dev libtinyexr-dev doctest-dev pkg-config vulkan-validationlayers xvfb twm xdotool mono-mcs mono-runtime unzip"
 packages_of[contributing]="clang-format-14 pre-commit" # beside the tests: CONTRIBUTING.md
 # Lanes of tests/platforms, beside the tests.
 packages_of[wasm]="emscripten node-acorn chromium"
@@ -23,7 +24,7 @@ packages_of[packaging]="python3-venv debootstrap qemu-user wine64 reuse"
 packages=()
 for purpose in "$@"; do
     if [[ -z $purpose || -z ${packages_of[$purpose]:-} ]]; then
-        echo "install_packages.sh: no purpose \"$purpose\"; the purposes are: demo viewer import tests contributing docs wasm swiftshader packaging" >&2
+        echo "install_packages.sh: no purpose \"$purpose\"; the purposes are: demo viewer import docs python tests contributing wasm swiftshader packaging" >&2
         exit 2
     fi
     # shellcheck disable=SC2206 # words

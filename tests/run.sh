@@ -58,6 +58,10 @@ lane_godot() {
     build ci && tests/godot/run.sh build/ci &&
         stamp=(--target "Godot add-on, x86-64 Linux" --tools "Godot $(tests/godot/godot.sh --version)" --ran "all of tests/godot")
 }
+lane_wheel() { # the wheel as it is handed on, in environments of its own
+    plugin/python/wheel.sh build/wheel && tests/python/wheel.py build/wheel/wadi-*.whl &&
+        stamp=(--target "Python wheel, x86-64 Linux" --tools "$(grep -o 'ziglang==[0-9.]*' plugin/packaging/requirements.txt)" --host "$(cat tests/platforms/minimal_host_hash.txt)")
+}
 lane_fine() { # every level's claims on its fine grid
     [ -e /dev/nvidiactl ] || { echo "no NVIDIA device" && return 77; }
     build release && tests/levels/fine_grids.py build/release/bin/wadi-recorder &&

@@ -6,7 +6,7 @@ set -euo pipefail
 rm -rf "$1"
 mkdir -p "$1/include" "$1/share/cmake" "$1/lib/cmake"
 folder=$(cd "$1" && pwd)
-cp -rLp /usr/include/{nlohmann,doctest,stb,CLI,vulkan,vk_video,volk.h,volk.c} "$folder/include/"
-cp -rp /usr/share/cmake/{nlohmann_json,CLI11} "$folder/share/cmake/"
+cp -rLp /usr/include/{nlohmann,doctest,stb,CLI,glm,vulkan,vk_video,volk.h,volk.c} "$folder/include/"
+cp -rp /usr/share/cmake/{nlohmann_json,CLI11,glm} "$folder/share/cmake/"
 cp -rp /usr/lib/cmake/doctest "$folder/lib/cmake/"
 sed -i "s|\"/usr\"|\"$folder\"|" "$folder"/*/cmake/*/*Targets.cmake

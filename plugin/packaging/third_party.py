@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """What others wrote and ends up in the library: their licences' texts as one file, or a list of parts in SPDX's JSON.
 
-Usage: third_party.py texts [--zig ZIGLANG] [--windows] FILE
+Usage: third_party.py texts [--zig ZIGLANG] [--windows] [--programs] FILE
        third_party.py sbom --version V --commit C [--zig ZIGLANG] [--windows] [--file PATH ...] FILE
   --zig FOLDER  the library was built by zig: its package ziglang, whose C++ library is inside
   --windows     and MinGW's start-up code
+  --programs    and what is in wadi-recorder, wadi-import and wadi-tune alone
 Texts are those of Debian's packages (/usr/share/doc/PACKAGE/copyright) and of zig's. Exit status 1 names a text that is not there."""
 import argparse
 import datetime
@@ -22,6 +23,11 @@ DEBIAN = {
     "nlohmann-json3-dev": ("JSON for Modern C++", "MIT", "https://github.com/nlohmann/json", "reads level files"),
     "libstb-dev": ("stb_image", "MIT", "https://github.com/nothings/stb", "reads PNG"),
 }
+PROGRAMS = {
+    "libdeflate-dev": ("libdeflate", "MIT", "https://github.com/ebiggers/libdeflate", "writes PNG"),
+    "libcli11-dev": ("CLI11", "BSD-3-Clause", "https://github.com/CLIUtils/CLI11", "reads command lines"),
+    "libglm-dev": ("GLM", "MIT", "https://github.com/g-truc/glm", "vectors of pictures"),
+}
 # file of the package ziglang: the same
 LLVM = "Apache-2.0 WITH LLVM-exception"
 ZIG = {
@@ -33,9 +39,9 @@ ZIG = {
 MINGW = {"lib/libc/mingw/COPYING": ("mingw-w64", "ZPL-2.1", "https://www.mingw-w64.org", "start-up code on Windows")}
 
 
-def parts(zig, windows):
+def parts(zig, windows, programs=False):
     """(name, version, licence, home, use, text) of each."""
-    for package, (name, licence, home, use) in DEBIAN.items():
+    for package, (name, licence, home, use) in {**DEBIAN, **(PROGRAMS if programs else {})}.items():
         text = pathlib.Path("/usr/share/doc") / package / "copyright"
         version = subprocess.run(["dpkg-query", "-W", "-f", "${Version}", package], capture_output=True, text=True, check=False).stdout or "unknown"
         yield name, version, licence, home, use, text
@@ -91,10 +97,11 @@ def main():
     parser.add_argument("--windows", action="store_true")
     parser.add_argument("--version", default="")
     parser.add_argument("--commit", default="")
+    parser.add_argument("--programs", action="store_true")
     parser.add_argument("--file", type=pathlib.Path, action="append", default=[])
     parser.add_argument("output", type=pathlib.Path)
     options = parser.parse_args()
-    found = list(parts(options.zig, options.windows))
+    found = list(parts(options.zig, options.windows, options.programs))
     for name, _, _, _, _, text in found:
         if not text.is_file():
             sys.exit(f"third_party.py: the licence of {name} is not at {text}: what contains {name} may not be passed on without it")

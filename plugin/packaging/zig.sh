@@ -16,7 +16,8 @@ zig=$(echo "$environment"/lib/python3*/site-packages/ziglang/zig)
 [ -x "$zig" ] || { echo "zig.sh: $environment has no ziglang/zig; delete the folder and begin again" >&2; exit 1; }
 for target in "${@:3}"; do
     mkdir -p "$2/$target"
-    for tool in cc c++; do printf '#!/bin/sh\nZIG_GLOBAL_CACHE_DIR=%s exec %s %s -target %s -g0 "$@"\n' "$environment/cache" "$zig" $tool "$target" >"$2/$target/$tool"; done
+    # Without -fno-sanitize zig checks what is compiled with -O0, as command lines of programs are, and links no sanitizer.
+    for tool in cc c++; do printf '#!/bin/sh\nZIG_GLOBAL_CACHE_DIR=%s exec %s %s -target %s -g0 -fno-sanitize=undefined "$@"\n' "$environment/cache" "$zig" $tool "$target" >"$2/$target/$tool"; done
     for tool in ar ranlib; do printf '#!/bin/sh\nexec %s %s "$@"\n' "$zig" $tool >"$2/$target/$tool"; done
     chmod +x "$2/$target"/*
 done

@@ -40,7 +40,7 @@ ErrorFit best_factor(const std::vector<ErrorPoint>& points, double order, double
 
 template <class Shape> ErrorFit best_order(const std::vector<ErrorPoint>& points, const Shape& shape) {
     ErrorFit best;
-    double least = INFINITY;
+    double least = HUGE_VAL;
     for (double order = 0.05; order < 2.5; order += 0.01) {
         double badness = 0;
         const ErrorFit fit = best_factor(points, order, badness, shape);
@@ -76,7 +76,7 @@ double ErrorFit::at(double h) const { return factor * std::pow(h, order); }
 ErrorFit fit_own(const std::vector<ErrorPoint>& points) { return best_order(points, apart); }
 
 double order_among(double coarse, double middle, double first, double second) {
-    double best = 0, least = INFINITY;
+    double best = 0, least = HUGE_VAL;
     for (double order = -2; order < 2.5; order += 0.01) {
         const double ratio = std::pow(middle, order) * apart(coarse / middle, order) / apart(middle, order);
         const double off = std::abs(std::log(first / second / ratio));

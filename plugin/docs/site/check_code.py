@@ -26,7 +26,7 @@ INCLUDES = [f"-I{ROOT / 'plugin/include'}"]
 WARNINGS = ["-Wall", "-Wextra", "-Werror", "-Wno-unused"]
 LEFT = {"text", "bat"}  # prose in columns; Windows (release.sh runs them)
 # Tools of others, whose options are theirs.
-TOOLS = {"cmake", "ctest", "cpack", "cc", "cp", "mcs", "git", "godot", "python3", "pre-commit", "mkdir", "echo", "sed", "cat", "cd", "unzip"}
+TOOLS = {"cmake", "ctest", "cpack", "cc", "cp", "mcs", "git", "godot", "python3", "pip", "pre-commit", "mkdir", "echo", "sed", "cat", "cd", "unzip"}
 FENCE = re.compile(r"^( *)```(\w*)\s*$")
 PRINTS = re.compile(r"(<!-- hello.c prints from here -->\n```text\n)(.*?)(```\n<!-- to here -->)", re.DOTALL)
 
