@@ -101,7 +101,10 @@ class Output(IntEnum):
     PACKED_HALF = 12
     #: with effect wetness how wet the ground is, 1 under water, less the longer it is dry, else 0; 1 float
     WETNESS = 13
-    COUNT = 14
+    #: with effect silt what makes the water muddy, per area of the ground [kg/m2], else 0; 1 float. Grains of 0.08 mm hide 1 - exp(-7 s)
+    #: of the ground below them, finer ones more
+    SILT = 14
+    COUNT = 15
 
 
 class OutputSet(IntEnum):
@@ -167,7 +170,9 @@ class Field(IntEnum):
     FOAM = 16
     #: effect wetness: 1 under water, less the longer the ground is dry
     WETNESS = 17
-    COUNT = 18
+    #: effect silt: what makes the water muddy, per area of the ground, at most 8 [kg/m2]
+    SILT = 18
+    COUNT = 19
 
 
 class Limit(IntEnum):
@@ -408,9 +413,9 @@ class LevelOverrides(Struct):
     #: 1 = maps and series may lie anywhere that the process can read; 0 = in the level's folder and below it alone, links followed: no
     #: "..", no path from the root on. For levels of one's own
     any_files = Flag("_any_files")
-    #: WADI_OUTPUT_BIT of WADI_OUTPUT_FOAM, of WADI_OUTPUT_WETNESS, both, or 0: what the host will draw of what water leaves. Effects foam
-    #: and wetness are then on wherever there is water and the level does not force them off. They move nothing, cost a pass each, and 12
-    #: bytes a cell together
+    #: WADI_OUTPUT_BIT of WADI_OUTPUT_FOAM, WADI_OUTPUT_WETNESS and WADI_OUTPUT_SILT, any of them, or 0: what the host will draw of what
+    #: water carries and leaves. Effects foam and wetness are then on wherever there is water, silt where there is sand, too, and the
+    #: level does not force them off. They move nothing, cost a pass each, and 8, 4 and 8 bytes a cell
     draws = Whole("_draws", c_uint64)
 
 

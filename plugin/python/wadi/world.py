@@ -211,7 +211,7 @@ class World:
                 name        of the world
     Overrides for levels and texts (None = as the level says): nx, ny [cells], dt [s], method ("robust", "published"), variant, accuracy
     ("draft", "balanced", "accurate", "fine"), active_tiles (False, "auto", "cheap", 8, 16, 32, 64), fused_stages (True, False), any_files
-    (True = maps may lie outside the level's folder), draws ("foam", "wetness" or both: what will be drawn of what water leaves).
+    (True = maps may lie outside the level's folder), draws (some of "foam", "wetness", "silt": what will be drawn of what water carries and leaves).
     Where it runs: backend ("auto", "cpu", "vulkan", "cuda"), device (index of wadi.devices(), -1 = the best), threads (0 = all cores),
     validate (Vulkan's validation layers).
     log is a function of (wadi.LogLevel, text), called from any thread, which may not call the library; None = Python's logger "wadi",
