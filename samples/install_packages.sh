@@ -10,7 +10,7 @@ packages_of[demo]="build-essential cmake ninja-build python3 libglm-dev nlohmann
 packages_of[viewer]="${packages_of[demo]} ffmpeg" # for its videos
 packages_of[import]="${packages_of[demo]} libtiff-dev libtinyexr-dev" # TIFFs and EXRs in wadi-import
 packages_of[docs]="mkdocs mkdocs-material python3-pymdownx doxygen nodejs libjs-katex fonts-katex" # the site: plugin/docs
-packages_of[python]="python3-numpy python3-pytest python3-matplotlib python3-xarray python3-rasterio python3-tqdm" # the package of plugin/python and all that it can use
+packages_of[python]="python3-numpy python3-pytest python3-matplotlib python3-xarray python3-rasterio python3-tqdm python3-nbclient python3-ipykernel" # plugin/python, all that it can use, and samples/notebooks
 # To run all tests: the site, the viewer in a window, validation layers, the C# binding, Python.
 packages_of[tests]="${packages_of[viewer]} ${packages_of[docs]} ${packages_of[python]} libtiff-dev libtinyexr-dev doctest-dev pkg-config vulkan-validationlayers xvfb twm xdotool mono-mcs mono-runtime unzip"
 packages_of[contributing]="clang-format-14 pre-commit" # beside the tests: CONTRIBUTING.md

@@ -260,6 +260,12 @@ def test_what_it_tells(world, caplog):
     assert caplog.records
 
 
+def test_first_lines_of_the_page(source, capsys):
+    page = (source / "plugin/python/README.md").read_text()
+    exec(page.split("```python\n")[1].split("```")[0], {})
+    assert "'drift': 0.0" in capsys.readouterr().out
+
+
 def test_progress_is_told_and_ends_the_making():
     shares = []
     wadi.World(text=DAM, progress=shares.append, **CPU).close()

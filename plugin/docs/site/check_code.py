@@ -242,13 +242,18 @@ def check(root, work, library, godot, said):
                     text = "\n".join(row[2:] if row.startswith("$ ") else "" for row in text.splitlines()) + "\n"
                     breach = None if text.strip() else 'a console without a command behind "$ "'
                 found += [f"{name}:{line + 1 + number}: {what}" for number, what in shell(text, repository)]
+            elif language == "python":
+                try:
+                    compile(text, where, "exec")
+                except SyntaxError as error:
+                    breach = str(error)
             elif language == "json":
                 try:
                     json.loads(text if text.lstrip().startswith(("{", "[")) else f"{{{text}}}")  # some keys of an object
                 except ValueError as error:
                     breach = str(error)
             elif language not in LEFT:
-                breach = f"no rule for the language {language}; there are c, cpp, cs, glsl, gdscript, gdshader, sh, console, json and, not looked into, {', '.join(sorted(LEFT))}"
+                breach = f"no rule for the language {language}; there are c, cpp, cs, glsl, gdscript, gdshader, python, sh, console, json and, not looked into, {', '.join(sorted(LEFT))}"
             if breach:
                 found.append(f"{where}: {breach}")
     if not godot.missing:

@@ -37,20 +37,23 @@ def relief(heights, dx, azimuth=315.0, altitude=45.0):
 
 
 def map(source, field="water_depth", *, frame=-1, ax=None, cmap=None, vmin=None, vmax=None, dry=1e-3, colorbar=True):
-    """A field from above over shaded ground. Of depths, cells below `dry` [m] show the ground. cmap, vmin, vmax as of imshow."""
+    """A field from above over shaded ground, or several, the later above: ["sand_depth", "water_depth"]. Of depths, cells below `dry` [m]
+    show what is under them. cmap, vmin, vmax as of imshow; the bar is of the last field."""
     ax = _axes(ax)
-    values, extent = _field(source, field, frame), _extent(source)
-    depth = field.endswith("_depth")
+    extent, fields = _extent(source), [field] if isinstance(field, str) else list(field)
     ground = None
     if not isinstance(source, Recording):
-        ground = source.read("terrain") + (source.read("sand_depth") if field != "sand_depth" else 0)
+        ground = source.read("terrain") + (source.read("sand_depth") if "sand_depth" not in fields else 0)
     elif "terrain" in source.fields:
         ground = source.fields["terrain"][frame]
     if ground is not None:
         ax.imshow(relief(ground, source.dx), origin="lower", extent=extent, cmap="Greys_r", vmin=-0.3, vmax=1.1)
-    shown = np.ma.masked_less(values, dry) if depth else values
-    cmap = cmap or ("Blues" if "water" in field else "YlOrBr" if "sand" in field else "terrain" if field in ("terrain", "free_surface") else "viridis")
-    image = ax.imshow(shown, origin="lower", extent=extent, cmap=cmap, vmin=0 if depth and vmin is None else vmin, vmax=vmax, alpha=0.85 if ground is not None else 1)
+    for field in fields:
+        values, depth = _field(source, field, frame), field.endswith("_depth")
+        shown = np.ma.masked_less(values, dry) if depth else values
+        colours = cmap or ("Blues" if "water" in field else "YlOrBr" if "sand" in field else "terrain" if field in ("terrain", "free_surface") else "viridis")
+        image = ax.imshow(shown, origin="lower", extent=extent, cmap=colours, vmin=0 if depth and vmin is None else vmin, vmax=vmax,
+                          interpolation="nearest", alpha=0.85 if ground is not None else 1)
     if colorbar:
         unit = " [m]" if depth or field in ("terrain", "free_surface") else " [m/s]" if "velocity" in field else ""
         ax.figure.colorbar(image, ax=ax, label=field.replace("_", " ") + unit, shrink=0.85)
