@@ -1,11 +1,11 @@
-/* What a step costs a host in C: microseconds per call of wadi_world_step, the least of some rounds. */
+/* What a step costs a host in C: microseconds of its thread per call of wadi_world_step, the least of some rounds. */
 #include <stdio.h>
 #include <time.h>
 #include <wadi/wadi.h>
 
 static double now(void) {
     struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
     return (double)t.tv_sec * 1e6 + (double)t.tv_nsec * 1e-3;
 }
 
@@ -25,9 +25,6 @@ int main(void) {
         for (int n = 0; n < 2000; ++n) {
             if (wadi_world_step(world, 1) != WADI_OK) return 1;
         }
-        float value;
-        const wadi_region region = {0, 0, 1, 1};
-        wadi_world_read_region(world, WADI_FIELD_TERRAIN, &region, &value, 1);
         const double each = (now() - begin) / 2000;
         least = each < least ? each : least;
     }

@@ -149,6 +149,8 @@ def test_pictures(dam, tmp_path):
     flat = wadi.plot.relief(np.zeros((4, 4)), 1.0)
     slope = wadi.plot.relief(HEIGHTS, 2.0)
     assert np.allclose(flat, np.sin(np.pi / 4)) and slope.mean() < flat.mean()  # it falls to the south-east, away from the light
+    rises_east = np.arange(8.0) * np.ones((8, 1))
+    assert wadi.plot.relief(rises_east, 2.0).min() > flat.max() > wadi.plot.relief(rises_east[:, ::-1], 2.0).max()
     for call, text in ((lambda: wadi.plot.map(recording, "saturation"), "saturation"), (lambda: wadi.plot.section(dam, x=1, y=1), "not both"),
                        (lambda: wadi.plot.section(dam, y=50), "must lie in 0"), (lambda: wadi.plot.hydrograph(dam.record(0.1, 0.1)), "no gauges")):
         with pytest.raises((KeyError, TypeError, ValueError), match=text):

@@ -157,6 +157,14 @@ def test_edits_sources_material_and_the_ledger(world):
             call()
 
 
+def test_pour_adds_and_dig_takes(world):
+    for call, more in ((world.pour, 1), (world.dig, -1)):
+        before = world.stats().sand_volume
+        call(24, 8, 0.25, radius=2, layer="sand")
+        world.step()
+        assert more * (world.stats().sand_volume - before) > 0.5
+
+
 def test_write_and_read_back(world):
     values = np.full((32, 64), 0.25, "f4")
     values[3, 5] = 0.5
