@@ -7,9 +7,14 @@ from . import cache
 
 #: What every frame has: outputs of the world, by their names in wadi.Output.
 SHAPE = ("sand_surface", "free_surface", "sand_depth", "water_depth", "saturation", "flow")
-#: What a library may have: traces that only those worlds carry which are asked for them.
+#: What a library may have beside: traces that a world carries where it is asked for them. Foam is that of the moment where it is not.
 DRAWN = tuple(name for name in ("foam", "wetness", "silt") if name.upper() in wadi.Output.__members__)
 PIECE = 0.03  # seconds that a piece of work may take, where a step does not take longer
+
+
+def draws(drifting_foam):
+    """What a world is asked to carry."""
+    return tuple(name for name in DRAWN if drifting_foam or name != "foam")
 
 
 class Bake:

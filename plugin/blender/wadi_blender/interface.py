@@ -6,7 +6,7 @@ import wadi
 from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, PointerProperty, StringProperty
 
 from . import cache, materials, objects, terrain
-from .bake import DRAWN, Bake
+from .bake import Bake, draws
 
 _levels = []  # Blender keeps no reference to the texts of an enum
 
@@ -40,6 +40,8 @@ class WadiSettings(bpy.types.PropertyGroup):
     inflow: PointerProperty(name="Inflow", type=bpy.types.Object, description="Water comes up where it stands, on a disc of its size")
     discharge: FloatProperty(name="Discharge", default=5.0, min=0, max=1e6, description="Of the inflow, in cubic metres per second")
     open_sides: BoolProperty(name="Open sides", default=True, description="Water leaves over the grid's rim; off: walls")
+    drifting_foam: BoolProperty(name="Drifting foam", default=False, description="Foam drifts, fades and stays on the shore: for beaches and "
+                                "basins up to some 64 m, since it covers all of a flood. Off: where water breaks at the moment")
     seconds: FloatProperty(name="Seconds", default=10.0, min=0, max=1e5, description="That the frames show, at the scene's frames per second")
     skip: FloatProperty(name="Skip", default=0.0, min=0, max=1e5, description="Simulated seconds ahead of the first frame")
     start: IntProperty(name="First frame", default=1, description="Frame of the scene that shows the first baked one")
@@ -54,14 +56,14 @@ def prepare(scene, depsgraph):
         raise ValueError("cache: no folder is named")
     if given.cache.startswith("//") and not bpy.data.filepath:
         raise ValueError("cache: save the .blend file first, or name a folder that does not begin with //")
-    folder = bpy.path.abspath(given.cache)
+    folder, backend, traces = bpy.path.abspath(given.cache), given.backend, draws(given.drifting_foam)
     about = {"origin": (0.0, 0.0, 0.0), "cells_without_ground": 0}
     if given.source == "MESH":
         full, files, about = terrain.level(given.terrain, given.cells, depsgraph, given.sand, given.sand_depth, given.water, given.water_depth,
                                            given.inflow, given.discharge, given.open_sides)
 
         def make():
-            return terrain.world(full, files, backend=given.backend, log=False)
+            return wadi.World(text=full, files=files, draws=traces, backend=backend, log=False)
     else:
         if given.level == "FILE" and not given.file.strip():
             raise ValueError("file: no level is named")
@@ -69,7 +71,7 @@ def prepare(scene, depsgraph):
         accuracy = None if given.accuracy == "LEVEL" else given.accuracy
 
         def make():
-            return wadi.World(level, accuracy=accuracy, draws=DRAWN, backend=given.backend, log=False)
+            return wadi.World(level, accuracy=accuracy, draws=traces, backend=backend, log=False)
 
     return Bake(make, folder, given.seconds, scene.render.fps / scene.render.fps_base, given.skip, about), folder
 
@@ -243,7 +245,7 @@ class WADI_PT_panel(bpy.types.Panel):
                 box.prop(given, "discharge")
             box.prop(given, "open_sides")
         layout.separator()
-        for name in ("seconds", "skip", "start", "backend", "cache"):
+        for name in ("drifting_foam", "seconds", "skip", "start", "backend", "cache"):
             layout.prop(given, name)
         layout.operator("wadi.bake", icon="MOD_FLUIDSIM")
         layout.operator("wadi.light", icon="LIGHT_SUN")

@@ -3,9 +3,10 @@ import math
 
 import bpy
 
-SAND, SAND_WET = (0.56, 0.40, 0.22, 1), (0.20, 0.125, 0.06, 1)
-ROCK, ROCK_DARK = (0.19, 0.13, 0.095, 1), (0.09, 0.065, 0.05, 1)
-DEEP, MUD = (0.010, 0.085, 0.110, 1), (0.23, 0.135, 0.06, 1)
+SAND, SAND_WET = (0.66, 0.44, 0.20, 1), (0.22, 0.13, 0.055, 1)
+ROCK, ROCK_DARK, DUST = (0.32, 0.165, 0.09, 1), (0.12, 0.062, 0.04, 1), (0.30, 0.185, 0.105, 1)
+HAZE = (0.9, 1.1, 1.35, 1)  # below the horizon, where the sky's model is black
+DEEP, MUD = (0.008, 0.085, 0.150, 1), (0.23, 0.135, 0.06, 1)
 ABSORBED = (0.55, 0.12, 0.07)  # of red, green and blue, per metre of water [1/m]
 NISHITA = ("MULTIPLE_SCATTERING", "NISHITA")  # its names in Blender 5 and 4
 
@@ -76,13 +77,19 @@ def _ground(t):
     """Sand, darker where it is wet; rock where there is none; what the water whips lies white on the shore."""
     grain, patches = t.noise(9.0, 6.0), t.noise(0.35, 3.0)
     wet = t.math("MAXIMUM", t.attribute("wetness"), t.ramp(t.attribute("saturation"), 0.02, 0.3))
-    sand = t.mix(t.math("MULTIPLY", patches, 0.45), SAND, (0.42, 0.29, 0.15, 1))
+    sand = t.mix(t.math("MULTIPLY", patches, 0.45), SAND, (0.50, 0.32, 0.14, 1))
     sand = t.mix(t.math("MULTIPLY", wet, 0.85), sand, SAND_WET)
-    rock = t.mix(t.ramp(t.noise(1.3, 8.0), 0.35, 0.65), ROCK_DARK, ROCK)
+    # Layers of rock where it is steep, dust where it is flat.
+    place = t.node("ShaderNodeTexCoord").outputs["Object"]
+    layers = t.node("ShaderNodeVectorMath", {0: place, 1: (0.03, 0.03, 1.0)}, operation="MULTIPLY").outputs[0]
+    rock = t.mix(t.ramp(t.noise(0.9, 6.0, layers), 0.35, 0.65), ROCK_DARK, ROCK)
+    steep = t.node("ShaderNodeSeparateXYZ", {0: t.node("ShaderNodeNewGeometry").outputs["Normal"]}).outputs[2]
+    steep = t.math("ADD", steep, t.math("MULTIPLY", t.math("SUBTRACT", t.noise(0.5, 8.0), 0.5), 0.3))
+    rock = t.mix(t.ramp(steep, 0.7, 1.0), rock, DUST)
     rock = t.mix(t.math("MULTIPLY", wet, 0.5), rock, (0.04, 0.03, 0.024, 1))
     color = t.mix(t.ramp(t.attribute("sand"), 0.0, 0.05), rock, sand)
     foam = t.math("MULTIPLY", t.ramp(t.attribute("foam"), 0.2, 1.0), 0.5)
-    normal = t.bump(grain, 0.25, 0.05)
+    normal = t.bump(grain, 0.5, 0.15)
     shader = t.node("ShaderNodeBsdfPrincipled", {"Base Color": t.mix(foam, color, (0.8, 0.8, 0.78, 1)), "Normal": normal,
                                                  "Roughness": t.math("SUBTRACT", 0.95, t.math("MULTIPLY", wet, 0.45))})
     t.end("ShaderNodeOutputMaterial", shader.outputs[0])
@@ -103,8 +110,8 @@ def _water(t):
     mirror = t.node("ShaderNodeBsdfAnisotropic", {"Roughness": 0.12, "Normal": normal}).outputs[0]
     fresnel = t.node("ShaderNodeFresnel", {"IOR": 1.33, "Normal": normal}).outputs[0]
     surface = t.blend(fresnel, body, mirror)
-    holes = t.math("MULTIPLY", t.math("SUBTRACT", 1.0, t.noise(2.2, 6.0)), 0.75)
-    foam = t.ramp(t.math("SUBTRACT", t.attribute("foam"), holes), -0.08, 0.25)
+    holes = t.math("ADD", t.math("MULTIPLY", t.noise(0.9, 4.0), 0.7), t.math("MULTIPLY", t.noise(3.5, 4.0), 0.6))
+    foam = t.math("MULTIPLY", t.ramp(t.math("SUBTRACT", t.attribute("foam"), holes), -0.3, 0.55), 0.9)
     white = t.node("ShaderNodeBsdfDiffuse", {"Color": (0.82, 0.85, 0.85, 1)}).outputs[0]
     edge = t.ramp(depth, 0.0, 0.03)  # films of water have no edge
     shader = t.blend(edge, t.node("ShaderNodeBsdfTransparent").outputs[0], t.blend(foam, surface, white))
@@ -120,18 +127,20 @@ def dress(ground, water):
 
 def light(scene, elevation=38.0, azimuth=235.0):
     """A sun and the sky that goes with it (Nishita). elevation above the horizon, azimuth from the north over the east [degrees]."""
-    up, turn = math.radians(elevation), math.radians(azimuth)
+    height, turn = math.radians(elevation), math.radians(azimuth)
     sun = bpy.data.objects.new("Wadi sun", bpy.data.lights.new("Wadi sun", "SUN"))
     sun.data.energy, sun.data.angle, sun.data.color = 4.0, math.radians(0.53), (1, 0.93, 0.82)
-    sun.rotation_euler = (math.pi / 2 - up, 0, math.pi - turn)
+    sun.rotation_euler = (math.pi / 2 - height, 0, math.pi - turn)
     scene.collection.objects.link(sun)
     world = bpy.data.worlds.new("Wadi sky")
     if world.node_tree is None:
         world.use_nodes = True
     t = _Tree(world.node_tree)
-    sky = t.node("ShaderNodeTexSky", sun_elevation=up, sun_rotation=turn, sun_disc=False)
+    sky = t.node("ShaderNodeTexSky", sun_elevation=height, sun_rotation=turn, sun_disc=False)
     kinds = sky.bl_rna.properties["sky_type"].enum_items.keys()
     sky.sky_type = next(kind for kind in NISHITA if kind in kinds)
-    t.end("ShaderNodeOutputWorld", t.node("ShaderNodeBackground", {"Color": sky.outputs[0], "Strength": 0.12}).outputs[0])
+    up = t.node("ShaderNodeSeparateXYZ", {0: t.node("ShaderNodeTexCoord").outputs["Generated"]}).outputs[2]
+    color = t.mix(t.ramp(up, -0.03, 0.03), HAZE, sky.outputs[0])
+    t.end("ShaderNodeOutputWorld", t.node("ShaderNodeBackground", {"Color": color, "Strength": 0.12}).outputs[0])
     scene.world = world
     return sun

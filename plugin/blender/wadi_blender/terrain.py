@@ -3,11 +3,8 @@ import io
 import math
 
 import numpy as np
-import wadi
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
-
-from . import bake
 
 
 def _bounds(thing):
@@ -88,8 +85,3 @@ def level(terrain, cells, depsgraph, sand=None, sand_depth=0.0, water=None, wate
         full["sides"] = {side: {"kind": "outflow"} for side in ("west", "east", "south", "north")}
     full["dt"] = 0.2 * grid.dx / math.sqrt(9.81 * max(highest, grid.dx))
     return full, files, {"origin": grid.origin, "cells_without_ground": missing}
-
-
-def world(full, files, **options):
-    """The world of `level`."""
-    return wadi.World(text=full, files=files, draws=bake.DRAWN, **options)
