@@ -46,7 +46,8 @@ def check(file):
         if MANIFEST not in names:
             return [f"no {MANIFEST}"]
         manifest = tomllib.loads(packed.read(MANIFEST).decode())
-    wrong = [f"{key}: {manifest.get(key)!r} does not match {rule}" for key, rule in RULES.items() if not re.fullmatch(rule, str(manifest.get(key, "")))]
+    wrong = [f"{key}: {manifest.get(key)!r} does not match {rule}" for key, rule in RULES.items()
+             if not re.fullmatch(rule, str(manifest.get(key, "")))]
     wrong += [f"{key}: must be a list of texts" for key in ("license", "tags", "platforms", "wheels")
               if not manifest.get(key) or not all(isinstance(value, str) and value for value in manifest[key])]
     wrong += [f"permissions.{key}: at most 64 letters, no full stop at its end" for key, text in manifest.get("permissions", {}).items()

@@ -8,6 +8,8 @@ from bpy.props import BoolProperty, EnumProperty, FloatProperty, IntProperty, Po
 from . import cache, materials, objects, terrain
 from .bake import Bake, draws
 
+# Blender 5 asks a path for this where it may begin with "//".
+_RELATIVE = {"PATH_SUPPORTS_BLEND_RELATIVE"} if bpy.app.version >= (5, 0, 0) else set()
 _levels = []  # Blender keeps no reference to the texts of an enum
 
 
@@ -27,26 +29,33 @@ class WadiSettings(bpy.types.PropertyGroup):
 
     source: EnumProperty(name="From", items=[("LEVEL", "Level", "A level's file"), ("MESH", "Mesh", "The terrain of a mesh")])
     level: EnumProperty(name="Level", items=_shipped, description="One of the levels that come along, or a file")
-    file: StringProperty(name="File", subtype="FILE_PATH", description="A level (.json) or a terrain map (.png, .npy, .asc ...)")
+    file: StringProperty(name="File", subtype="FILE_PATH", options=_RELATIVE,
+                         description="A level (.json) or a terrain map (.png, .npy, .asc ...)")
     accuracy: EnumProperty(name="Cells", items=[("LEVEL", "As the level says", "")] + [
-        (preset.name, preset.name.capitalize(), f"{preset.cells:g} times the level's cells along x and y" if preset.cells else "The level's fine grid")
+        (preset.name, preset.name.capitalize(), f"{preset.cells:g} times as many a side" if preset.cells else "The level's fine grid")
         for preset in wadi.accuracy_presets()])
-    terrain: PointerProperty(name="Terrain", type=bpy.types.Object, poll=_mesh, description="Its upper side is the ground, its bounds are the grid's")
+    terrain: PointerProperty(name="Terrain", type=bpy.types.Object, poll=_mesh,
+                             description="Its upper side is the ground, its bounds are the grid's")
     cells: IntProperty(name="Cells", default=128, min=4, max=4096, description="Along the longer side of the terrain")
-    sand: PointerProperty(name="Sand", type=bpy.types.Object, poll=_mesh, description="Sand fills up to its upper side; none: the depth below")
-    sand_depth: FloatProperty(name="Sand depth", default=0.0, min=0, max=1000, unit="LENGTH", description="Of sand everywhere, without an object")
-    water: PointerProperty(name="Water", type=bpy.types.Object, poll=_mesh, description="Water fills up to its upper side; none: the depth below")
-    water_depth: FloatProperty(name="Water depth", default=0.0, min=0, max=1000, unit="LENGTH", description="Of water everywhere, without an object")
-    inflow: PointerProperty(name="Inflow", type=bpy.types.Object, description="Water comes up where it stands, on a disc of its size")
-    discharge: FloatProperty(name="Discharge", default=5.0, min=0, max=1e6, description="Of the inflow, in cubic metres per second")
+    sand: PointerProperty(name="Sand", type=bpy.types.Object, poll=_mesh,
+                          description="Sand fills up to its upper side; none: the depth below")
+    sand_depth: FloatProperty(name="Sand depth", default=0.0, min=0, max=1000, unit="LENGTH", description="Everywhere, without an object")
+    water: PointerProperty(name="Water", type=bpy.types.Object, poll=_mesh,
+                          description="Water fills up to its upper side; none: the depth below")
+    water_depth: FloatProperty(name="Water depth", default=0.0, min=0, max=1000, unit="LENGTH", description="Everywhere, without an object")
+    inflow: PointerProperty(name="Inflow", type=bpy.types.Object, description="Water comes up where it stands, on a disc as wide")
+    discharge: FloatProperty(name="Discharge", default=5.0, min=0, max=1e6, description="Of the inflow [m3/s]")
     open_sides: BoolProperty(name="Open sides", default=True, description="Water leaves over the grid's rim; off: walls")
-    drifting_foam: BoolProperty(name="Drifting foam", default=False, description="Foam drifts, fades and stays on the shore: for beaches and "
-                                "basins up to some 64 m, since it covers all of a flood. Off: where water breaks at the moment")
-    seconds: FloatProperty(name="Seconds", default=10.0, min=0, max=1e5, description="That the frames show, at the scene's frames per second")
+    drifting_foam: BoolProperty(name="Drifting foam", default=False,
+                                description="Foam drifts, fades and stays on the shore: for beaches and basins up to some 64 m, since it "
+                                "covers all of a flood. Off: where water breaks at the moment")
+    seconds: FloatProperty(name="Seconds", default=10.0, min=0, max=1e5, description="Simulated, at the scene's frames per second")
     skip: FloatProperty(name="Skip", default=0.0, min=0, max=1e5, description="Simulated seconds ahead of the first frame")
     start: IntProperty(name="First frame", default=1, description="Frame of the scene that shows the first baked one")
-    backend: EnumProperty(name="Backend", items=[("auto", "The best there is", ""), ("cpu", "CPU", ""), ("vulkan", "Vulkan", ""), ("cuda", "CUDA", "")])
-    cache: StringProperty(name="Cache", default="//wadi", subtype="DIR_PATH", description="Folder for the frames, of its own")
+    backend: EnumProperty(name="Backend", items=[("auto", "The best there is", ""), ("cpu", "CPU", ""), ("vulkan", "Vulkan", ""),
+                                                 ("cuda", "CUDA", "")])
+    cache: StringProperty(name="Cache", default="//wadi", subtype="DIR_PATH", options=_RELATIVE,
+                          description="Folder for the frames, of its own")
 
 
 def prepare(scene, depsgraph):
@@ -59,8 +68,8 @@ def prepare(scene, depsgraph):
     folder, backend, traces = bpy.path.abspath(given.cache), given.backend, draws(given.drifting_foam)
     about = {"origin": (0.0, 0.0, 0.0), "cells_without_ground": 0}
     if given.source == "MESH":
-        full, files, about = terrain.level(given.terrain, given.cells, depsgraph, given.sand, given.sand_depth, given.water, given.water_depth,
-                                           given.inflow, given.discharge, given.open_sides)
+        full, files, about = terrain.level(given.terrain, given.cells, depsgraph, given.sand, given.sand_depth, given.water,
+                                           given.water_depth, given.inflow, given.discharge, given.open_sides)
 
         def make():
             return wadi.World(text=full, files=files, draws=traces, backend=backend, log=False)
@@ -152,7 +161,8 @@ class WADI_OT_bake(bpy.types.Operator):
                 return self._leave(context, more is not None)
             context.window_manager.progress_update(100 * self._bake.share)
             if context.workspace is not None:
-                context.workspace.status_text_set(f"Wadi: {100 * self._bake.share:.0f} %, {self._bake.done} of {self._bake.count} frames. Esc ends it")
+                context.workspace.status_text_set(
+                    f"Wadi: {100 * self._bake.share:.0f} %, {self._bake.done} of {self._bake.count} frames. Esc ends it")
         return {"PASS_THROUGH"}
 
     def cancel(self, context):
@@ -182,41 +192,54 @@ class WADI_OT_light(bpy.types.Operator):
         return {"FINISHED"}
 
 
-class WADI_OT_export_alembic(bpy.types.Operator):
-    """Writes the baked meshes of the scene to an Alembic file, for machines without this add-on"""
+class WADI_OT_export(bpy.types.Operator):
+    """Writes the baked meshes for machines without this add-on: USD with all attributes, or Alembic with shapes alone"""
 
-    bl_idname, bl_label = "wadi.export_alembic", "Export Alembic"
+    bl_idname, bl_label = "wadi.export", "Export USD or Alembic"
 
-    filepath: StringProperty(subtype="FILE_PATH")
-    filter_glob: StringProperty(default="*.abc", options={"HIDDEN"})
+    filepath: StringProperty(subtype="FILE_PATH", options=_RELATIVE, description="Ends in .usdc, .usd or .abc")
+    filter_glob: StringProperty(default="*.usdc;*.usd;*.abc", options={"HIDDEN"})
 
     @classmethod
     def poll(cls, context):
         return bool(objects.shown(context.scene))
 
     def invoke(self, context, event):
-        self.filepath = self.filepath or "//wadi.abc"
+        self.filepath = self.filepath or bpy.path.abspath("//wadi.usdc")
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
     def execute(self, context):
-        if not self.filepath.strip():
-            self.report({"ERROR"}, "filepath: no file is named")
-            return {"CANCELLED"}
-        things = objects.shown(context.scene)
+        scene, things, path = context.scene, objects.shown(context.scene), bpy.path.abspath(self.filepath)
+        kind = pathlib.Path(path).suffix
         try:
-            frames = [(thing[objects.START], objects.reader(objects.folder_of(thing)).about["frames"]) for thing in things]
-        except cache.CacheError as failed:
+            if kind not in (".usdc", ".usd", ".abc"):
+                raise ValueError(f"filepath: {self.filepath!r}, must end in .usdc, .usd or .abc")
+            counts = [(thing[objects.START], objects.reader(objects.folder_of(thing)).about["frames"]) for thing in things]
+        except (ValueError, cache.CacheError) as failed:
             self.report({"ERROR"}, str(failed))
             return {"CANCELLED"}
-        chosen = list(context.selected_objects)
+        start, end = min(first for first, _ in counts), max(first + count - 1 for first, count in counts)
+        before, chosen = (scene.frame_start, scene.frame_end, scene.frame_current), list(context.selected_objects)
+        scene.frame_start, scene.frame_end = start, end
         for thing in context.view_layer.objects:
             thing.select_set(thing in things)
-        done = bpy.ops.wm.alembic_export(filepath=bpy.path.abspath(self.filepath), start=min(start for start, _ in frames),
-                                         end=max(start + count - 1 for start, count in frames), selected=True, as_background_job=False)
-        for thing in context.view_layer.objects:
-            thing.select_set(thing in chosen)
-        return done
+        # Exporters take a mesh for still unless something acts on it: this does, and moves nothing.
+        still = [(thing, thing.modifiers.new("Wadi export", "DISPLACE")) for thing in things]
+        for _, modifier in still:
+            modifier.strength = 0
+        try:
+            if kind == ".abc":
+                return bpy.ops.wm.alembic_export(filepath=path, start=start, end=end, selected=True, export_custom_properties=False,
+                                                  as_background_job=False)
+            return bpy.ops.wm.usd_export(filepath=path, selected_objects_only=True, export_animation=True, export_custom_properties=False)
+        finally:
+            for thing, modifier in still:
+                thing.modifiers.remove(modifier)
+            for thing in context.view_layer.objects:
+                thing.select_set(thing in chosen)
+            scene.frame_start, scene.frame_end = before[:2]
+            scene.frame_set(before[2])
 
 
 class WADI_PT_panel(bpy.types.Panel):
@@ -249,10 +272,10 @@ class WADI_PT_panel(bpy.types.Panel):
             layout.prop(given, name)
         layout.operator("wadi.bake", icon="MOD_FLUIDSIM")
         layout.operator("wadi.light", icon="LIGHT_SUN")
-        layout.operator("wadi.export_alembic", icon="EXPORT")
+        layout.operator("wadi.export", icon="EXPORT")
 
 
-_classes = (WadiSettings, WADI_OT_bake, WADI_OT_light, WADI_OT_export_alembic, WADI_PT_panel)
+_classes = (WadiSettings, WADI_OT_bake, WADI_OT_light, WADI_OT_export, WADI_PT_panel)
 
 
 def register():

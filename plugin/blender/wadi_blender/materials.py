@@ -37,7 +37,8 @@ class _Tree:
 
     def ramp(self, value, low, high):
         """0 below low, 1 above high, smooth between."""
-        return self.node("ShaderNodeMapRange", {"Value": value, "From Min": low, "From Max": high}, interpolation_type="SMOOTHSTEP").outputs[0]
+        inputs = {"Value": value, "From Min": low, "From Max": high}
+        return self.node("ShaderNodeMapRange", inputs, interpolation_type="SMOOTHSTEP").outputs[0]
 
     def mix(self, share, a, b):
         node = self.node("ShaderNodeMix", data_type="RGBA")
@@ -98,8 +99,8 @@ def _ground(t):
 def _water(t):
     """What lies below shows through a colour that is absorbed by depth; silt makes it opaque and brown; foam lies on it."""
     depth, silt = t.attribute("depth"), t.attribute("silt")
-    through = t.node("ShaderNodeCombineColor", {
-        channel: t.math("POWER", math.exp(-2 * absorbed), depth) for channel, absorbed in zip(("Red", "Green", "Blue"), ABSORBED)}).outputs[0]
+    left = {channel: t.math("POWER", math.exp(-2 * absorbed), depth) for channel, absorbed in zip(("Red", "Green", "Blue"), ABSORBED)}
+    through = t.node("ShaderNodeCombineColor", left).outputs[0]
     mud = t.math("SUBTRACT", 1.0, t.math("POWER", math.exp(-1.5), silt))
     murky = t.math("MAXIMUM", t.math("SUBTRACT", 1.0, t.math("POWER", math.exp(-0.5), depth)), mud)
     speed = t.node("ShaderNodeVectorMath", {0: t.attribute("flow", "Vector")}, operation="LENGTH").outputs["Value"]

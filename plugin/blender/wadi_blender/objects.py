@@ -15,7 +15,7 @@ _readers, _newest, _told = {}, [None, None, None], set()
 
 
 def folder_of(thing):
-    """The cache of an object, as a path of this machine; "//" is the folder of the .blend file, or of the library that it is linked from."""
+    """The cache of an object, as a path of this machine; "//" is the folder of the .blend file that the object is from."""
     return bpy.path.abspath(thing[FOLDER], library=thing.library)
 
 
@@ -58,11 +58,11 @@ def heights(part, frame, dx):
 
 def _grid(name, nx, ny, dx):
     mesh = bpy.data.meshes.new(name)
-    x, y = np.meshgrid((np.arange(nx, dtype=np.float32) + np.float32(0.5)) * np.float32(dx), (np.arange(ny, dtype=np.float32) + np.float32(0.5)) * np.float32(dx))
+    x, y = np.meshgrid((np.arange(nx) + 0.5) * dx, (np.arange(ny) + 0.5) * dx)
     first = (np.arange(ny - 1)[:, None] * nx + np.arange(nx - 1)).ravel()
     corners = np.stack([first, first + 1, first + nx + 1, first + nx], axis=1).astype(np.int32).ravel()
     mesh.vertices.add(nx * ny)
-    mesh.vertices.foreach_set("co", np.stack([x, y, np.zeros_like(x)], axis=2).ravel())
+    mesh.vertices.foreach_set("co", np.stack([x, y, np.zeros_like(x)], axis=2).astype(np.float32).ravel())
     mesh.loops.add(len(corners))
     mesh.loops.foreach_set("vertex_index", corners)
     mesh.polygons.add(len(first))
@@ -82,16 +82,16 @@ def show(thing, number):
     frame = _frame(folder, min(max(number, 0), about["frames"] - 1))
     z = heights(thing[PART], frame, about["dx"])
     if len(mesh.vertices) != z.size:
-        raise cache.CacheError(f"cache: {folder} has {z.shape[1]} x {z.shape[0]} cells, {thing.name} has {len(mesh.vertices)} points: bake again")
+        raise cache.CacheError(f"cache: {folder} has {z.size} cells, {mesh.name} {len(mesh.vertices)} points: bake again")
     position = np.empty(3 * z.size, np.float32)
     points = mesh.attributes["position"].data
     points.foreach_get("vector", position)
     position[2::3] = z.ravel()
     points.foreach_set("vector", position)
     for attribute, plane in ATTRIBUTES.items():
-        if plane in frame and attribute in mesh.attributes:
-            values = np.ascontiguousarray(frame[plane], np.float32).ravel()
-            mesh.attributes[attribute].data.foreach_set("vector" if attribute == "flow" else "value", values)
+        found = mesh.attributes.get(attribute)
+        if plane in frame and found is not None and found.domain == "POINT":
+            found.data.foreach_set("vector" if attribute == "flow" else "value", np.ascontiguousarray(frame[plane], np.float32).ravel())
     mesh.update()
 
 
@@ -130,7 +130,8 @@ def build(scene, folder, path, start):
     for part in (GROUND, WATER):
         name = f"Wadi {part}"
         mesh = _grid(name, about["nx"], about["ny"], about["dx"])
-        thing = next((thing for thing in shown(scene) if thing.library is None and folder_of(thing) == folder and thing[PART] == part), None)
+        there = [thing for thing in shown(scene) if thing.library is None and folder_of(thing) == folder and thing[PART] == part]
+        thing = there[0] if there else None
         if thing is None:
             thing = bpy.data.objects.new(name, mesh)
             scene.collection.objects.link(thing)

@@ -6,6 +6,9 @@ import numpy as np
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
+MANNING = 0.03  # roughness of natural ground [s/m^(1/3)]
+SAND_WEIGHT = 2e4  # of full sand, per depth [Pa/m]
+
 
 def _bounds(thing):
     corners = np.array([thing.matrix_world @ Vector(corner) for corner in thing.bound_box])
@@ -65,12 +68,13 @@ def level(terrain, cells, depsgraph, sand=None, sand_depth=0.0, water=None, wate
     lowest = float(np.nanmin(ground))
     files = {"terrain.npy": _npy(ground)}
     full = {"format_version": 1, "name": terrain.name, "grid": {"nx": grid.nx, "ny": grid.ny, "dx": grid.dx},
-            "terrain": [{"file": "terrain.npy", "holes": "outside"}]}
-    highest = sand_depth + water_depth
+            "terrain": [{"file": "terrain.npy", "holes": "outside"}], "material": {"manning": MANNING}}
+    highest, deepest = water_depth, sand_depth if sand is None else 0.0
     for name, thing, depth in (("sand", sand, sand_depth), ("water", water, water_depth)):
         if thing is not None:
             surface = grid.heights(thing, name)
-            highest += max(0.0, float(np.nanmax(surface)) - lowest)
+            depth = max(0.0, float(np.nanmax(surface - ground)))
+            highest, deepest = highest + depth, max(deepest, depth) if name == "sand" else deepest
             files[f"{name}.npy"] = _npy(np.where(np.isnan(surface), lowest - 1, surface))
             full[name] = [{"file": f"{name}.npy", "absolute": True, **({"inside_sand": True} if name == "water" else {})}]
         elif depth > 0:
@@ -78,10 +82,16 @@ def level(terrain, cells, depsgraph, sand=None, sand_depth=0.0, water=None, wate
     if inflow is not None:
         low, high = _bounds(inflow)
         middle = inflow.matrix_world.translation
-        full["sources"] = [{"shape": "disc", "center": [middle.x - grid.origin[0], middle.y - grid.origin[1]], "material": "water",
+        place = [middle.x - grid.origin[0], middle.y - grid.origin[1]]
+        if not (0 <= place[0] < grid.nx * grid.dx and 0 <= place[1] < grid.ny * grid.dx):
+            raise ValueError(f"inflow: {inflow.name} stands outside the terrain")
+        full["sources"] = [{"shape": "disc", "center": place, "material": "water",
                             "radius": max(2 * grid.dx, 0.5 * float(max(high[0] - low[0], high[1] - low[1]))), "discharge": discharge}]
         highest += grid.dx
     if open_sides:
         full["sides"] = {side: {"kind": "outflow"} for side in ("west", "east", "south", "north")}
-    full["dt"] = 0.2 * grid.dx / math.sqrt(9.81 * max(highest, grid.dx))
+    if deepest > 0:
+        full["material"]["young_modulus"] = 10 * SAND_WEIGHT * deepest
+    # Steps that waves need five of to cross a cell, and water that has run down the slopes.
+    full["dt"] = 0.2 * grid.dx / math.sqrt(9.81 * max(highest + deepest, grid.dx, 0.5 * (float(np.nanmax(ground)) - lowest)))
     return full, files, {"origin": grid.origin, "cells_without_ground": missing}
