@@ -16,6 +16,7 @@ packages_of[tests]="${packages_of[viewer]} ${packages_of[docs]} ${packages_of[py
 packages_of[contributing]="clang-format-14 pre-commit" # beside the tests: CONTRIBUTING.md
 # Lanes of tests/platforms, beside the tests.
 packages_of[wasm]="emscripten node-acorn chromium"
+packages_of[blender]="python3-venv libgl1 libegl1 libice6 libsm6 libxext6 libxfixes3 libxi6 libxkbcommon0 libxrender1 libxxf86vm1"
 packages_of[swiftshader]="chromium-common"
 # What plugin/packaging/release.sh makes environments with and runs other systems' programs in, beside the tests.
 packages_of[packaging]="python3-venv debootstrap qemu-user wine64 reuse"
@@ -24,7 +25,7 @@ packages_of[packaging]="python3-venv debootstrap qemu-user wine64 reuse"
 packages=()
 for purpose in "$@"; do
     if [[ -z $purpose || -z ${packages_of[$purpose]:-} ]]; then
-        echo "install_packages.sh: no purpose \"$purpose\"; the purposes are: demo viewer import docs python tests contributing wasm swiftshader packaging" >&2
+        echo "install_packages.sh: no purpose \"$purpose\"; the purposes are: demo viewer import docs python tests contributing wasm blender swiftshader packaging" >&2
         exit 2
     fi
     # shellcheck disable=SC2206 # words

@@ -62,6 +62,10 @@ lane_wheel() { # the wheel as it is handed on, in environments of its own
     plugin/python/wheel.sh build/wheel && tests/python/wheel.py build/wheel/wadi-*.whl &&
         stamp=(--target "Python wheel, x86-64 Linux" --tools "$(grep -o 'ziglang==[0-9.]*' plugin/packaging/requirements.txt)" --host "$(cat tests/platforms/minimal_host_hash.txt)")
 }
+lane_blender() { # the extension in Blender as a module, with the wheel inside
+    samples/install_packages.sh blender && plugin/python/wheel.sh build/wheel && tests/blender/run.sh build/wheel/wadi-*.whl &&
+        stamp=(--target "Blender extension, x86-64 Linux" --tools "$(grep '^bpy' tests/blender/requirements.txt)" --ran "all of tests/blender")
+}
 lane_fine() { # every level's claims on its fine grid
     [ -e /dev/nvidiactl ] || { echo "no NVIDIA device" && return 77; }
     build release && tests/levels/fine_grids.py build/release/bin/wadi-recorder &&
