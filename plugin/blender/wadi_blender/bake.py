@@ -18,9 +18,9 @@ def draws(drifting_foam):
 
 
 class Bake:
-    """One bake: `work` is a generator of pieces, `tick` runs some of them.
+    """One bake, in pieces of work: `tick` does some of them.
 
-    make        a function (progress) that returns the world; progress as wadi.World takes it
+    make        a function that returns the world
     folder      of the cache
     seconds     simulated time that the frames show [s]
     fps         frames per second of simulated time
@@ -36,7 +36,6 @@ class Bake:
         self.fps, self.skip, self.count = fps, skip, int(seconds * fps + 1e-6) + 1
         self.done = 0  # frames that are written
         self.share = 0.0
-        self.pieces, self.longest = 0, 0.0  # how many, and what the longest took [s]
         self._work = self._pieces()
 
     def steps(self, frame, dt):
@@ -70,13 +69,10 @@ class Bake:
         """Works for about that long, at least one piece. True while there is more to do."""
         end = time.perf_counter() + seconds
         while True:
-            begun = time.perf_counter()
             more = next(self._work, self) is not self
-            now = time.perf_counter()
-            self.pieces, self.longest = self.pieces + 1, max(self.longest, now - begun)
             if not more:
                 self.share = 1.0
-            if not more or now >= end:
+            if not more or time.perf_counter() >= end:
                 return more
 
     def stop(self):
