@@ -297,6 +297,7 @@ def part_cancel():
             begun = time.perf_counter()
             answer = operator.modal(context, SimpleNamespace(type="TIMER"))
             ticks.append(time.perf_counter() - begun)
+        check(interface.WADI_OT_bake.poll(context) == (answer != {"PASS_THROUGH"}), "one bake at a time")
         if event == "ESC":
             done = operator._bake.done
             check(operator.modal(context, SimpleNamespace(type="MOUSEMOVE")) == {"PASS_THROUGH"}, "the mouse ends nothing")
@@ -391,6 +392,9 @@ def part_picture():
     scene.cycles.use_adaptive_sampling, scene.cycles.use_denoising = False, True
     scene.render.resolution_x, scene.render.resolution_y, scene.render.resolution_percentage = 480, 270, 100
     scene.render.image_settings.file_format, scene.render.image_settings.quality = "JPEG", 90
+    for name in dir(scene.render):
+        if name.startswith("use_stamp_"):
+            setattr(scene.render, name, False)  # times and names that would be in the file
     scene.frame_set(2)
     begun = time.perf_counter()
     now = rendered(scene, WORK / "canyon.jpg")

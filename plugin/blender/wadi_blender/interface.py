@@ -90,8 +90,15 @@ class WADI_OT_bake(bpy.types.Operator):
 
     bl_idname, bl_label = "wadi.bake", "Bake"
     _timer = _bake = None
+    running = False  # one at a time
+
+    @classmethod
+    def poll(cls, context):
+        return not WADI_OT_bake.running
 
     def _begin(self, context):
+        # What the panel and the window show may be another scene by the end.
+        self._scene, self._path, self._start = context.scene, context.scene.wadi.cache, context.scene.wadi.start
         try:
             self._bake, self._folder = prepare(context.scene, context.evaluated_depsgraph_get())
             self._bake.tick(0)  # makes the world: what is wrong with a level is told here
@@ -113,19 +120,19 @@ class WADI_OT_bake(bpy.types.Operator):
             self._fail(failed)
             return None
 
-    def _finish(self, context):
+    def _finish(self):
         self._bake.stop()
         if self._bake.done == 0:
             self.report({"WARNING"}, "Nothing was baked")
             return {"CANCELLED"}
-        scene, given = context.scene, context.scene.wadi
+        scene = self._scene
         first = not objects.shown(scene)
-        ground, water = objects.build(scene, self._folder, given.cache, given.start)
+        ground, water = objects.build(scene, self._folder, self._path, self._start)
         materials.dress(ground, water)
         if first and not any(thing.type == "LIGHT" and thing.data.type == "SUN" for thing in scene.objects):
             materials.light(scene)
         about = objects.reader(self._folder).about
-        scene.frame_end = max(scene.frame_end, given.start + about["frames"] - 1)
+        scene.frame_end = max(scene.frame_end, self._start + about["frames"] - 1)
         said = f"{self._bake.done} of {self._bake.count} frames in {self._folder}"
         holes = about["cells_without_ground"]
         for text in about["warnings"] + ([f"terrain: {holes} cells lie under no ground and drain to the rim"] if holes else []):
@@ -141,7 +148,7 @@ class WADI_OT_bake(bpy.types.Operator):
         while more := self._tick():
             manager.progress_update(100 * self._bake.share)
         manager.progress_end()
-        return {"CANCELLED"} if more is None else self._finish(context)
+        return {"CANCELLED"} if more is None else self._finish()
 
     def invoke(self, context, event):
         if not self._begin(context):
@@ -150,6 +157,7 @@ class WADI_OT_bake(bpy.types.Operator):
         manager.progress_begin(0, 100)
         self._timer = manager.event_timer_add(0.001, window=context.window)
         manager.modal_handler_add(self)
+        WADI_OT_bake.running = True
         return {"RUNNING_MODAL"}
 
     def modal(self, context, event):
@@ -169,6 +177,7 @@ class WADI_OT_bake(bpy.types.Operator):
         self._leave(context, False)
 
     def _leave(self, context, good):
+        WADI_OT_bake.running = False
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.progress_end()
         if context.workspace is not None:
@@ -176,7 +185,7 @@ class WADI_OT_bake(bpy.types.Operator):
         if not good:
             self._bake.stop()
             return {"CANCELLED"}
-        return self._finish(context)
+        return self._finish()
 
 
 class WADI_OT_light(bpy.types.Operator):
