@@ -6,7 +6,7 @@ import bpy
 SAND, SAND_WET = (0.66, 0.44, 0.20, 1), (0.22, 0.13, 0.055, 1)
 ROCK, ROCK_DARK, DUST = (0.32, 0.165, 0.09, 1), (0.12, 0.062, 0.04, 1), (0.30, 0.185, 0.105, 1)
 HAZE = (0.9, 1.1, 1.35, 1)  # below the horizon, where the sky's model is black
-DEEP, MUD = (0.008, 0.085, 0.150, 1), (0.30, 0.17, 0.07, 1)
+DEEP, MUD = (0.008, 0.085, 0.150, 1), (0.30, 0.20, 0.07, 1)
 ABSORBED = (0.55, 0.12, 0.07)  # of red, green and blue, per metre of water [1/m]
 NISHITA = ("MULTIPLE_SCATTERING", "NISHITA")  # its names in Blender 5 and 4
 
@@ -101,7 +101,7 @@ def _water(t):
     depth, silt = t.attribute("depth"), t.attribute("silt")
     left = {channel: t.math("POWER", math.exp(-2 * absorbed), depth) for channel, absorbed in zip(("Red", "Green", "Blue"), ABSORBED)}
     through = t.node("ShaderNodeCombineColor", left).outputs[0]
-    mud = t.math("SUBTRACT", 1.0, t.math("POWER", math.exp(-0.25), silt))
+    mud = t.math("SUBTRACT", 1.0, t.math("POWER", math.exp(-0.12), silt))
     murky = t.math("MAXIMUM", t.math("SUBTRACT", 1.0, t.math("POWER", math.exp(-0.5), depth)), mud)
     speed = t.node("ShaderNodeVectorMath", {0: t.attribute("flow", "Vector")}, operation="LENGTH").outputs["Value"]
     waves = t.math("ADD", t.noise(1.1, 5.0), t.math("MULTIPLY", t.noise(4.0, 4.0), 0.3))
