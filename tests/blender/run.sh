@@ -20,6 +20,8 @@ if ! cmp -s "$here/requirements.txt" "$work/environment/requirements.txt"; then
     cp "$here/requirements.txt" "$work/environment/requirements.txt"
 fi
 package=$("$root/plugin/blender/pack.py" "$wheel" "$work")
+cp "$package" "$work/renamed.zip"
+! "$root/plugin/blender/pack.py" --check "$work/renamed.zip" 2>"$work/renamed.log" || { echo "pack.py takes a wrong name" >&2 && exit 1; }
 # Blender's own validator, which reads the manifest alone, and takes what it is given for good
 validator=$(echo "$work"/environment/lib/python3.11/site-packages/bpy/*/scripts/addons_core/bl_pkg/cli/blender_ext.py)
 "$work/environment/bin/python" "$validator" validate --valid-tags="" "$package"
