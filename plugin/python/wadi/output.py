@@ -54,8 +54,8 @@ def _unwanted(capsule):
 
 
 class OutputView:
-    """An output where the world has it. np.asarray(view) on the CPU, cupy.asarray(view), torch.from_dlpack(view) or
-    jax.dlpack.from_dlpack(view) on CUDA share its memory; nothing is copied. Read only: what you write there is lost or harms nothing but
+    """An output where the world has it. np.asarray(view) on the CPU, cupy.asarray(view) or torch.from_dlpack(view) on CUDA share its
+    memory; nothing is copied. JAX takes no rows with gaps between them: give it cupy.ascontiguousarray(cupy.asarray(view)). Read only: what you write there is lost or harms nothing but
     pictures. The memory lives as long as any of them; what it shows stays until the second next update.
 
     output, step (water steps done in what it shows), shape (ny, nx) or (ny, nx, n), dtype, strides [bytes], address.
