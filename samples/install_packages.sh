@@ -15,6 +15,8 @@ packages_of[python]="python3-numpy python3-pytest python3-matplotlib python3-xar
 packages_of[tests]="${packages_of[viewer]} ${packages_of[docs]} ${packages_of[python]} libtiff-dev libtinyexr-dev doctest-dev pkg-config vulkan-validationlayers xvfb twm xdotool mono-mcs mono-runtime unzip"
 packages_of[contributing]="clang-format-14 pre-commit" # beside the tests: CONTRIBUTING.md
 # Lanes of tests/platforms, beside the tests.
+packages_of[web]="build-essential cmake ninja-build python3 nlohmann-json3-dev libstb-dev libcli11-dev doctest-dev libvulkan-dev
+    libvulkan-volk-dev emscripten node-acorn brotli" # the page
 packages_of[wasm]="emscripten node-acorn chromium"
 packages_of[blender]="python3-venv libgl1 libegl1 libice6 libsm6 libxext6 libxfixes3 libxi6 libxkbcommon0 libxrender1 libxxf86vm1"
 packages_of[swiftshader]="chromium-common"
@@ -25,7 +27,7 @@ packages_of[packaging]="python3-venv debootstrap qemu-user wine64 reuse"
 packages=()
 for purpose in "$@"; do
     if [[ -z $purpose || -z ${packages_of[$purpose]:-} ]]; then
-        echo "install_packages.sh: no purpose \"$purpose\"; the purposes are: demo viewer import docs python tests contributing wasm blender swiftshader packaging" >&2
+        echo "install_packages.sh: no purpose \"$purpose\"; the purposes are: demo viewer import docs python tests contributing web wasm blender swiftshader packaging" >&2
         exit 2
     fi
     # shellcheck disable=SC2206 # words

@@ -66,6 +66,11 @@ lane_blender() { # the extension in Blender as a module, with the wheel inside
     samples/install_packages.sh blender && plugin/python/wheel.sh build/wheel && tests/blender/run.sh build/wheel/wadi-*.whl &&
         stamp=(--target "Blender extension, x86-64 Linux" --tools "$(grep '^bpy' tests/blender/requirements.txt)" --ran "all of tests/blender")
 }
+lane_web() {
+    ./samples/install_packages.sh web wasm && build ci && tests/web/run.sh build/ci &&
+        stamp=(--target "The page" --tools "Emscripten $(emcc --version | grep -m 1 -oE '[0-9]+\.[0-9]+\.[0-9]+'), $(chromium --version 2>/dev/null | cut -d ' ' -f 1,2)"
+            --ran "all of tests/web")
+}
 lane_fine() { # every level's claims on its fine grid
     [ -e /dev/nvidiactl ] || { echo "no NVIDIA device" && return 77; }
     build release && tests/levels/fine_grids.py build/release/bin/wadi-recorder &&

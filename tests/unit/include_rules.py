@@ -53,6 +53,7 @@ USES = {
     "samples/mesh_host": ("samples/common",),
     "samples/viewer": ("samples/common", "samples/tune"),
     "tests/faults": ("tests/unit",),
+    "tests/web": ("samples/web",),
     "tests/fuzz": ("tests/conformance",),
     "tests/latency": ("samples/vulkan_host_minimal",),
     "tests/mesh_host": ("tests/viewer",),
