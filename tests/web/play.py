@@ -100,7 +100,7 @@ def hashes(address, site, program, pictures):
         dig_moat(browser)
         browser.wait("page.state.undo > 0")
         print(f"  a moat within {time.monotonic() - begun:.1f} s of the first picture")
-        dug = browser.run("(() => { const before = page.block, at = (x, y) => page.surface_at(x, y); return at(16, 11.4); })()")
+        dug = browser.run("page.surface_at(16, 11.4, false)")
         browser.key("2", "Digit2")
         browser.drag([screen_of(browser, 11, 10), screen_of(browser, 14, 9.5)], seconds=1)
         browser.key("5", "Digit5")
@@ -153,6 +153,21 @@ def plain_server(site):
     server.shutdown()
 
 
+# A level's first steps; the best of three times, since other work may slow one.
+STEPS = """(async () => {
+    await page.open_level("%s");
+    page.busy = true;
+    const times = [];
+    let state = null;
+    for (const steps of [100, 40, 40, 40]) {
+        state = await page.ask("step", { list: [], steps, buffer: null });
+        times.push(state.milliseconds);
+    }
+    page.busy = false;
+    return { ms: Math.min(...times.slice(1)), nx: state.nx, ny: state.ny, dt: state.dt };
+})()"""
+
+
 def speeds(address):
     """Milliseconds of a step, on the worker alone, without pictures in between."""
     for query in ("", "?single"):
@@ -160,21 +175,17 @@ def speeds(address):
             browser.open(address + query)
             browser.wait(DRAWN)
             for level in ("beach", "castle", "canyon", "piles"):
-                browser.run("page.open_level(%s)" % json.dumps(level))
-                told = browser.run("(async () => { page.busy = true; const list = []; await page.ask('step', { list, steps: 20, buffer: null });"
-                                   " const state = await page.ask('step', { list, steps: 60, buffer: null }); page.busy = false;"
-                                   " return { ms: state.milliseconds, nx: state.nx, ny: state.ny, dt: state.dt, hash: state.hash }; })()", 240)
+                told = browser.run(STEPS % level, 240)
                 print(f"  {level}, {told['nx']} x {told['ny']}, {browser.run('page.threads')} thread(s): {told['ms']:.1f} ms for {1000 * told['dt']:.1f} ms")
             check(browser.complaints == [], f"no complaint: {browser.complaints}")
 
 
 def levels(address, pictures):
-    with Chromium(1280, 720) as browser:
+    with Chromium(1000, 560) as browser:
         for level, seconds in (("castle", 1.7), ("canyon", 16), ("piles", 2), ("beach", 9)):
-            browser.open(address + "?quality=medium&scale=1")
+            browser.open(address + "?scale=1")
             browser.wait(DRAWN)
-            browser.run("page.open_level(%s)" % json.dumps(level))
-            told = browser.run("(async () => { page.busy = true; const { dt } = page.state; const state = await page.ask('step', { list: [], steps:"
+            told = browser.run(f"(async () => {{ await page.open_level('{level}'); page.busy = true; const {{ dt }} = page.state; const state = await page.ask('step', {{ list: [], steps:"
                                f" Math.round({seconds} / dt), buffer: null }}); page.take(state); page.busy = false; page.set_paused(true); return state.time; }})()", 240)
             browser.run("new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done, 50))))")
             browser.picture(pictures / f"{level}.png")
@@ -187,7 +198,7 @@ def play(address, seconds, pictures):
     with Chromium(800, 500) as browser:
         browser.open(address)
         browser.wait(DRAWN)
-        begun, used, turns = time.monotonic(), [], 0
+        begun, used, world, turns = time.monotonic(), [], [], 0
         tools = ["1", "2", "3", "4", "5", "6"]
         while time.monotonic() - begun < seconds:
             browser.key(tools[turns % 6], "Digit" + tools[turns % 6])
@@ -202,11 +213,13 @@ def play(address, seconds, pictures):
                 browser.key("r", "KeyR")
                 browser.wait(DRAWN)
             used.append(browser.run("gc(), performance.memory.usedJSHeapSize"))
+            world.append(browser.run("page.state.memory"))
             turns += 1
         print(f"  {turns} turns, {figures(browser)}")
         third = len(used) // 3
         early, late = max(used[third:2 * third]), max(used[2 * third:])
         check(late < early + 3e6, f"the page's memory is flat: {early / 1e6:.1f} MB, then {late / 1e6:.1f} MB")
+        check(world[-1] == world[third], f"the worlds' memory is flat: {world[third] / 1e6:.0f} MB, then {world[-1] / 1e6:.0f} MB")
         browser.picture(pictures / "after_play.png")
         browser.run("document.getElementById('costs').open = true")
         browser.wait("page.costs.elastoplastic", 120)
@@ -220,7 +233,7 @@ def phone(address, pictures):
     with Chromium(390, 844, scale=2, touch=True) as browser:
         browser.open(address)
         browser.wait(DRAWN)
-        before = browser.run("page.surface_at(16, 11.4)")
+        before = browser.run("page.surface_at(16, 11.4, false)")
         places = [screen_of(browser, 13 + 0.5 * n, 11.4) for n in range(13)]
         browser.touch("touchStart", [places[0]])
         for place in places[1:]:
@@ -228,7 +241,7 @@ def phone(address, pictures):
             browser.touch("touchMove", [place])
         browser.touch("touchEnd", [])
         time.sleep(0.5)
-        after = browser.run("page.surface_at(16, 11.4)")
+        after = browser.run("page.surface_at(16, 11.4, false)")
         check(after < before - 0.05, f"a finger digs: {before:.2f} m, then {after:.2f} m")
         distance = browser.run("page.camera.distance")
         browser.touch("touchStart", [(150, 400), (240, 400)])

@@ -1,5 +1,12 @@
 // A state as a link: the level, how it was opened, and the command log, in the address behind #.
-const WORDS = { level: /^[a-z_]+$/, variant: /^[a-z_]*$/, accuracy: /^(draft|balanced|accurate)$/, draws: /^[0-3]$/, steps: /^\d{1,9}$/, hash: /^[0-9a-f]{16}$/ };
+const WORDS = {
+  level: /^[a-z_]+$/,
+  variant: /^[a-z_]*$/,
+  accuracy: /^(draft|balanced|accurate)$/,
+  draws: /^[0-3]$/,
+  steps: /^\d{1,9}$/,
+  hash: /^[0-9a-f]{16}$/,
+};
 const MOST_LOG = 16 << 20; // bytes that a link may unfold to
 
 function base64url(bytes) {
@@ -46,7 +53,8 @@ export async function from_fragment(text) {
   const state = {};
   for (const [key, allowed] of Object.entries(WORDS)) {
     const value = found.get(key);
-    if (value === null || !allowed.test(value)) throw new Error(`This link is damaged: ${key} is ${value === null ? "missing" : `"${value}"`}.`);
+    const told = value === null ? "missing" : `"${value}"`;
+    if (value === null || !allowed.test(value)) throw new Error(`This link is damaged: ${key} is ${told}.`);
     state[key] = key === "steps" || key === "draws" ? Number(value) : value;
   }
   state.log = new Uint8Array(0);

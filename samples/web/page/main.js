@@ -7,7 +7,9 @@ import { EFFECTS, SANDS } from "./material.js";
 import { ICONS } from "./icons.js";
 
 const at = (id) => document.getElementById(id);
+const NUMBERS = [...new Set(["porosity", ...[...EFFECTS, ...SANDS].flatMap(({ numbers }) => Object.keys(numbers))])]; // of the material
 const LEAST_SCALE = 0.25; // share of the canvas' width that is drawn at least, and then enlarged
+const MOST_THREADS = 6; // build.sh makes eight, of which two order steps and save
 const PICTURE_BUDGET = [24, 40]; // a picture's time [ms] below which more pixels are drawn, and above which fewer
 
 // ---- The worker ----
@@ -74,14 +76,14 @@ function take(state) {
   changed = fresh = true;
 }
 
-// Elevation of the visible surface at a place.
-function surface_at(x, y) {
+// Elevation of the visible surface at a place, or of the sand below the water.
+function surface_at(x, y, seen = true) {
   const { state } = page, solid = state.parts[0], water = state.parts[2];
   const clamp = (value, most) => Math.min(Math.max(value, 0), most);
   const a = clamp(x / state.dx - 0.5, state.nx - 1), b = clamp(y / state.dx - 0.5, state.ny - 1);
   const i = Math.min(Math.floor(a), state.nx - 2), j = Math.min(Math.floor(b), state.ny - 2), f = a - i, g = b - j;
   page.floats = page.floats?.buffer === state.buffer ? page.floats : new Float32Array(state.buffer);
-  const cell = (i, j) => page.floats[solid.offset + j * solid.row + i] + page.floats[water.offset + j * water.row + i];
+  const cell = (i, j) => page.floats[solid.offset + j * solid.row + i] + (seen ? page.floats[water.offset + j * water.row + i] : 0);
   return (cell(i, j) * (1 - f) + cell(i + 1, j) * f) * (1 - g) + (cell(i, j + 1) * (1 - f) + cell(i + 1, j + 1) * f) * g;
 }
 
@@ -134,7 +136,7 @@ async function open_level(name, { variant = "", accuracy, draws, camera = true }
   page.block = block_of(state);
   state.lowest = page.block.low[2];
   take(state);
-  page.material = await ask("material", [...new Set(["porosity", ...EFFECTS.flatMap((effect) => Object.keys(effect.numbers)), ...SANDS.flatMap((sand) => Object.keys(sand.numbers))])]);
+  page.material = await ask("material", NUMBERS);
   page.begun_material = { ...page.material };
   page.hand.enter(state, page.material.porosity);
   if (camera && other) place_camera();
@@ -161,8 +163,8 @@ async function open_link(link) {
   cover(null);
   page.same = page.state.hash === link.hash;
   set_paused(true);
-  tell_shared(page.same ? `The same state, to the bit: ${link.hash}. Press Space to go on.`
-    : `This is another state than the link's: ${page.state.hash}, not ${link.hash}. The page has changed since the link was made.`);
+  const other = `This is another state than the link's: ${page.state.hash}, not ${link.hash}.`;
+  tell_shared(page.same ? `The same state, to the bit: ${link.hash}. Press Space to go on.` : `${other} Page and link are of different versions.`);
   page.busy = false;
 }
 
@@ -173,10 +175,11 @@ function tell_shared(text) {
 
 async function share() {
   const { log, steps, hash } = await ask("log");
-  const fragment = await to_fragment({ level: page.name, variant: page.variant, accuracy: page.accuracy, draws: page.draws, steps, hash, log });
+  const { name: level, variant, accuracy, draws } = page;
+  const fragment = await to_fragment({ level, variant, accuracy, draws, steps, hash, log });
   history.replaceState(null, "", "#" + fragment);
   page.link = location.href;
-  const size = page.link.length < 2000 ? `${page.link.length} characters` : `${(page.link.length / 1000).toFixed(1)} thousand characters`;
+  const letters = page.link.length, size = letters < 2000 ? `${letters} characters` : `${(letters / 1000).toFixed(1)} thousand characters`;
   try {
     await navigator.clipboard.writeText(page.link);
     tell_shared(`Copied: ${size}.`);
@@ -188,14 +191,16 @@ async function share() {
 // ---- Panel ----
 
 function fill(select, words, chosen) {
-  select.replaceChildren(...words.map(([value, text, title = ""]) => Object.assign(document.createElement("option"), { value, textContent: text, title })));
+  const made = ([value, textContent, title = ""]) => Object.assign(document.createElement("option"), { value, textContent, title });
+  select.replaceChildren(...words.map(made));
   select.value = chosen;
 }
 
 function show_level() {
   const level = page.levels[page.name];
   fill(at("level"), Object.entries(page.levels).map(([name, { title }]) => [name, title]), page.name);
-  fill(at("variant"), [["", "as it is"], ...Object.entries(level.variants).map(([name, about]) => [name, name.replaceAll("_", " "), about])], page.variant);
+  const presets = Object.entries(level.variants).map(([name, about]) => [name, name.replaceAll("_", " "), about]);
+  fill(at("variant"), [["", "as it is"], ...presets], page.variant);
   at("variant").disabled = Object.keys(level.variants).length === 0;
   fill(at("sand"), [["", "the level's"], ...SANDS.map((sand) => [sand.name, `${sand.name}: ${sand.about}`])], "");
   at("about").textContent = page.variant ? level.variants[page.variant] : level.about;
@@ -252,7 +257,8 @@ async function measure() {
     const variants = { now: { numbers: {} } };
     for (const effect of EFFECTS) variants[effect.name] = { numbers: switched(effect, !is_on(effect)) };
     const starts = Object.fromEntries(["draft", "balanced", "accurate"].map((name) => [name, { start: { accuracy: name, draws: page.draws } }]));
-    const name = page.name, found = await ask("costs", { ...variants, draws: { start: { accuracy: page.accuracy, draws: page.draws ? 0 : 3 } }, ...starts });
+    const draws = { start: { accuracy: page.accuracy, draws: page.draws ? 0 : 3 } };
+    const name = page.name, found = await ask("costs", { ...variants, draws, ...starts });
     if (name !== page.name) return;
     const pair = (here, there, on) => (on ? { with: here, without: there } : { with: there, without: here });
     for (const effect of EFFECTS) page.costs[effect.name] = pair(found.now, found[effect.name], is_on(effect));
@@ -334,7 +340,8 @@ function draw() {
   fresh = false;
   const moving = performance.now() / 1000;
   const { sun } = page.levels[page.name];
-  renderer.draw({ camera, block, time: moving % 3600, sun_azimuth: sun[0], sun_elevation: sun[1], quality, foam_drifts: (page.draws & 1) !== 0 }, scale);
+  const look = { camera, block, time: moving % 3600, sun_azimuth: sun[0], sun_elevation: sun[1], quality, foam_drifts: (page.draws & 1) !== 0 };
+  renderer.draw(look, scale);
   draw_marks();
 }
 
@@ -396,7 +403,7 @@ function every_picture(now) {
   keys_held((now - last_picture) / 1000);
   advance();
   // Water at rest ripples; with the world paused one picture in four is enough.
-  if (!changed && page.paused && page.pictures++ % 4 !== 0) return;
+  if (!changed && (page.busy || (page.paused && page.pictures++ % 4 !== 0))) return;
   changed = false;
   const took = now - last_picture;
   last_picture = now;
@@ -429,7 +436,7 @@ function every_quarter_second() {
   if (level.waves) {
     const { first, period } = level.waves;
     const left = state.time < first ? first - state.time : period - ((state.time - first) % period);
-    hint += `; the next wave comes in ${Math.ceil(left)} s`;
+    hint += `; the next wave comes in ${Math.ceil(left)}\u00a0s`;
   }
   if (page.hand.pressed && hint_until === Infinity) hint_until = now + 20000;
   at("hint").textContent = now < hint_until || level.waves ? hint : "";
@@ -524,6 +531,11 @@ function listen() {
   at("fold").onclick = () => fold(!at("panel").classList.contains("folded"));
 }
 
+// What is in the middle of the picture: where arrow keys begin to aim.
+function middle_place() {
+  return meet(page.state, surface_at, page.camera.eye(), page.camera.ray(0.5, 0.5, aspect()))?.slice(0, 2) ?? null;
+}
+
 // Keys that act while they are held: the aim, the tool, the view.
 const held = new Set();
 function keys_held(seconds) {
@@ -532,7 +544,7 @@ function keys_held(seconds) {
   const has = (key) => (held.has(key) ? 1 : 0);
   const across = has("ArrowRight") - has("ArrowLeft"), ahead = has("ArrowUp") - has("ArrowDown");
   if (across || ahead) {
-    const from = hand.place ?? meet(state, surface_at, camera.eye(), camera.ray(0.5, 0.5, aspect()))?.slice(0, 2);
+    const from = hand.place ?? middle_place();
     if (from) {
       const step = 0.6 * camera.distance * speed, sin = Math.sin(camera.yaw), cos = Math.cos(camera.yaw);
       const to = [from[0] + step * (across * cos + ahead * sin), from[1] + step * (-across * sin + ahead * cos)];
@@ -566,7 +578,7 @@ function listen_to_keys() {
       hand.resize(hand.size * (key === "]" ? 1.15 : 1 / 1.15));
       at("size").value = hand.size;
     } else if (key === "Enter") {
-      if (!event.repeat) hand.press(hand.place ?? meet(page.state, surface_at, page.camera.eye(), page.camera.ray(0.5, 0.5, aspect()))?.slice(0, 2));
+      if (!event.repeat) hand.press(hand.place ?? middle_place());
     } else if (["ArrowLeft", "ArrowRight", "ArrowUp", "ArrowDown", "a", "d", "w", "s", "+", "-", "="].includes(key)) {
       held.add(key === "=" ? "+" : key);
     } else {
@@ -585,7 +597,9 @@ function listen_to_keys() {
 function make_tools() {
   at("tools").replaceChildren(...TOOLS.map((tool) => {
     const button = document.createElement("button");
-    Object.assign(button, { title: `${tool.title}: ${tool.help} (${tool.key})`, innerHTML: `${ICONS[tool.name]}<kbd>${tool.key}</kbd>`, onclick: () => choose_tool(tool.name) });
+    button.title = `${tool.title}: ${tool.help} (${tool.key})`;
+    button.innerHTML = `${ICONS[tool.name]}<kbd>${tool.key}</kbd>`;
+    button.onclick = () => choose_tool(tool.name);
     button.dataset.tool = tool.name;
     button.setAttribute("aria-label", tool.title);
     return button;
@@ -598,20 +612,21 @@ async function begin() {
   fold(innerWidth <= 700 || innerHeight <= 460);
   resize();
   const words = new URLSearchParams(location.search);
-  page.threads = self.crossOriginIsolated && !words.has("single") ? Math.min(Math.max((navigator.hardwareConcurrency || 2) - 1, 2), 6) : 1;
-  if (words.has("threads")) page.threads = Math.min(Math.max(Number(words.get("threads")) || 1, 1), 6);
+  const cores = navigator.hardwareConcurrency || 2;
+  page.threads = self.crossOriginIsolated && !words.has("single") ? Math.min(Math.max(cores - 1, 2), MOST_THREADS) : 1;
   if (QUALITIES[words.get("quality")]) quality = words.get("quality");
   if (words.has("scale")) fixed_scale = scale = Math.min(Math.max(Number(words.get("scale")) || 1, LEAST_SCALE), 1);
   const started = ask("start", { threads: page.threads });
   renderer = new Renderer(at("picture"));
-  if (renderer.software) scale = LEAST_SCALE;
+  if (renderer.software && !fixed_scale) scale = LEAST_SCALE;
   page.levels = await (await fetch("levels.json")).json();
   const link = await from_fragment(location.hash);
   fetch_bytes(`levels/${link?.level ?? "beach"}/level.json`).catch(() => {}); // told of when it is opened
   await started;
   while (!renderer.ready()) await new Promise((resolve) => setTimeout(resolve, 10));
   renderer.finish_programs();
-  at("how").textContent = page.threads > 1 ? `${page.threads} threads` : self.crossOriginIsolated ? "one thread" : "one thread: this server sends no headers for more";
+  const alone = self.crossOriginIsolated ? "one thread" : "one thread: this server sends no headers for more";
+  at("how").textContent = page.threads > 1 ? `${page.threads} threads` : alone;
   requestAnimationFrame(every_picture);
   setInterval(every_quarter_second, 250);
   if (link) await open_link(link);

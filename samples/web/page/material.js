@@ -9,10 +9,12 @@ export const EFFECTS = [
   { name: "bed_shear", title: "fast water carries its bed along", numbers: { bed_shear: 0.02 } },
 ];
 
-const same = { retention: 0.4925, internal_friction: 0.4, sand_viscosity: 0.05, grain_size: 0.001 };
+const NUMBERS = ["friction", "cohesion_dry", "cohesion_wet", "cohesion_capillary", "retention", "exchange_rate", "diffusion_rate",
+  "internal_friction", "sand_viscosity", "grain_size"];
+const sand = (name, about, ...values) => ({ name, about, numbers: Object.fromEntries(NUMBERS.map((key, n) => [key, values[n]])) });
 export const SANDS = [
-  { name: "dry", about: "runs and heaps", numbers: { ...same, friction: 0.6, cohesion_dry: 0, cohesion_wet: 0, cohesion_capillary: 0, exchange_rate: 1e5, diffusion_rate: 0.01 } },
-  { name: "damp", about: "holds a wall", numbers: { ...same, friction: 0.6, cohesion_dry: 210, cohesion_wet: 8500, cohesion_capillary: 8500, exchange_rate: 1e5, diffusion_rate: 0.01 } },
-  { name: "mud", about: "slides slowly", numbers: { ...same, friction: 0.15, cohesion_dry: 100, cohesion_wet: 300, cohesion_capillary: 300, exchange_rate: 1e6, diffusion_rate: 0.001, sand_viscosity: 0.5, grain_size: 0.0001 } },
-  { name: "gravel", about: "steep, drains at once", numbers: { ...same, friction: 0.8, cohesion_dry: 0, cohesion_wet: 0, cohesion_capillary: 0, retention: 0, exchange_rate: 1e4, diffusion_rate: 0.05, grain_size: 0.02 } },
+  sand("dry", "runs and heaps", 0.6, 0, 0, 0, 0.4925, 1e5, 0.01, 0.4, 0.05, 0.001),
+  sand("damp", "holds a wall", 0.6, 210, 8500, 8500, 0.4925, 1e5, 0.01, 0.4, 0.05, 0.001),
+  sand("mud", "slides slowly", 0.15, 100, 300, 300, 0.4925, 1e6, 0.001, 0.4, 0.5, 0.0001),
+  sand("gravel", "steep, drains at once", 0.8, 0, 0, 0, 0, 1e4, 0.05, 0.4, 0.05, 0.02),
 ];

@@ -18,7 +18,8 @@ export class Renderer {
   constructor(canvas) {
     const gl = canvas.getContext("webgl2", { antialias: false, alpha: false, depth: false, powerPreference: "high-performance" });
     if (!gl) throw new Error("This browser has no WebGL 2, by which the page draws.");
-    if (!gl.getExtension("EXT_color_buffer_float")) throw new Error("This device cannot draw into pictures of floats (EXT_color_buffer_float).");
+    const floats = "EXT_color_buffer_float"; // by which passes draw into pictures of floats
+    if (!gl.getExtension(floats)) throw new Error(`This device lacks ${floats}, by which the page draws.`);
     this.gl = gl;
     this.canvas = canvas;
     this.linear_floats = gl.getExtension("OES_texture_float_linear") !== null;
@@ -95,7 +96,9 @@ export class Renderer {
     if (this.targets[name]) gl.deleteFramebuffer(this.targets[name]);
     this.targets[name] = gl.createFramebuffer();
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.targets[name]);
-    textures.forEach((texture, n) => gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0 + n, gl.TEXTURE_2D, this.textures[texture], 0));
+    textures.forEach((texture, n) => {
+      gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0 + n, gl.TEXTURE_2D, this.textures[texture], 0);
+    });
     gl.drawBuffers(textures.map((_, n) => gl.COLOR_ATTACHMENT0 + n));
     if (gl.checkFramebufferStatus(gl.FRAMEBUFFER) !== gl.FRAMEBUFFER_COMPLETE) throw new Error(`This device cannot draw into "${name}".`);
   }
@@ -221,7 +224,8 @@ export class Renderer {
       const part = state.parts[k], two = name.endsWith("velocity");
       gl.activeTexture(gl.TEXTURE0 + UNITS.indexOf(name));
       gl.pixelStorei(gl.UNPACK_ROW_LENGTH, part.row);
-      gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, state.nx, state.ny, two ? gl.RG : gl.RED, gl.FLOAT, new Float32Array(state.buffer, 4 * part.offset, part.length));
+      const floats = new Float32Array(state.buffer, 4 * part.offset, part.length);
+      gl.texSubImage2D(gl.TEXTURE_2D, 0, 0, 0, state.nx, state.ny, two ? gl.RG : gl.RED, gl.FLOAT, floats);
     });
     gl.pixelStorei(gl.UNPACK_ROW_LENGTH, 0);
     this.fresh = true;

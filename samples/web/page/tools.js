@@ -1,6 +1,10 @@
 // What a hand does to the world: edits of wadi.h, as lists for the worker. Their sizes follow the level's.
 const SAND = 1, WATER = 2; // wadi_layer
 const DAMP = 0.25; // share of the pores that is full
+const PAUSE = 0.04; // between the edits of a stroke [s]: links stay short
+// Numbers of few bits, for the same reason: places to 4 mm, amounts to 0.2 mm.
+const round_place = (place) => place.map((at) => Math.round(256 * at) / 256);
+const round_amount = (amount) => Math.round(4096 * amount) / 4096;
 
 /** In the order of the keys 1 ... 7. */
 export const TOOLS = [
@@ -53,6 +57,7 @@ export class Hand {
   begun = null;
   pressed = false;
   #waiting = [];
+  #seconds = 0; // of the stroke that are not in an edit yet
 
   enter(grid, porosity) {
     this.grid = grid;
@@ -63,11 +68,13 @@ export class Hand {
   }
   resize(size) {
     this.size = Math.min(Math.max(size, 0.4), 4);
-    this.radius = Math.max(this.base * this.size, 1.5 * this.grid.dx);
+    this.radius = round_amount(Math.max(this.base * this.size, 1.5 * this.grid.dx));
   }
 
   press(place) {
     if (!place) return;
+    place = round_place(place);
+    this.#seconds = 0;
     this.pressed = true;
     this.place = this.begun = place;
     this.last = null;
@@ -75,7 +82,7 @@ export class Hand {
     if (this.tool === "castle") this.#press_castle();
   }
   move(place) {
-    if (place || !this.pressed) this.place = place;
+    if (place || !this.pressed) this.place = place && round_place(place);
   }
   release(act = true) {
     if (act && this.pressed && this.tool === "wall") {
@@ -91,7 +98,7 @@ export class Hand {
     this.#waiting.push(edit);
     const water = [...edit];
     water[edit[0] === "stamp" ? 4 : 1] = WATER;
-    water[water.length - 1] *= DAMP * this.porosity;
+    water[water.length - 1] = round_amount(water[water.length - 1] * DAMP * this.porosity);
     this.#waiting.push(water);
   }
 
@@ -105,8 +112,11 @@ export class Hand {
   act(seconds) {
     const list = this.#waiting.splice(0);
     if (!this.pressed || !this.place || !["dig", "damp", "dry", "water"].includes(this.tool)) return list;
+    this.#seconds += seconds;
+    if (this.#seconds < PAUSE) return list;
     const from = this.last ?? this.place, rate = this.radius * { dig: 1.6, damp: 1.2, dry: 1.2, water: 1 }[this.tool];
-    const edit = ["brush", this.tool === "water" ? WATER : SAND, ...from, ...this.place, this.radius, 1, (this.tool === "dig" ? -rate : rate) * seconds];
+    const amount = round_amount((this.tool === "dig" ? -rate : rate) * this.#seconds);
+    const edit = ["brush", this.tool === "water" ? WATER : SAND, ...from, ...this.place, this.radius, 1, amount];
     if (this.tool === "damp") {
       this.#add_sand(edit);
       list.push(...this.#waiting.splice(0));
@@ -114,6 +124,7 @@ export class Hand {
       list.push(edit);
     }
     this.last = this.place;
+    this.#seconds = 0;
     return list;
   }
 }
