@@ -46,10 +46,18 @@ class Handler(http.server.SimpleHTTPRequestHandler):
         pass
 
 
+class Server(http.server.ThreadingHTTPServer):
+    """Browsers that go away in the middle of an answer are no errors."""
+
+    def handle_error(self, request, client_address):
+        if not isinstance(sys.exc_info()[1], ConnectionError):
+            super().handle_error(request, client_address)
+
+
 def server_of(folder, port=0, threads=True):
     """A server on 127.0.0.1 that is not running yet; its port is server_port. Without threads pages get no memory that they can share."""
     kind = type("Handler", (Handler,), {"threads": threads})
-    return http.server.ThreadingHTTPServer(("127.0.0.1", port), functools.partial(kind, directory=str(folder)))
+    return Server(("127.0.0.1", port), functools.partial(kind, directory=str(folder)))
 
 
 def main():

@@ -254,17 +254,17 @@ async function measure() {
   measuring = true;
   at("measure").textContent = "measuring";
   try {
-    const variants = { now: { numbers: {} } };
-    for (const effect of EFFECTS) variants[effect.name] = { numbers: switched(effect, !is_on(effect)) };
-    const starts = Object.fromEntries(["draft", "balanced", "accurate"].map((name) => [name, { start: { accuracy: name, draws: page.draws } }]));
-    const draws = { start: { accuracy: page.accuracy, draws: page.draws ? 0 : 3 } };
-    const name = page.name, found = await ask("costs", { ...variants, draws, ...starts });
+    const { name, accuracy, draws } = page, on = Object.fromEntries(EFFECTS.map((effect) => [effect.name, is_on(effect)]));
+    const numbers = Object.fromEntries(EFFECTS.map((effect) => [effect.name, switched(effect, !on[effect.name])]));
+    const starts = { draws: { accuracy, draws: draws ? 0 : 3 } };
+    for (const key of ["draft", "balanced", "accurate"]) starts[key] = { accuracy: key, draws };
+    const found = await ask("costs", { numbers, starts });
     if (name !== page.name) return;
-    const pair = (here, there, on) => (on ? { with: here, without: there } : { with: there, without: here });
-    for (const effect of EFFECTS) page.costs[effect.name] = pair(found.now, found[effect.name], is_on(effect));
-    page.costs.draws = pair(found[page.accuracy], found.draws, page.draws !== 0);
-    const factor = { draft: 2, balanced: 1, accurate: 0.5 }, level_dt = page.state.dt / factor[page.accuracy];
-    for (const key of Object.keys(starts)) page.costs[key] = { cost: found[key], dt: level_dt * factor[key] };
+    const pair = (here, there, is) => (is ? { with: here, without: there } : { with: there, without: here });
+    for (const effect of EFFECTS) page.costs[effect.name] = pair(...found[effect.name], on[effect.name]);
+    page.costs.draws = pair(found[accuracy], found.draws, draws !== 0);
+    const factor = { draft: 2, balanced: 1, accurate: 0.5 }, level_dt = page.state.dt / factor[accuracy];
+    for (const key of Object.keys(factor)) page.costs[key] = { cost: found[key], dt: level_dt * factor[key] };
     show_options();
   } finally {
     measuring = false;
