@@ -223,13 +223,13 @@ def play(address, seconds, pictures):
         check(world[-1] == world[third], f"the worlds' memory is flat: {world[third] / 1e6:.0f} MB, then {world[-1] / 1e6:.0f} MB")
         browser.picture(pictures / "after_play.png")
         browser.run("document.getElementById('costs').open = true")
-        browser.wait("page.costs.elastoplastic", 120)
+        browser.wait("page.costs.elastoplastic", 240)
         for _ in range(3):  # other work on the machine may disturb one
             costs = browser.run("page.costs")
             if costs["elastoplastic"]["with"] > costs["elastoplastic"]["without"]:
                 break
             browser.run("page.costs.elastoplastic = null, document.getElementById('measure').click()")
-            browser.wait("page.costs.elastoplastic", 120)
+            browser.wait("page.costs.elastoplastic", 240)
         check(costs["elastoplastic"]["with"] > costs["elastoplastic"]["without"] > 0, f"what effects cost: {costs}")
         browser.picture(pictures / "costs.png")
         check(browser.complaints == [], f"no complaint: {browser.complaints}")
