@@ -26,7 +26,7 @@ static char error_text[512];
 
 static const wadi_output outputs[PAGE_OUTPUTS] = {WADI_OUTPUT_SAND_SURFACE,  WADI_OUTPUT_SAND_DEPTH, WADI_OUTPUT_WATER_DEPTH,
                                                   WADI_OUTPUT_SATURATION,    WADI_OUTPUT_FOAM,       WADI_OUTPUT_FLOW,
-                                                  WADI_OUTPUT_SAND_VELOCITY, WADI_OUTPUT_WETNESS};
+                                                  WADI_OUTPUT_SAND_VELOCITY, WADI_OUTPUT_WETNESS,    WADI_OUTPUT_SILT};
 
 const char* page_error(void) { return error_text; }
 
@@ -91,8 +91,8 @@ int page_open(int which, const char* json, const char* variant, const char* accu
     wadi_level_overrides overrides = wadi_default_level_overrides();
     overrides.variant = variant[0] != 0 ? variant : NULL;
     overrides.accuracy = accuracy;
-    overrides.draws =
-        ((draws & 1) ? WADI_OUTPUT_BIT(WADI_OUTPUT_FOAM) : 0u) | ((draws & 2) ? WADI_OUTPUT_BIT(WADI_OUTPUT_WETNESS) : 0u);
+    const wadi_output drawn[] = {WADI_OUTPUT_FOAM, WADI_OUTPUT_WETNESS, WADI_OUTPUT_SILT};
+    for (int n = 0; n < 3; ++n) overrides.draws |= (draws >> n & 1) != 0 ? WADI_OUTPUT_BIT(drawn[n]) : 0u;
     wadi_device_options options = wadi_default_device_options();
     options.backend = "cpu";
     options.threads = threads;

@@ -94,7 +94,7 @@ static void stroke(void) {
 int main(int count, char** words) {
     if (count > 6) return replay(words + 1, count - 7);
     char before[17], after[17];
-    must(page_open(0, text_of_level(), "", "balanced", 3, 2) == 0, "opening");
+    must(page_open(0, text_of_level(), "", "balanced", 7, 2) == 0, "opening");
     const double* numbers = page_numbers();
     check(numbers != NULL && numbers[PAGE_NX] == 48 && numbers[PAGE_NY] == 40 && numbers[PAGE_DT] == 0.01 &&
               numbers[PAGE_STEPS] == 0,
@@ -116,24 +116,24 @@ int main(int count, char** words) {
     check(page_keep(0) == 0 && page_step(0, 7) == 0, "keeping");
     strcpy(after, page_hash(0));
     check(strcmp(before, after) != 0, "steps change the state");
-    check(page_open(1, text_of_level(), "", "balanced", 3, 2) == 0 && page_back(1, 0) == 0, "the world beside");
+    check(page_open(1, text_of_level(), "", "balanced", 7, 2) == 0 && page_back(1, 0) == 0, "the world beside");
     check(strcmp(page_hash(1), before) == 0, "the kept state in the world beside");
     check(page_set_material(1, "young_modulus", 0) == 0 && page_step(1, 3) == 0, "another material beside");
     check(strcmp(page_hash(0), after) == 0, "this world is as it was");
     check(page_close(1) == 0 && page_back(0, 0) == 0 && strcmp(page_hash(0), before) == 0, "going back");
 
-    must(page_open(0, text_of_level(), "", "balanced", 3, 1) == 0, "opening anew");
+    must(page_open(0, text_of_level(), "", "balanced", 7, 1) == 0, "opening anew");
     hand_over(log, (size_t)bytes);
     check(page_play((size_t)bytes) == 0 && page_step(0, 10) == 0 && strcmp(page_hash(0), before) == 0,
           "the log gives the same state");
     /* Controls: a damaged log is refused, and without the log the state is another. */
-    must(page_open(0, text_of_level(), "", "balanced", 3, 1) == 0, "opening anew");
+    must(page_open(0, text_of_level(), "", "balanced", 7, 1) == 0, "opening anew");
     ((unsigned char*)log)[bytes / 2] ^= 1;
     hand_over(log, (size_t)bytes);
     check(page_play((size_t)bytes) == -1 && page_error()[0] != 0, "a damaged log is refused");
     check(page_step(0, 10) == 0 && strcmp(page_hash(0), before) != 0, "without the log");
     free(log);
-    check(page_open(0, text_of_level(), "no_such", "balanced", 3, 1) == -1 && strstr(page_error(), "no_such") != NULL,
+    check(page_open(0, text_of_level(), "no_such", "balanced", 7, 1) == -1 && strstr(page_error(), "no_such") != NULL,
           "no such variant");
     check(page_open(0, text_of_level(), "dry", "draft", 0, 1) == 0 && page_numbers()[PAGE_NX] == 24, "a variant, half the cells");
     check(page_close(0) == 0, "closing");

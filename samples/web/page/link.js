@@ -3,7 +3,7 @@ const WORDS = {
   level: /^[a-z_]+$/,
   variant: /^[a-z_]*$/,
   accuracy: /^(draft|balanced|accurate)$/,
-  draws: /^[0-3]$/,
+  draws: /^[0-7]$/,
   steps: /^\d{1,9}$/,
   hash: /^[0-9a-f]{16}$/,
 };

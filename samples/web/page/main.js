@@ -8,6 +8,7 @@ import { ICONS } from "./icons.js";
 
 const at = (id) => document.getElementById(id);
 const NUMBERS = [...new Set(["porosity", ...[...EFFECTS, ...SANDS].flatMap(({ numbers }) => Object.keys(numbers))])]; // of the material
+const ALL_DRAWS = 7; // of page_open: foam, wet ground, muddy water
 const LEAST_SCALE = 0.25; // share of the canvas' width that is drawn at least, and then enlarged
 const MOST_THREADS = 6; // build.sh makes eight, of which two order steps and save
 const PICTURE_BUDGET = [24, 40]; // a picture's time [ms] below which more pixels are drawn, and above which fewer
@@ -129,7 +130,7 @@ async function open_level(name, { variant = "", accuracy, draws, camera = true }
   const text = new TextDecoder().decode(await fetch_bytes(folder + "level.json"));
   const maps = await Promise.all(level.files.map(async (file) => ({ name: file, bytes: await fetch_bytes(folder + file) })));
   accuracy ??= level.accuracy[page.threads > 1 ? 0 : 1];
-  draws ??= level.foam === false ? 2 : 3;
+  draws ??= level.foam === false ? ALL_DRAWS - 1 : ALL_DRAWS;
   const state = await ask("open", { text, files: maps, variant, accuracy, draws });
   const other = page.name !== name;
   Object.assign(page, { name, variant, accuracy, draws, costs: other ? {} : page.costs });
@@ -243,7 +244,7 @@ function show_options() {
     });
   });
   const { with: more, without } = page.costs.draws ?? {};
-  const seen = option("checkbox", "draws", "foam and wet ground (begins again)", page.draws !== 0, cost_text(more - without || undefined),
+  const seen = option("checkbox", "draws", "foam, mud and wet ground (begins again)", page.draws !== 0, cost_text(more - without || undefined),
     (on) => restart({ draws: on ? undefined : 0 }));
   at("effects").replaceChildren(...effects, seen);
 }
@@ -256,7 +257,7 @@ async function measure() {
   try {
     const { name, accuracy, draws } = page, on = Object.fromEntries(EFFECTS.map((effect) => [effect.name, is_on(effect)]));
     const numbers = Object.fromEntries(EFFECTS.map((effect) => [effect.name, switched(effect, !on[effect.name])]));
-    const starts = { draws: { accuracy, draws: draws ? 0 : 3 } };
+    const starts = { draws: { accuracy, draws: draws ? 0 : ALL_DRAWS } };
     for (const key of ["draft", "balanced", "accurate"]) starts[key] = { accuracy: key, draws };
     const found = await ask("costs", { numbers, starts });
     if (name !== page.name) return;

@@ -6,9 +6,11 @@ void main() { gl_Position = vec4(vec2(float((gl_VertexID << 1) & 2), float(gl_Ve
 
 // Texture units of the samplers of the shaders.
 const UNITS = ["heights", "slopes", "matter", "flow", "light", "pyramid", "summit_image", "noise_image", "seen_picture", "colour_picture",
-  "sand_surface", "sand_depth", "water_depth", "saturation", "foam", "water_velocity", "sand_velocity", "wetness", "host_field"];
+  "sand_surface", "sand_depth", "water_depth", "saturation", "foam", "water_velocity", "sand_velocity", "wetness", "silt",
+  "host_field"];
 // The plugin's outputs in the order of page.h.
-const SOURCES = ["sand_surface", "sand_depth", "water_depth", "saturation", "foam", "water_velocity", "sand_velocity", "wetness"];
+const SOURCES = ["sand_surface", "sand_depth", "water_depth", "saturation", "foam", "water_velocity", "sand_velocity", "wetness",
+  "silt"];
 const NOISE = 64;
 
 // Presets of samples/viewer/look.cpp: steps of rays, of reflections, of refractions, sky sectors, octaves of a pattern.
@@ -37,7 +39,7 @@ export class Renderer {
     }
     this.vertices = gl.createVertexArray();
     this.frame = gl.createBuffer();
-    this.params = new ArrayBuffer(32 * 16);
+    this.params = new ArrayBuffer(33 * 16);
     this.textures = {};
     this.targets = {};
     this.grid = null;
