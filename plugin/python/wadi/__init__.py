@@ -19,7 +19,10 @@ from .extras import MissingExtraError
 from .maps import HeightMap, import_map, read_geotiff, write_asc, write_geotiff
 from .output import OutputView
 from .recording import Recording
-from .world import QUERY_DTYPE, Material, Save, World, level_cost
+from .world import World, level_cost
+from .world_edits import Material
+from .world_outputs import QUERY_DTYPE
+from .world_saves import Save
 
 #: Of the library that is loaded.
 __version__ = version()

@@ -5,9 +5,19 @@ from ctypes import CFUNCTYPE, POINTER, PYFUNCTYPE, Structure, c_char_p, c_int, c
 import numpy as np
 
 from ._native import HandleKind, Output
+from ._struct import member
 
 _CHANNELS = {Output.FLOW: 2, Output.SAND_VELOCITY: 2, Output.NORMAL: 4, Output.PACKED: 4, Output.PACKED_HALF: 4}
 _CPU, _CUDA = 1, 2  # DLDeviceType
+
+
+def bits_of(names, what):
+    """A mask from one output, or from several."""
+    names = [names] if isinstance(names, (str, int)) else names
+    mask = 0
+    for name in names:
+        mask |= 1 << member(Output, name, what)
+    return mask
 
 
 def layout_of(output, ny, nx, pitch):
