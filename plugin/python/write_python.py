@@ -15,8 +15,11 @@ KEYWORDS = {"from", "in", "is", "as"}
 
 HEAD = '''"""What wadi.h and wadi_cuda.h declare, for ctypes: enums, structs, callbacks and calls. Written by plugin/python/write_python.py from
 plugin/wadi_api.json."""
+from __future__ import annotations
+
 from ctypes import (CFUNCTYPE, POINTER, c_char, c_char_p, c_double, c_float, c_int32, c_int64, c_size_t, c_uint32, c_uint64, c_void_p)
 from enum import IntEnum
+from typing import Any
 
 from ._struct import Flag, Member, Row, Struct, Text, Whole
 '''
@@ -91,17 +94,18 @@ class Binding:
         own = name + "_" if name in KEYWORDS else name
         shown = note(field["text"], "    ")
         if kind == "char" or kind == "const char*":
-            return f'("_{own}", {f"c_char * {count}" if count else "c_char_p"})', f'{shown}    {own} = Text("_{own}")\n'
+            return f'("_{own}", {f"c_char * {count}" if count else "c_char_p"})', f'{shown}    {own}: Text = Text("_{own}")\n'
         if kind == "wadi_bool":
-            return f'("_{own}", c_int32)', f'{shown}    {own} = Flag("_{own}")\n'
+            return f'("_{own}", c_int32)', f'{shown}    {own}: Flag = Flag("_{own}")\n'
         if kind in self.enums:
-            return f'("_{own}", c_int32)', f'{shown}    {own} = Member("_{own}", {pascal(kind)})\n'
+            return f'("_{own}", c_int32)', f'{shown}    {own}: Member[{pascal(kind)}] = Member("_{own}", {pascal(kind)})\n'
         if count:
-            return f'("_{own}", {self.type(kind)} * {count})', f'{shown}    {own} = Row("_{own}")\n'
+            return f'("_{own}", {self.type(kind)} * {count})', f'{shown}    {own}: Row = Row("_{own}")\n'
         number = self.type(kind)
         if number.startswith(("c_int", "c_uint")) and name != "struct_size":
-            return f'("_{own}", {number})', f'{shown}    {own} = Whole("_{own}", {number})\n'
-        return f'("{own}", {number})', f"{shown}    {own}: {'float' if number in ('c_float', 'c_double') else 'int' if number == 'c_uint32' else 'object'}\n"
+            return f'("_{own}", {number})', f'{shown}    {own}: Whole = Whole("_{own}", {number})\n'
+        hint = {"c_float": "float", "c_double": "float", "c_uint32": "int", "c_void_p": "int | None"}.get(number, "Any")
+        return f'("{own}", {number})', f"{shown}    {own}: {hint}\n"
 
     def struct(self, struct):
         fields = [self.field(f) for f in struct["fields"]]
@@ -141,13 +145,16 @@ class Binding:
 
     def text(self):
         major, minor, patch = self.api["version"]
-        parts = [HEAD, f"#: What this file was written from: the library that is loaded must have this number.\nABI_VERSION = {self.api['abi_version']}\n"
-                 f"#: As wadi_get_version gives it: at least this has all that is named here.\nVERSION = {major << 22 | minor << 12 | patch}\n"
-                 + "".join(f"{name.removeprefix('WADI_')} = {value}\n" for name, value in self.api["constants"].items())]
+        parts = [HEAD, "#: What this file was written from: the library that is loaded must have this number.\n"
+                 f"ABI_VERSION: int = {self.api['abi_version']}\n"
+                 "#: As wadi_get_version gives it: at least this has all that is named here.\n"
+                 f"VERSION: int = {major << 22 | minor << 12 | patch}\n"
+                 + "".join(f"{name.removeprefix('WADI_')}: int = {value}\n" for name, value in self.api["constants"].items())]
         parts += [self.enum(e) for e in self.api["enums"]]
         parts += [self.callback(c) for c in self.api["callbacks"]]
         parts += [self.struct(s) for s in self.order()]
-        parts.append("#: Each call: what it returns, what it takes.\nCALLS = {\n" + "".join(self.function(f) for f in self.api["functions"]) + "}\n")
+        parts.append("#: Each call: what it returns, what it takes.\nCALLS: dict[str, tuple[Any, list[Any]]] = {\n"
+                     + "".join(self.function(f) for f in self.api["functions"]) + "}\n")
         return "\n\n".join(parts)
 
 

@@ -34,6 +34,7 @@ import importlib.metadata, pathlib, subprocess, sys
 import numpy as np
 import wadi
 
+assert (pathlib.Path(wadi.__file__).parent / "py.typed").is_file()
 assert wadi.__version__ == importlib.metadata.version("wadi"), wadi.__version__
 assert pathlib.Path(wadi._library.path).parent == pathlib.Path(wadi.__file__).parent / "lib", wadi._library.path
 water = np.zeros((32, 128))

@@ -1,11 +1,18 @@
 """Finds and loads the library, turns its results into exceptions, and holds what needs no world."""
+from __future__ import annotations
+
 import ctypes
 import os
 import pathlib
+from collections.abc import Callable
 from ctypes import byref, c_char_p, c_uint32, create_string_buffer
+from typing import TYPE_CHECKING, Any, Literal
 
 from . import _native
 from ._native import Result
+
+if TYPE_CHECKING:
+    from ._types import StrPath
 
 _folder = pathlib.Path(__file__).resolve().parent
 
@@ -13,7 +20,7 @@ _folder = pathlib.Path(__file__).resolve().parent
 class Error(Exception):
     """What the library refused. `result` is its wadi_result; the message names the field and its range where there is one."""
 
-    result = Result.ERROR_INTERNAL
+    result: Result = Result.ERROR_INTERNAL
 
 
 class BadArgumentError(Error, ValueError):
@@ -79,7 +86,7 @@ class CancelledError(Error):
 _errors = {kind.result: kind for kind in Error.__subclasses__()}
 
 
-def _find():
+def _find() -> pathlib.Path:
     named = os.environ.get("WADI_LIBRARY")
     path = pathlib.Path(named) if named else _folder / "lib" / "libwadi.so.1"
     if not path.exists():
@@ -88,7 +95,7 @@ def _find():
     return path.resolve()
 
 
-def _load(path):
+def _load(path: pathlib.Path) -> ctypes.CDLL:
     library = ctypes.CDLL(str(path))
     found = library.wadi_get_abi_version()
     if found != _native.ABI_VERSION:
@@ -102,24 +109,24 @@ def _load(path):
     return library
 
 
-path = _find()
-native = _load(path)
+path: pathlib.Path = _find()
+native: ctypes.CDLL = _load(path)
 
 
-def check(result):
+def check(result: int) -> None:
     """Raises what a call returned, where that is not OK."""
     if result:
         raise error(result)
 
 
-def error(result):
+def error(result: int) -> Error:
     """The exception of a result, with the library's text."""
     result = Result(result)
     text = native.wadi_get_last_error().decode("utf-8", "replace")
     return _errors[result](text if result != Result.NOT_READY else text or "not ready")
 
 
-def fill(call, kind, *given):
+def fill(call: Callable[..., int], kind: type[Any], *given: Any) -> list[Any]:
     """A list of structs from a call that takes (..., array, count)."""
     count = c_uint32(0)
     check(call(*given, None, byref(count)))
@@ -131,7 +138,7 @@ def fill(call, kind, *given):
     return list(items)[:count.value]
 
 
-def text_of(call, *given):
+def text_of(call: Callable[..., int], *given: Any) -> str:
     """A text from a call that takes (..., text, size) and returns its length."""
     length = call(*given, None, 0)
     if length == 0:
@@ -141,13 +148,13 @@ def text_of(call, *given):
     return room.value.decode("utf-8", "replace")
 
 
-def version():
+def version() -> str:
     """The version of the library that is loaded, as "0.1.0"."""
     number = native.wadi_get_version()
     return f"{number >> 22}.{number >> 12 & 1023}.{number & 4095}"
 
 
-def devices():
+def devices() -> tuple[list[_native.DeviceInfo], str]:
     """Devices of all backends of the library: a list of wadi.DeviceInfo, and a text with one line for each backend that has none."""
     count = c_uint32(0)
     notes = create_string_buffer(4096)
@@ -157,28 +164,28 @@ def devices():
     return list(infos)[:count.value], notes.value.decode("utf-8", "replace")
 
 
-def accuracy_presets():
+def accuracy_presets() -> list[_native.AccuracyPreset]:
     """Names that the keyword `accuracy` takes, by rising accuracy, as a list of wadi.AccuracyPreset."""
     return fill(native.wadi_list_accuracy_presets, _native.AccuracyPreset)
 
 
-def describe(table):
+def describe(table: Literal["settings", "effects", "fields", "stages", "schema"]) -> str:
     """A table of the library as text: "settings" (keys of level files with unit, range, default), "effects", "fields", "stages", or
     "schema" (the settings as JSON)."""
     return text_of(native.wadi_describe_table, str(table).encode())
 
 
-def field_name(field):
+def field_name(field: int) -> str:
     """Short name of a field that tools use: "hs", "W", "hw" ..."""
-    return native.wadi_field_name(int(field)).decode()
+    return native.wadi_field_name(int(field)).decode()  # type: ignore[no-any-return]
 
 
-def folder_of(what):
+def folder_of(what: str) -> pathlib.Path:
     """A folder beside the library: "bin", or "share/wadi/levels" of a wheel."""
     return path.parent.parent / what
 
 
-def levels():
+def levels() -> dict[str, pathlib.Path]:
     """The levels that come along: their file by name, as {"canyon": Path(".../canyon/level.json"), ...}. World takes such a file."""
     shipped = folder_of("share/wadi/levels")
     if not shipped.is_dir():  # a source tree
@@ -189,7 +196,7 @@ def levels():
     return found
 
 
-def program(name):
+def program(name: str) -> pathlib.Path:
     """The program of that name which comes along: "wadi-recorder", "wadi-import", "wadi-tune", "wadi-viewer".
     NotFoundError where this wheel or build has none."""
     file = folder_of("bin") / name
@@ -198,9 +205,9 @@ def program(name):
     return file
 
 
-def encoded(text, what):
+def encoded(text: StrPath, what: str) -> c_char_p:
     """A text for the library; ValueError that names `what` where it holds a zero character."""
-    data = os.fspath(text)
+    data: str | bytes = os.fspath(text)
     data = data if isinstance(data, bytes) else data.encode("utf-8", "surrogateescape")
     if b"\0" in data:
         raise ValueError(f"{what}: a text may hold no zero character")

@@ -1,17 +1,20 @@
 """What wadi.h and wadi_cuda.h declare, for ctypes: enums, structs, callbacks and calls. Written by plugin/python/write_python.py from
 plugin/wadi_api.json."""
+from __future__ import annotations
+
 from ctypes import (CFUNCTYPE, POINTER, c_char, c_char_p, c_double, c_float, c_int32, c_int64, c_size_t, c_uint32, c_uint64, c_void_p)
 from enum import IntEnum
+from typing import Any
 
 from ._struct import Flag, Member, Row, Struct, Text, Whole
 
 
 #: What this file was written from: the library that is loaded must have this number.
-ABI_VERSION = 1
+ABI_VERSION: int = 1
 #: As wadi_get_version gives it: at least this has all that is named here.
-VERSION = 4096
-OUTPUT_TILES_BIT = 2147483648
-EVERY_PLAYER = 18446744073709551615
+VERSION: int = 4096
+OUTPUT_TILES_BIT: int = 2147483648
+EVERY_PLAYER: int = 18446744073709551615
 
 
 class Result(IntEnum):
@@ -271,14 +274,14 @@ class DeviceInfo(Struct):
                 ("_is_software", c_int32),
                 ("_memory_bytes", c_uint64)]
     struct_size: int
-    backend = Text("_backend")
+    backend: Text = Text("_backend")
     #: within its backend
-    index = Whole("_index", c_int32)
-    name = Text("_name")
+    index: Whole = Whole("_index", c_int32)
+    name: Text = Text("_name")
     #: 1 for the CPU and for software Vulkan devices
-    is_software = Flag("_is_software")
+    is_software: Flag = Flag("_is_software")
     #: 0 = unknown
-    memory_bytes = Whole("_memory_bytes", c_uint64)
+    memory_bytes: Whole = Whole("_memory_bytes", c_uint64)
 
 
 class Cost(Struct):
@@ -296,24 +299,24 @@ class Cost(Struct):
                 ("_commands_per_step", c_uint64)]
     struct_size: int
     #: of the grid
-    cells = Whole("_cells", c_uint64)
+    cells: Whole = Whole("_cells", c_uint64)
     #: bytes that are read: a level's text, its maps and series; a snapshot; a log
-    file_bytes = Whole("_file_bytes", c_uint64)
+    file_bytes: Whole = Whole("_file_bytes", c_uint64)
     #: numbers that maps and series hold once they are decoded
-    map_values = Whole("_map_values", c_uint64)
+    map_values: Whole = Whole("_map_values", c_uint64)
     #: of drawing a level: looks at shapes, some nanoseconds of one thread each
-    work = Whole("_work", c_uint64)
+    work: Whole = Whole("_work", c_uint64)
     #: of the host's memory while it loads, at most, beside those of the device
-    host_bytes = Whole("_host_bytes", c_uint64)
+    host_bytes: Whole = Whole("_host_bytes", c_uint64)
     #: that the world holds on its device once it is loaded, at most; with the backend "cpu" they are the host's. Of a log: the bytes of
     #: its stamps
-    device_bytes = Whole("_device_bytes", c_uint64)
+    device_bytes: Whole = Whole("_device_bytes", c_uint64)
     #: of a level: the steps of its duration (0 for a map alone); of a snapshot: the step that it is of; of a log: its last step
-    steps = Whole("_steps", c_uint64)
+    steps: Whole = Whole("_steps", c_uint64)
     #: the most edits that a level or a log brings into one step
-    edits_per_step = Whole("_edits_per_step", c_uint64)
+    edits_per_step: Whole = Whole("_edits_per_step", c_uint64)
     #: the most other commands that a log brings into one step
-    commands_per_step = Whole("_commands_per_step", c_uint64)
+    commands_per_step: Whole = Whole("_commands_per_step", c_uint64)
 
 
 class DeviceOptions(Struct):
@@ -338,45 +341,45 @@ class DeviceOptions(Struct):
                   "device": -1}
     struct_size: int
     #: "auto" (a real GPU first, else the CPU), or one that wadi_list_devices names: "cpu", "vulkan" ...
-    backend = Text("_backend")
+    backend: Text = Text("_backend")
     #: index from wadi_list_devices, -1 = the backend's best
-    device = Whole("_device", c_int32)
+    device: Whole = Whole("_device", c_int32)
     #: of the CPU backend, and for any to load levels and to count and hash states. 0 = all cores; the CPU backend's steps then leave one
     #: to the host's frame
-    threads = Whole("_threads", c_int32)
+    threads: Whole = Whole("_threads", c_int32)
     #: 1 = Vulkan validation layers; messages go to the log callback
-    validate = Flag("_validate")
+    validate: Flag = Flag("_validate")
     #: may be NULL
-    log: object
-    log_user: object
+    log: Any
+    log_user: int | None
     #: NULL, or the host's own Vulkan device (wadi_vulkan.h): "auto" and "vulkan" run on it, "cuda" beside it
-    vulkan_host: object
+    vulkan_host: int | None
     #: NULL, or: the CPU backend has no threads of its own but the one that takes steps in order; a pass has `threads` parts. Every bit
     #: stays, whatever the number
-    run_jobs: object
-    jobs_user: object
+    run_jobs: Any
+    jobs_user: int | None
     #: set both callbacks or neither (NULL). With the CPU backend all that wadi_world_get_memory lists comes from here: fields, outputs,
     #: copies for the host, snapshots under way, kept states, queries. All of it is freed before wadi_destroy_world returns. If it
     #: refuses, the call fails with OUT_OF_MEMORY and the world is as it was, except that kept states are dropped where a promotion finds
     #: no room for theirs. Not from here: what a call needs while it lasts (level files, statistics), edits that wait, the command log,
     #: programs, threads. Nor is the memory of GPU backends, which is the driver's
-    allocate_memory: object
-    free_memory: object
-    memory_user: object
+    allocate_memory: Any
+    free_memory: Any
+    memory_user: int | None
     #: NULL, or limits of the host's own. They are checked before a level, and later a snapshot or log of this world, is read further than
     #: its header. What passes one is BAD_FILE, with the sum and the limit
-    most: object
+    most: Any
     #: NULL, or hears how far the making of the world is, and may end it
-    progress: object
-    progress_user: object
+    progress: Any
+    progress_user: int | None
 
 
 class WorldId(Struct):
     """A world by index and generation; all zero is null. Copy it freely; a destroyed one is recognised and refused."""
     _fields_ = [("_index", c_uint32),
                 ("_generation", c_uint32)]
-    index = Whole("_index", c_uint32)
-    generation = Whole("_generation", c_uint32)
+    index: Whole = Whole("_index", c_uint32)
+    generation: Whole = Whole("_generation", c_uint32)
 
 
 class LevelOverrides(Struct):
@@ -394,29 +397,29 @@ class LevelOverrides(Struct):
                 ("_draws", c_uint64)]
     struct_size: int
     #: keeps the x extent and square cells, stretches maps in y, scales dt with dx
-    nx = Whole("_nx", c_int32)
+    nx: Whole = Whole("_nx", c_int32)
     #: keeps the x extent and square cells, stretches maps in y, scales dt with dx
-    ny = Whole("_ny", c_int32)
+    ny: Whole = Whole("_ny", c_int32)
     #: [s]
     dt: float
     #: "robust" or "published"
-    method = Text("_method")
+    method: Text = Text("_method")
     #: one of the level's variants; NULL = the level as it is. Not for terrain maps
-    variant = Text("_variant")
+    variant: Text = Text("_variant")
     #: "draft", "balanced" or "accurate": half, all or twice the level's cells along x and y (nx, ny win), and two sand steps per water
     #: step. "accurate" has second order for water, too. "fine": the cells of the level's fine_grid, for GPUs. NULL, or "fine" where it
     #: has none = what the level says
-    accuracy = Text("_accuracy")
-    active_tiles = Member("_active_tiles", ActiveTiles)
+    accuracy: Text = Text("_accuracy")
+    active_tiles: Member[ActiveTiles] = Member("_active_tiles", ActiveTiles)
     #: ON = several stages in one pass wherever the effects allow, OFF = one by one. Every bit stays
-    fused_stages = Member("_fused_stages", Choice)
+    fused_stages: Member[Choice] = Member("_fused_stages", Choice)
     #: 1 = maps and series may lie anywhere that the process can read; 0 = in the level's folder and below it alone, links followed: no
     #: "..", no path from the root on. For levels of one's own
-    any_files = Flag("_any_files")
+    any_files: Flag = Flag("_any_files")
     #: WADI_OUTPUT_BIT of WADI_OUTPUT_FOAM, WADI_OUTPUT_WETNESS and WADI_OUTPUT_SILT, any of them, or 0: what the host will draw of what
     #: water carries and leaves. Effects foam and wetness are then on wherever there is water, silt where there is sand, too, and the
     #: level does not force them off. They move nothing, cost a pass each, and 8, 4 and 8 bytes a cell
-    draws = Whole("_draws", c_uint64)
+    draws: Whole = Whole("_draws", c_uint64)
 
 
 class AccuracyPreset(Struct):
@@ -425,13 +428,13 @@ class AccuracyPreset(Struct):
                 ("cells", c_double),
                 ("_substeps", c_int32),
                 ("_water_order", c_int32)]
-    name = Text("_name")
+    name: Text = Text("_name")
     #: factor on the level's cells along x and y; 0 = the level's fine_grid
     cells: float
     #: sand steps per water step; 0 = the level's
-    substeps = Whole("_substeps", c_int32)
+    substeps: Whole = Whole("_substeps", c_int32)
     #: method.water_transport_order; 0 = the level's
-    water_order = Whole("_water_order", c_int32)
+    water_order: Whole = Whole("_water_order", c_int32)
 
 
 class WorldArrays(Struct):
@@ -450,24 +453,24 @@ class WorldArrays(Struct):
                 ("rain_map", c_void_p)]
     struct_size: int
     #: must not be NULL; texts may stand in single quotes: "{'grid': {'nx': 64, 'ny': 64, 'dx': 0.5}, ...}"
-    settings_json = Text("_settings_json")
+    settings_json: Text = Text("_settings_json")
     #: of the arrays; must equal the settings' grid
-    nx = Whole("_nx", c_int32)
+    nx: Whole = Whole("_nx", c_int32)
     #: of the arrays; must equal the settings' grid
-    ny = Whole("_ny", c_int32)
+    ny: Whole = Whole("_ny", c_int32)
     #: elevation of the ground [m]
-    terrain: object
+    terrain: int | None
     #: depth hs [m]
-    sand: object
+    sand: int | None
     #: depth of all water, W [m]
-    water: object
+    water: int | None
     #: water, at cell centres [m/s]
-    velocity_x: object
-    velocity_y: object
+    velocity_x: int | None
+    velocity_y: int | None
     #: what cells add to material.manning, 0 ... 1 [s/m^(1/3)]
-    roughness: object
+    roughness: int | None
     #: how many times the settings' "rain" falls on each cell, 0 ... 100; NULL = once everywhere
-    rain_map: object
+    rain_map: int | None
 
 
 class WorldInfo(Struct):
@@ -492,29 +495,29 @@ class WorldInfo(Struct):
                 ("origin_y", c_double),
                 ("_source_count", c_uint64)]
     struct_size: int
-    name = Text("_name")
-    nx = Whole("_nx", c_int32)
-    ny = Whole("_ny", c_int32)
+    name: Text = Text("_name")
+    nx: Whole = Whole("_nx", c_int32)
+    ny: Whole = Whole("_ny", c_int32)
     #: [m]
     dx: float
     #: water time step [s]
     dt: float
     #: T: sand substeps per water step
-    substeps = Whole("_substeps", c_int32)
+    substeps: Whole = Whole("_substeps", c_int32)
     #: the level's own length [s]
     duration: float
     #: dispatches outside the sand substeps
-    passes_per_water_step = Whole("_passes_per_water_step", c_uint32)
-    passes_per_sand_substep = Whole("_passes_per_sand_substep", c_uint32)
+    passes_per_water_step: Whole = Whole("_passes_per_water_step", c_uint32)
+    passes_per_sand_substep: Whole = Whole("_passes_per_sand_substep", c_uint32)
     #: state, ping-pong and scratch
     bytes_per_cell: float
     #: everything the world holds on the device
-    device_bytes = Whole("_device_bytes", c_uint64)
-    backend = Text("_backend")
-    device_name = Text("_device_name")
+    device_bytes: Whole = Whole("_device_bytes", c_uint64)
+    backend: Text = Text("_backend")
+    device_name: Text = Text("_device_name")
     #: 1 = the device passed the exact-float self-test
-    exact_float = Flag("_exact_float")
-    warning_count = Whole("_warning_count", c_uint32)
+    exact_float: Flag = Flag("_exact_float")
+    warning_count: Whole = Whole("_warning_count", c_uint32)
     #: of the grid's south-west corner in the coordinates of the map that the level was cut from, for a host to show [m]; 0 without a map.
     #: Every call counts from the corner
     origin_x: float
@@ -522,7 +525,7 @@ class WorldInfo(Struct):
     #: Every call counts from the corner
     origin_y: float
     #: sources and drains that the world has now: wadi_world_get_source
-    source_count = Whole("_source_count", c_uint64)
+    source_count: Whole = Whole("_source_count", c_uint64)
 
 
 class UpdateSettings(Struct):
@@ -536,15 +539,15 @@ class UpdateSettings(Struct):
                   "max_steps_in_flight": 8}
     struct_size: int
     #: 1 ... 1024, default 8: time beyond it is dropped
-    max_steps_per_update = Whole("_max_steps_per_update", c_uint32)
+    max_steps_per_update: Whole = Whole("_max_steps_per_update", c_uint32)
     #: 0 ... 64, default 8: once the device has this many unfinished water steps (or its queue of submissions is full), time is dropped. 0
     #: = drop nothing for that reason; the call may wait
-    max_steps_in_flight = Whole("_max_steps_in_flight", c_uint32)
+    max_steps_in_flight: Whole = Whole("_max_steps_in_flight", c_uint32)
     #: 1 = a water step is submitted as 1 water part and T sand parts, evenly over its dt. The bits are the same, and the load has no peak
     #: every dt. Default 0
-    spread = Flag("_spread")
+    spread: Flag = Flag("_spread")
     #: 1 = every update also writes the interpolated set of the outputs; default 0
-    interpolate_outputs = Flag("_interpolate_outputs")
+    interpolate_outputs: Flag = Flag("_interpolate_outputs")
 
 
 class Frame(Struct):
@@ -568,30 +571,30 @@ class Frame(Struct):
                 ("unlimited_dt", c_double)]
     struct_size: int
     #: water steps that became whole in this update
-    steps = Whole("_steps", c_uint32)
+    steps: Whole = Whole("_steps", c_uint32)
     #: whole water steps since creation
-    total_steps = Whole("_total_steps", c_uint64)
+    total_steps: Whole = Whole("_total_steps", c_uint64)
     #: simulated: total_steps * dt [s]
     time: float
     #: in [0, 1): how far the host's clock is from the last whole step to the one to come. A renderer shows (1 - f) * last but one + f *
     #: last, one dt late, and moves evenly
     interpolation: float
     #: of the outputs' current set; UINT64_MAX = none yet
-    published_step = Whole("_published_step", c_uint64)
+    published_step: Whole = Whole("_published_step", c_uint64)
     #: host time that became no step in this update; steps is then less than it asks for
-    dropped_nanoseconds = Whole("_dropped_nanoseconds", c_uint64)
+    dropped_nanoseconds: Whole = Whole("_dropped_nanoseconds", c_uint64)
     #: and since the world was created
-    dropped_nanoseconds_total = Whole("_dropped_nanoseconds_total", c_uint64)
+    dropped_nanoseconds_total: Whole = Whole("_dropped_nanoseconds_total", c_uint64)
     #: the step of the newest look for limits that has arrived; UINT64_MAX = none yet. A world with a log callback looks every 64 steps
     #: where limits are at work, told below as wadi_world_stats does
-    limits_step = Whole("_limits_step", c_uint64)
-    wet_faces = Whole("_wet_faces", c_uint64)
-    clamped_water_faces = Whole("_clamped_water_faces", c_uint64)
-    capped_water_faces = Whole("_capped_water_faces", c_uint64)
-    sand_faces = Whole("_sand_faces", c_uint64)
-    clamped_sand_faces = Whole("_clamped_sand_faces", c_uint64)
-    capped_sand_faces = Whole("_capped_sand_faces", c_uint64)
-    high_columns = Whole("_high_columns", c_uint64)
+    limits_step: Whole = Whole("_limits_step", c_uint64)
+    wet_faces: Whole = Whole("_wet_faces", c_uint64)
+    clamped_water_faces: Whole = Whole("_clamped_water_faces", c_uint64)
+    capped_water_faces: Whole = Whole("_capped_water_faces", c_uint64)
+    sand_faces: Whole = Whole("_sand_faces", c_uint64)
+    clamped_sand_faces: Whole = Whole("_clamped_sand_faces", c_uint64)
+    capped_sand_faces: Whole = Whole("_capped_sand_faces", c_uint64)
+    high_columns: Whole = Whole("_high_columns", c_uint64)
     #: [s]
     unlimited_dt: float
 
@@ -610,22 +613,22 @@ class OutputView(Struct):
                 ("_step", c_uint64),
                 ("_finished", c_int32)]
     struct_size: int
-    handle_kind = Member("_handle_kind", HandleKind)
+    handle_kind: Member[HandleKind] = Member("_handle_kind", HandleKind)
     #: the same for a buffer until wadi_world_set_outputs changes the mask
-    handle = Whole("_handle", c_uint64)
+    handle: Whole = Whole("_handle", c_uint64)
     #: of cell (0, 0), past the ghost cells [bytes]; VkBufferImageCopy.bufferOffset
-    offset = Whole("_offset", c_uint64)
+    offset: Whole = Whole("_offset", c_uint64)
     #: [bytes]; over the size of a cell it is VkBufferImageCopy.bufferRowLength
-    row_pitch = Whole("_row_pitch", c_uint64)
-    buffer_bytes = Whole("_buffer_bytes", c_uint64)
-    nx = Whole("_nx", c_int32)
-    ny = Whole("_ny", c_int32)
-    format = Member("_format", Format)
+    row_pitch: Whole = Whole("_row_pitch", c_uint64)
+    buffer_bytes: Whole = Whole("_buffer_bytes", c_uint64)
+    nx: Whole = Whole("_nx", c_int32)
+    ny: Whole = Whole("_ny", c_int32)
+    format: Member[Format] = Member("_format", Format)
     #: water steps done in the state it shows; INTERPOLATED: in the current set
-    step = Whole("_step", c_uint64)
+    step: Whole = Whole("_step", c_uint64)
     #: 1 = the device has written it. 0 = it will have, ahead of anything that you submit after it. A host that reads elsewhere (the CPU
     #: backend's address) must wait for 1
-    finished = Flag("_finished")
+    finished: Flag = Flag("_finished")
 
 
 class Region(Struct):
@@ -634,10 +637,10 @@ class Region(Struct):
                 ("_j0", c_int32),
                 ("_nx", c_int32),
                 ("_ny", c_int32)]
-    i0 = Whole("_i0", c_int32)
-    j0 = Whole("_j0", c_int32)
-    nx = Whole("_nx", c_int32)
-    ny = Whole("_ny", c_int32)
+    i0: Whole = Whole("_i0", c_int32)
+    j0: Whole = Whole("_j0", c_int32)
+    nx: Whole = Whole("_nx", c_int32)
+    ny: Whole = Whole("_ny", c_int32)
 
 
 class Tile(Struct):
@@ -651,10 +654,10 @@ class Tile(Struct):
                 ("free_min", c_float),
                 ("free_max", c_float),
                 ("_changed_step", c_int64)]
-    i = Whole("_i", c_int32)
-    j = Whole("_j", c_int32)
-    nx = Whole("_nx", c_int32)
-    ny = Whole("_ny", c_int32)
+    i: Whole = Whole("_i", c_int32)
+    j: Whole = Whole("_j", c_int32)
+    nx: Whole = Whole("_nx", c_int32)
+    ny: Whole = Whole("_ny", c_int32)
     #: elevation of the solid surface H + hs [m]
     solid_min: float
     #: elevation of the solid surface H + hs [m]
@@ -664,7 +667,7 @@ class Tile(Struct):
     #: elevation of the visible surface H + max(W, hs) [m]
     free_max: float
     #: step of the newest publish that changed the solid or visible surface of a cell; at first that of the first publish
-    changed_step = Whole("_changed_step", c_int64)
+    changed_step: Whole = Whole("_changed_step", c_int64)
 
 
 class WorldStats(Struct):
@@ -706,7 +709,7 @@ class WorldStats(Struct):
     struct_size: int
     #: [s]
     time: float
-    steps = Whole("_steps", c_uint64)
+    steps: Whole = Whole("_steps", c_uint64)
     #: [m3] now
     sand_volume: float
     water_volume: float
@@ -722,8 +725,8 @@ class WorldStats(Struct):
     #: [m3] of sources and rain that found no room below method.largest_height, the highest elevation
     refused: float
     #: now - (initial + in - out) in quanta of depth x cell area; 0 = exact; sums stop at 2^60
-    sand_drift_quanta = Whole("_sand_drift_quanta", c_int64)
-    water_drift_quanta = Whole("_water_drift_quanta", c_int64)
+    sand_drift_quanta: Whole = Whole("_sand_drift_quanta", c_int64)
+    water_drift_quanta: Whole = Whole("_water_drift_quanta", c_int64)
     #: [m]
     quantum: float
     #: hs [m]
@@ -737,32 +740,32 @@ class WorldStats(Struct):
     #: least hs or W [m]: never negative
     smallest_depth: float
     #: values that are NaN or infinite: never any
-    not_finite = Whole("_not_finite", c_uint64)
+    not_finite: Whole = Whole("_not_finite", c_uint64)
     #: faces at the velocity clamp
-    clamped_faces = Whole("_clamped_faces", c_uint64)
+    clamped_faces: Whole = Whole("_clamped_faces", c_uint64)
     #: faces whose gravity the next step caps
-    capped_faces = Whole("_capped_faces", c_uint64)
+    capped_faces: Whole = Whole("_capped_faces", c_uint64)
     #: cells whose outflow the next step limits
-    limited_cells = Whole("_limited_cells", c_uint64)
+    limited_cells: Whole = Whole("_limited_cells", c_uint64)
     #: of the world, and of those the ones that the newest step ran over; 0 without active tiles. Where water and sand have a list each,
     #: those in the longer one
-    tiles = Whole("_tiles", c_uint64)
+    tiles: Whole = Whole("_tiles", c_uint64)
     #: of the world, and of those the ones that the newest step ran over; 0 without active tiles. Where water and sand have a list each,
     #: those in the longer one
-    active_tiles = Whole("_active_tiles", c_uint64)
+    active_tiles: Whole = Whole("_active_tiles", c_uint64)
     #: 64-bit state hash, ghosts excluded
-    hash = Whole("_hash", c_uint64)
+    hash: Whole = Whole("_hash", c_uint64)
     #: columns of terrain, sand and water above method.largest_height, which flow and pushes can pile up: there heights are rounded like
     #: any float, and the books drift
-    high_columns = Whole("_high_columns", c_uint64)
+    high_columns: Whole = Whole("_high_columns", c_uint64)
     #: faces beside water deeper than method.dry_threshold, inside it too: what the next three are of
-    wet_faces = Whole("_wet_faces", c_uint64)
+    wet_faces: Whole = Whole("_wet_faces", c_uint64)
     #: those of the counts above that hold water; the rest hold sand
-    clamped_water_faces = Whole("_clamped_water_faces", c_uint64)
-    capped_water_faces = Whole("_capped_water_faces", c_uint64)
-    limited_water_cells = Whole("_limited_water_cells", c_uint64)
+    clamped_water_faces: Whole = Whole("_clamped_water_faces", c_uint64)
+    capped_water_faces: Whole = Whole("_capped_water_faces", c_uint64)
+    limited_water_cells: Whole = Whole("_limited_water_cells", c_uint64)
     #: faces beside sand deeper than method.dry_threshold
-    sand_faces = Whole("_sand_faces", c_uint64)
+    sand_faces: Whole = Whole("_sand_faces", c_uint64)
     #: the time step with which, as far as this state tells, neither clamp nor cap would hold water; dt where none does [s]
     unlimited_dt: float
 
@@ -787,13 +790,13 @@ class QueryResult(Struct):
     #: the ground of the dry one, as a mesh through the cell centres does
     surface: float
     #: of the pure water, between faces [m/s]; 0 on dry faces
-    velocity = Row("_velocity")
+    velocity: Row = Row("_velocity")
     #: of the visible surface, unit length, up; slopes bilinear between cell centres
-    normal = Row("_normal")
+    normal: Row = Row("_normal")
     #: W/(W + hs) of the sand, 0 without sand
     saturation: float
     #: 0: the point is outside the grid, all else is 0
-    inside = Flag("_inside")
+    inside: Flag = Flag("_inside")
 
 
 class Body(Struct):
@@ -819,19 +822,19 @@ class Body(Struct):
                   "quadratic_drag": 1.0,
                   "samples": 4}
     struct_size: int
-    shape = Member("_shape", BodyShape)
+    shape: Member[BodyShape] = Member("_shape", BodyShape)
     #: of its middle [m]
-    position = Row("_position")
+    position: Row = Row("_position")
     #: unit quaternion x, y, z, w from the body's axes to the world's; spheres ignore it
-    orientation = Row("_orientation")
+    orientation: Row = Row("_orientation")
     #: box: half edges along its own axes [m], above 0
-    half_size = Row("_half_size")
+    half_size: Row = Row("_half_size")
     #: sphere [m], above 0
     radius: float
     #: [m/s]
-    velocity = Row("_velocity")
+    velocity: Row = Row("_velocity")
     #: about the world's axes [rad/s]
-    angular_velocity = Row("_angular_velocity")
+    angular_velocity: Row = Row("_angular_velocity")
     #: [kg/m3], 0 or more; default 1000
     water_density: float
     #: [m/s2], 0 or more; default 9.81
@@ -841,7 +844,7 @@ class Body(Struct):
     #: drag coefficient, dimensionless, 0 or more; default 1
     quadratic_drag: float
     #: columns per side, 1 ... 16; default 4
-    samples = Whole("_samples", c_int32)
+    samples: Whole = Whole("_samples", c_int32)
 
 
 class Edit(Struct):
@@ -868,13 +871,13 @@ class Edit(Struct):
                   "softness": 0.5,
                   "strength": 1.0}
     struct_size: int
-    kind = Member("_kind", EditKind)
+    kind: Member[EditKind] = Member("_kind", EditKind)
     #: of brush and stamp
-    layer = Member("_layer", Layer)
+    layer: Member[Layer] = Member("_layer", Layer)
     #: brush and push: 0 = disc round (x0, y0), 1 = all within radius of the line from (x0, y0) to (x1, y1)
-    capsule = Flag("_capsule")
+    capsule: Flag = Flag("_capsule")
     #: the water step ahead of which it acts, as wadi_world_get_time counts; 0 = the next one
-    step = Whole("_step", c_uint64)
+    step: Whole = Whole("_step", c_uint64)
     #: [m], -1e9 ... 1e9; of a stamp the low corner
     x0: float
     #: [m], -1e9 ... 1e9; of a stamp the low corner
@@ -896,9 +899,9 @@ class Edit(Struct):
     velocity_x: float
     velocity_y: float
     #: stamp: its number, from wadi_world_create_stamp
-    stamp = Whole("_stamp", c_uint32)
+    stamp: Whole = Whole("_stamp", c_uint32)
     #: 0 ... 4294967295: those of one step act by rising player, whoever was queued first; default 0
-    player = Whole("_player", c_uint64)
+    player: Whole = Whole("_player", c_uint64)
 
 
 class DeviceValues(Struct):
@@ -911,13 +914,13 @@ class DeviceValues(Struct):
     struct_size: int
     #: HOST_POINTER: any world, read before the call returns. Else memory of the API that the world runs in: CUDA_POINTER of its device,
     #: or VULKAN_BUFFER of its vulkan_host, made with VK_BUFFER_USAGE_TRANSFER_SRC_BIT, CONCURRENT or owned by queue_family
-    handle_kind = Member("_handle_kind", HandleKind)
+    handle_kind: Member[HandleKind] = Member("_handle_kind", HandleKind)
     #: address, or VkBuffer
-    handle = Whole("_handle", c_uint64)
+    handle: Whole = Whole("_handle", c_uint64)
     #: of the region's south-west value [bytes], a multiple of 4
-    offset = Whole("_offset", c_uint64)
+    offset: Whole = Whole("_offset", c_uint64)
     #: [bytes], a multiple of 4, at least 4 * nx of the region; 0 = 4 * nx
-    row_pitch = Whole("_row_pitch", c_uint64)
+    row_pitch: Whole = Whole("_row_pitch", c_uint64)
 
 
 class Sample(Struct):
@@ -951,38 +954,38 @@ class Source(Struct):
                 ("_player", c_uint64)]
     _defaults_ = {"radius": 1.0}
     struct_size: int
-    shape = Member("_shape", SourceShape)
+    shape: Member[SourceShape] = Member("_shape", SourceShape)
     #: 1 = of sand, 0 = of water
-    sand = Flag("_sand")
+    sand: Flag = Flag("_sand")
     #: 1 = with `level`: takes away what stands above, too
-    drain = Flag("_drain")
+    drain: Flag = Flag("_drain")
     #: x, y of point and disc [m]
-    center = Row("_center")
+    center: Row = Row("_center")
     #: disc [m], above 0
     radius: float
     #: x, y of a box's south-west and north-east corner [m], `to` the greater
-    from_ = Row("_from_")
+    from_: Row = Row("_from_")
     #: x, y of a box's south-west and north-east corner [m], `to` the greater
-    to = Row("_to")
+    to: Row = Row("_to")
     #: 1 = `velocity` holds
-    set_velocity = Flag("_set_velocity")
+    set_velocity: Flag = Flag("_set_velocity")
     #: samples, 0 ... 4096; 0 = there is no such series. A source has a rate, a discharge or a level; with a level the other is the most
     #: that it moves
-    rate_count = Whole("_rate_count", c_uint32)
-    discharge_count = Whole("_discharge_count", c_uint32)
-    level_count = Whole("_level_count", c_uint32)
+    rate_count: Whole = Whole("_rate_count", c_uint32)
+    discharge_count: Whole = Whole("_discharge_count", c_uint32)
+    level_count: Whole = Whole("_level_count", c_uint32)
     #: forced on the water inside while something is added [m/s], -1e4 ... 1e4
-    velocity = Row("_velocity")
+    velocity: Row = Row("_velocity")
     #: depth per time [m/s], -1e4 ... 1e4; below 0 it takes away; 0 = off
-    rate: object
+    rate: Any
     #: volume per time [m3/s], -1e9 ... 1e9, shared by the cells inside
-    discharge: object
+    discharge: Any
     #: of water: elevation of the surface that it holds in each cell [m]
-    level: object
+    level: Any
     #: wadi_world_set_source: the water step ahead of which it changes; 0 = the next one
-    step = Whole("_step", c_uint64)
+    step: Whole = Whole("_step", c_uint64)
     #: as wadi_edit.player
-    player = Whole("_player", c_uint64)
+    player: Whole = Whole("_player", c_uint64)
 
 
 class MaterialInfo(Struct):
@@ -992,7 +995,7 @@ class MaterialInfo(Struct):
                 ("least", c_double),
                 ("most", c_double)]
     #: as level files write it: "friction", "cohesion_wet", "saturation[0]"
-    name = Text("_name")
+    name: Text = Text("_name")
     #: now; units as in level files
     value: float
     #: what wadi_world_set_material takes
@@ -1007,11 +1010,11 @@ class EffectInfo(Struct):
                 ("_on", c_int32),
                 ("_why", c_char * 160)]
     #: as level files write it
-    name = Text("_name")
+    name: Text = Text("_name")
     #: 1 = its passes run and its fields exist
-    on = Flag("_on")
+    on: Flag = Flag("_on")
     #: one sentence: why it is on or off
-    why = Text("_why")
+    why: Text = Text("_why")
 
 
 class MemoryItem(Struct):
@@ -1019,8 +1022,8 @@ class MemoryItem(Struct):
     _fields_ = [("_label", c_char * 64),
                 ("_bytes", c_uint64)]
     #: the field, or what the buffer is for
-    label = Text("_label")
-    bytes = Whole("_bytes", c_uint64)
+    label: Text = Text("_label")
+    bytes: Whole = Whole("_bytes", c_uint64)
 
 
 class StageTiming(Struct):
@@ -1028,15 +1031,15 @@ class StageTiming(Struct):
     _fields_ = [("_name", c_char * 64),
                 ("milliseconds", c_double),
                 ("_passes", c_uint32)]
-    name = Text("_name")
+    name: Text = Text("_name")
     #: mean per water step, all its sand substeps together
     milliseconds: float
     #: dispatches per water step
-    passes = Whole("_passes", c_uint32)
+    passes: Whole = Whole("_passes", c_uint32)
 
 
 #: Each call: what it returns, what it takes.
-CALLS = {
+CALLS: dict[str, tuple[Any, list[Any]]] = {
     "wadi_get_abi_version": (c_uint32, []),
     "wadi_get_version": (c_uint32, []),
     "wadi_get_last_error": (c_char_p, []),

@@ -1,20 +1,29 @@
 """Order between a world on CUDA and streams of CuPy, torch, JAX and others, through the driver (libcuda) alone."""
+from __future__ import annotations
+
 import ctypes
+from collections.abc import Callable
 from ctypes import byref, c_int, c_uint, c_uint64, c_void_p
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _native
 from ._library import NotSupportedError, check, native
 
+if TYPE_CHECKING:
+    from ._types import CudaArray
+    from .world import World
+
 #: The legacy default stream and the thread's own, as CUDA, DLPack and __cuda_array_interface__ number them.
-LEGACY_STREAM, PER_THREAD_STREAM = 1, 2
+LEGACY_STREAM: int = 1
+PER_THREAD_STREAM: int = 2
 _DEVICE_ORDINAL = 9  # CU_POINTER_ATTRIBUTE_DEVICE_ORDINAL
 _NO_TIMING = 2  # CU_EVENT_DISABLE_TIMING
-_driver = None
+_driver: ctypes.CDLL | None = None
 
 
-def driver():
+def driver() -> ctypes.CDLL:
     """libcuda, ready for calls. Errors: NotSupportedError (this machine has no driver)."""
     global _driver
     if _driver is None:
@@ -27,13 +36,13 @@ def driver():
     return _driver
 
 
-def _call(function, *given):
+def _call(function: Any, *given: Any) -> None:
     status = function(*given)
     if status != 0:
         raise NotSupportedError(f"{function.__name__} of CUDA's driver failed with {status}")
 
 
-def device_of(address):
+def device_of(address: int) -> int:
     """Ordinal of the device on which an address lies."""
     ordinal = c_int()
     _call(driver().cuPointerGetAttribute, byref(ordinal), c_int(_DEVICE_ORDINAL), c_uint64(address))
@@ -43,22 +52,22 @@ def device_of(address):
 class _Context:
     """The primary context of a device, which worlds and CUDA's runtime use, current within a `with`."""
 
-    def __init__(self, ordinal):
+    def __init__(self, ordinal: int) -> None:
         self.device = c_int()
         _call(driver().cuDeviceGet, byref(self.device), c_int(ordinal))
 
-    def __enter__(self):
+    def __enter__(self) -> _Context:
         context = c_void_p()
         _call(driver().cuDevicePrimaryCtxRetain, byref(context), self.device)
         _call(driver().cuCtxPushCurrent_v2, context)
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: object) -> None:
         _call(driver().cuCtxPopCurrent_v2, byref(c_void_p()))
         _call(driver().cuDevicePrimaryCtxRelease_v2, self.device)
 
 
-def _with_event(ordinal, use):
+def _with_event(ordinal: int, use: Callable[[c_void_p], None]) -> None:
     with _Context(ordinal):
         event = c_void_p()
         _call(driver().cuEventCreate, byref(event), c_uint(_NO_TIMING))
@@ -68,7 +77,7 @@ def _with_event(ordinal, use):
             _call(driver().cuEventDestroy_v2, event)
 
 
-def _ordinal(world_id):
+def _ordinal(world_id: _native.WorldId) -> int:
     """The device of a world, by an address of an output or, without one, the first device."""
     view = _native.OutputView()
     for output in range(_native.Output.COUNT):
@@ -81,30 +90,30 @@ def _ordinal(world_id):
     return 0
 
 
-def signal(world, stream=LEGACY_STREAM):
+def signal(world: World | _native.WorldId, stream: int = LEGACY_STREAM) -> None:
     """The stream's next work comes behind all that the world has submitted. `world`: a World or its id; `stream`: a cudaStream_t as int."""
-    world_id = getattr(world, "id", world)
+    world_id: Any = getattr(world, "id", world)
 
-    def use(event):
+    def use(event: c_void_p) -> None:
         check(native.wadi_cuda_signal(world_id, event))
         _call(driver().cuStreamWaitEvent, c_void_p(stream), event, c_uint(0))
 
     _with_event(_ordinal(world_id), use)
 
 
-def wait(world, stream=LEGACY_STREAM):
+def wait(world: World | _native.WorldId, stream: int = LEGACY_STREAM) -> None:
     """The world's next submission comes behind what the stream has been given so far: call it ahead of the update that writes over a view
     which the stream still reads."""
-    world_id = getattr(world, "id", world)
+    world_id: Any = getattr(world, "id", world)
 
-    def use(event):
+    def use(event: c_void_p) -> None:
         _call(driver().cuEventRecord, event, c_void_p(stream))
         check(native.wadi_cuda_wait(world_id, event))
 
     _with_event(_ordinal(world_id), use)
 
 
-def write(world, field, region, values):
+def write(world: World, field: _native.Field, region: _native.Region, values: CudaArray) -> None:
     """World.write of an array on the device."""
     given = values.__cuda_array_interface__
     shape, pitch = tuple(given["shape"]), None

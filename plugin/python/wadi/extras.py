@@ -1,5 +1,8 @@
 """Packages that are only needed for some things."""
+from __future__ import annotations
+
 import importlib
+from typing import Any
 
 from ._library import Error
 
@@ -8,7 +11,7 @@ class MissingExtraError(Error, ImportError):
     """A package is not installed; the message names the extra that brings it."""
 
 
-def need(module, extra, what):
+def need(module: str, extra: str, what: str) -> Any:
     """The module, or MissingExtraError that says what to install."""
     try:
         return importlib.import_module(module)

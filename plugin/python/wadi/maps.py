@@ -1,13 +1,21 @@
 """Maps of heights: levels of them, GeoTIFF in and out."""
+from __future__ import annotations
+
 import os
 import pathlib
 import subprocess
 import tempfile
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from ._library import BadFileError, program
 from .extras import need
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+    from ._types import Floats, StrPath
 
 _HOLE = -9999.0
 
@@ -16,14 +24,19 @@ class HeightMap:
     """A map in memory. heights [m], shape (ny, nx), row 0 in the south, NaN where it has holes; dx: width of a cell [m]; origin: (x, y) of
     the south-west corner in the map's coordinates [m]; crs: the map's coordinate system as text (WKT), or None."""
 
-    def __init__(self, heights, dx, origin, crs):
+    heights: Floats
+    dx: float
+    origin: tuple[float, float]
+    crs: str | None
+
+    def __init__(self, heights: Floats, dx: float, origin: tuple[float, float], crs: str | None) -> None:
         self.heights, self.dx, self.origin, self.crs = heights, dx, origin, crs
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<wadi.HeightMap: {self.heights.shape[1]} x {self.heights.shape[0]} cells of {self.dx:g} m, origin {self.origin}>"
 
 
-def read_geotiff(path, cell=None, band=1):
+def read_geotiff(path: StrPath, cell: float | None = None, band: int = 1) -> HeightMap:
     """A GeoTIFF, or anything else that rasterio opens, as HeightMap. Needs rasterio: wadi[maps].
     A map in degrees, with cells that are not square, turned, or with another `cell` [m] than asked for is resampled (bilinear) to square
     cells of metres, one in degrees to the UTM zone of its middle. band: from 1 on.
@@ -61,7 +74,8 @@ def read_geotiff(path, cell=None, band=1):
     return HeightMap(np.ascontiguousarray(values[::-1]), float(step.a), origin, None if crs is None else crs.to_wkt())
 
 
-def write_geotiff(path, values, dx, origin=(0.0, 0.0), crs=None, unit="m", name=None):
+def write_geotiff(path: StrPath, values: ArrayLike | dict[str, Any], dx: float, origin: tuple[float, float] = (0.0, 0.0),
+                  crs: object = None, unit: str = "m", name: str | None = None) -> None:
     """Writes arrays as a GeoTIFF of floats, NaN as holes. Needs rasterio: wadi[maps].
     values: shape (ny, nx), row 0 in the south, or a dict of such arrays by name, a band each. dx: width of a cell [m]; origin: map
     coordinates of the south-west corner [m] (World.origin); crs: what rasterio takes ("EPSG:32632", the crs of a HeightMap), or None.
@@ -82,7 +96,7 @@ def write_geotiff(path, values, dx, origin=(0.0, 0.0), crs=None, unit="m", name=
         opened.units = [unit] * len(planes)
 
 
-def write_asc(path, values, dx, origin=(0.0, 0.0)):
+def write_asc(path: StrPath, values: ArrayLike, dx: float, origin: tuple[float, float] = (0.0, 0.0)) -> None:
     """Writes an array (ny, nx), row 0 in the south, as an Esri ASCII grid, NaN as holes. Arguments as those of write_geotiff."""
     plane = np.asarray(values, np.float32)
     if plane.ndim != 2:
@@ -92,8 +106,10 @@ def write_asc(path, values, dx, origin=(0.0, 0.0)):
     np.savetxt(path, np.where(np.isnan(plane), _HOLE, plane)[::-1], fmt="%.9g", header=head, comments="")
 
 
-def import_map(path, folder=None, *, cell=None, size=None, low=None, high=None, packed=None, flip=None, samples=None, holes="outside",
-               preview=False):
+def import_map(path: StrPath, folder: StrPath | None = None, *, cell: float | None = None, size: tuple[int, int] | None = None,
+               low: float | None = None, high: float | None = None, packed: Literal["terrarium", "mapbox"] | None = None,
+               flip: Literal["x", "y", "xy"] | None = None, samples: Literal["cells", "corners"] | None = None,
+               holes: Literal["outside", "filled", "wall", "pit"] = "outside", preview: bool = False) -> pathlib.Path:
     """Makes a level of a map of heights, as program wadi-import does, and returns the path of its level.json, for World.
     path: .asc, .hgt, .png, .r16, .r32, .raw, .npy, or .tif (by rasterio: wadi[maps]). The map's coordinates become the level's origin.
     folder: of the level; None = the map's name without its ending. cell: width of a cell [m] where the map does not say, of a .tif that to

@@ -1,17 +1,29 @@
 """Pictures by matplotlib (wadi[plot]): map, section, hydrograph, animation. `source` is a World (its state now) or a Recording; of a recording
 `frame` says which of its times, -1 is the last. Each takes axes `ax`, or makes a figure, and returns the axes."""
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any, Literal
+
 import numpy as np
 
 from .extras import need
 from .recording import Recording
 
+if TYPE_CHECKING:
+    from matplotlib.animation import FuncAnimation
+    from matplotlib.axes import Axes
+    from numpy.typing import ArrayLike, NDArray
 
-def _axes(ax, size=(6.4, 4.0)):
+    from .world import World
+
+
+def _axes(ax: Axes | None, size: tuple[float, float] = (6.4, 4.0)) -> Any:
     pyplot = need("matplotlib.pyplot", "plot", "wadi.plot")
     return pyplot.subplots(figsize=size, constrained_layout=True)[1] if ax is None else ax
 
 
-def _field(source, name, frame):
+def _field(source: World | Recording, name: str, frame: int) -> Any:
     if not isinstance(source, Recording):
         return source.read(name)
     if name not in source.fields:
@@ -19,24 +31,25 @@ def _field(source, name, frame):
     return source.fields[name][frame]
 
 
-def _time(source, frame):
+def _time(source: World | Recording, frame: int) -> float:
     return source.times[frame] if isinstance(source, Recording) else source.time
 
 
-def _extent(source):
+def _extent(source: World | Recording) -> tuple[float, float, float, float]:
     (x0, y0), half = source.origin, source.dx / 2
     return x0 + source.x[0] - half, x0 + source.x[-1] + half, y0 + source.y[0] - half, y0 + source.y[-1] + half
 
 
-def relief(heights, dx, azimuth=315.0, altitude=45.0):
+def relief(heights: ArrayLike, dx: float, azimuth: float = 315.0, altitude: float = 45.0) -> NDArray[np.float64]:
     """Shade of a surface [m] lit from `azimuth` (degrees from north by east) at `altitude` degrees: an array of 0 ... 1."""
     south, east = np.gradient(np.asarray(heights, float), dx)
     azimuth, altitude = np.radians(azimuth), np.radians(altitude)
     sun = np.array([np.sin(azimuth) * np.cos(altitude), np.cos(azimuth) * np.cos(altitude), np.sin(altitude)])
-    return np.clip((-east * sun[0] - south * sun[1] + sun[2]) / np.sqrt(1 + east**2 + south**2), 0, 1)
+    return np.clip((-east * sun[0] - south * sun[1] + sun[2]) / np.sqrt(1 + east**2 + south**2), 0, 1)  # type: ignore[no-any-return]
 
 
-def map(source, field="water_depth", *, frame=-1, ax=None, cmap=None, vmin=None, vmax=None, dry=1e-3, colorbar=True):
+def map(source: World | Recording, field: str | Iterable[str] = "water_depth", *, frame: int = -1, ax: Axes | None = None, cmap: Any = None,
+        vmin: float | None = None, vmax: float | None = None, dry: float = 1e-3, colorbar: bool = True) -> Axes:
     """A field from above over shaded ground, or several, the later above: ["sand_depth", "water_depth"]. Of depths, cells below `dry` [m]
     show what is under them. cmap, vmin, vmax as of imshow; the bar is of the last field."""
     ax = _axes(ax)
@@ -56,14 +69,15 @@ def map(source, field="water_depth", *, frame=-1, ax=None, cmap=None, vmin=None,
                           interpolation="nearest", alpha=0.85 if ground is not None else 1)
     if colorbar:
         unit = " [m]" if depth or field in ("terrain", "free_surface") else " [m/s]" if "velocity" in field else ""
-        ax.figure.colorbar(image, ax=ax, label=field.replace("_", " ") + unit, shrink=0.85)
+        ax.figure.colorbar(image, ax=ax, label=field.replace("_", " ") + unit, shrink=0.85)  # type: ignore[union-attr]
     ax.set_xlabel("x [m]")
     ax.set_ylabel("y [m]")
     ax.set_title(f"{source.name}, t = {_time(source, frame):.4g} s")
     return ax
 
 
-def section(source, *, y=None, x=None, frame=-1, ax=None, exaggeration=None):
+def section(source: World | Recording, *, y: float | None = None, x: float | None = None, frame: int = -1, ax: Axes | None = None,
+            exaggeration: float | None = None) -> Axes:
     """Ground, sand and water along a row (y) or a column (x) [m from the grid's corner]; the middle row where neither is given.
     Of a recording, fields terrain, sand_depth and water_depth must be in it. exaggeration: of heights; None = what fits."""
     if x is not None and y is not None:
@@ -75,7 +89,7 @@ def section(source, *, y=None, x=None, frame=-1, ax=None, exaggeration=None):
     k = int(np.argmin(np.abs(across - at)))
     if not across[0] - source.dx <= at <= across[-1] + source.dx:
         raise ValueError(f"section: {at} m, must lie in 0 ... {across[-1] + source.dx / 2:g} m")
-    cut = (lambda plane: plane[k]) if x is None else (lambda plane: plane[:, k])
+    cut: Callable[[Any], Any] = (lambda plane: plane[k]) if x is None else (lambda plane: plane[:, k])
     ground, sand, water = (cut(_field(source, name, frame)).astype(float) for name in ("terrain", "sand_depth", "water_depth"))
     low = ground.min() - 0.08 * max(np.ptp(ground + sand + water), 1e-9)
     ax.fill_between(along, low, ground, color="0.55", lw=0, label="ground", step=None)
@@ -92,7 +106,8 @@ def section(source, *, y=None, x=None, frame=-1, ax=None, exaggeration=None):
     return ax
 
 
-def hydrograph(recording, value="water_depth", *, gauges=None, ax=None):
+def hydrograph(recording: Recording, value: Literal["water_depth", "surface", "sand_depth", "speed"] = "water_depth", *,
+               gauges: Iterable[str] | None = None, ax: Axes | None = None) -> Axes:
     """What the gauges of a recording show over time: "water_depth", "surface", "sand_depth" [m], or "speed" of the water [m/s].
     gauges: their names; None = all."""
     if not recording.gauges:
@@ -110,7 +125,7 @@ def hydrograph(recording, value="water_depth", *, gauges=None, ax=None):
     return ax
 
 
-def animation(recording, field="water_depth", *, interval=80, **options):
+def animation(recording: Recording, field: str = "water_depth", *, interval: int = 80, **options: Any) -> FuncAnimation:
     """A matplotlib animation of a recorded field; `options` as of `map`, interval between frames [ms]. Keep what it returns: to_jshtml()
     shows it in a notebook, save("a.gif", writer="pillow") writes it."""
     animate = need("matplotlib.animation", "plot", "wadi.plot")
@@ -119,9 +134,9 @@ def animation(recording, field="water_depth", *, interval=80, **options):
     ax = map(recording, field, frame=0, **options)
     image, dry = ax.images[-1], options.get("dry", 1e-3)
 
-    def draw(frame):
+    def draw(frame: int) -> tuple[Any]:
         image.set_data(np.ma.masked_less(values[frame], dry) if field.endswith("_depth") else values[frame])
         ax.set_title(f"{recording.name}, t = {recording.times[frame]:.4g} s")
         return (image,)
 
-    return animate.FuncAnimation(ax.figure, draw, frames=len(recording), interval=interval, blit=False)
+    return animate.FuncAnimation(ax.figure, draw, frames=len(recording), interval=interval, blit=False)  # type: ignore[no-any-return]

@@ -1,16 +1,28 @@
 """What a world did over time, and the bar that shows how far it is."""
+from __future__ import annotations
+
 import contextlib
 import importlib.util
 import math
 import sys
 import time as clock
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from .extras import need
 
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+    import xarray
 
-def progress_bar(progress, steps, name):
+    from ._native import Field
+    from ._types import Bar, Floats, Pair
+    from .world import World
+
+
+def progress_bar(progress: Bar, steps: int, name: str) -> contextlib.AbstractContextManager[Callable[[int], Any]]:
     """A context whose value is told how many more steps are done."""
     if progress is None:
         progress = importlib.util.find_spec("tqdm") is not None and sys.stderr is not None and sys.stderr.isatty()
@@ -19,7 +31,7 @@ def progress_bar(progress, steps, name):
     bar = need("tqdm.auto", "progress", "progress=True").tqdm(total=steps, desc=name, unit=" steps", leave=False)
 
     @contextlib.contextmanager
-    def shown():
+    def shown() -> Iterator[Callable[[int], Any]]:
         with bar:
             yield bar.update
 
@@ -37,18 +49,32 @@ class Recording:
     seconds   of the computer's time that it took
     """
 
-    def __init__(self, name, dx, x, y, origin, times, fields, gauges, points, seconds):
+    name: str
+    dx: float
+    x: NDArray[np.floating[Any]]
+    y: NDArray[np.floating[Any]]
+    origin: tuple[float, float]
+    times: NDArray[np.float64]
+    fields: dict[str, Floats]
+    gauges: dict[str, NDArray[Any]]
+    points: dict[str, tuple[float, ...]]
+    seconds: float
+
+    def __init__(self, name: str, dx: float, x: NDArray[np.floating[Any]], y: NDArray[np.floating[Any]],
+                 origin: tuple[float, float], times: NDArray[np.float64], fields: dict[str, Floats], gauges: dict[str, NDArray[Any]],
+                 points: dict[str, tuple[float, ...]], seconds: float) -> None:
         self.name, self.dx, self.x, self.y, self.origin = name, dx, x, y, origin
         self.times, self.fields, self.gauges, self.points, self.seconds = times, fields, gauges, points, seconds
 
-    def __len__(self):
+    def __len__(self) -> int:
         return len(self.times)
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         return f"<wadi.Recording of {self.name!r}: {len(self)} times, fields {', '.join(self.fields)}, gauges {', '.join(self.gauges) or 'none'}>"
 
     @classmethod
-    def of(cls, world, seconds, every, fields, gauges, progress):
+    def of(cls, world: World, seconds: float, every: float, fields: str | Iterable[Field | str], gauges: Mapping[str, Pair],
+           progress: Bar) -> Recording:
         for what, value in (("seconds", seconds), ("every", every)):
             if not (math.isfinite(value) and value >= 0):
                 raise ValueError(f"{what}: {value!r}, must be 0 or more")
@@ -73,7 +99,7 @@ class Recording:
         found = {name: np.array([answer[k] for answer in answers]) for k, name in enumerate(points)}
         return cls(world.name, world.dx, world.x, world.y, world.origin, times, kept, found, points, clock.perf_counter() - begun)
 
-    def to_xarray(self):
+    def to_xarray(self) -> xarray.Dataset:
         """An xarray.Dataset with units and coordinates (needs xarray: wadi[xarray])."""
         from .dataset import of_recording
 

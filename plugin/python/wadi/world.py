@@ -1,4 +1,6 @@
 """A world of sand and water."""
+from __future__ import annotations
+
 import ctypes
 import json
 import logging
@@ -6,20 +8,27 @@ import math
 import os
 import time as clock
 import weakref
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from ctypes import byref, c_double, c_uint64
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from . import _library, _native
 from ._library import BadArgumentError, check, encoded, error, native
-from ._native import ActiveTiles, Choice, Field, LogLevel, Region
+from ._native import ActiveTiles, Choice, Field, LogLevel, Output, Region
 from ._struct import member, whole
 from .output import bits_of
 from .recording import Recording, progress_bar
 from .world_edits import Edits
 from .world_outputs import Outputs
 from .world_saves import Saves
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from ._types import Bar, Files, Pair, StrPath
+    from .output import OutputView
 
 _log = logging.getLogger("wadi")
 _LOGGED = {LogLevel.ERROR: logging.ERROR, LogLevel.WARNING: logging.WARNING, LogLevel.INFORMATION: logging.INFO}
@@ -28,23 +37,25 @@ _LOGGED = {LogLevel.ERROR: logging.ERROR, LogLevel.WARNING: logging.WARNING, Log
 class _Handle:
     """Owns a world of the library: it is destroyed once nobody holds this, views of its memory included."""
 
-    def __init__(self, world, callbacks):
+    views: weakref.WeakSet[OutputView]
+
+    def __init__(self, world: _native.WorldId, callbacks: tuple[Any, ...]) -> None:
         self.world = world
         self.views = weakref.WeakSet()
         weakref.finalize(self, _Handle.destroy, world, callbacks)
 
     @staticmethod
-    def destroy(world, callbacks):
+    def destroy(world: _native.WorldId, callbacks: tuple[Any, ...]) -> None:
         native.wadi_destroy_world(world)
         del callbacks  # they may be called until here
 
 
-def _switch(value):
+def _switch(value: bool | None) -> Choice:
     """off, on, or as the level says"""
     return Choice.LEVEL if value is None else Choice.ON if value else Choice.OFF
 
 
-def _overrides(given):
+def _overrides(given: dict[str, Any]) -> _native.LevelOverrides:
     """wadi_level_overrides from keywords that are not None."""
     fields = {name: value for name, value in given.items() if value is not None}
     if "active_tiles" in fields:
@@ -60,24 +71,24 @@ def _overrides(given):
 class _Reader:
     """Files that a level's text names, from a folder, a mapping or a function; what goes wrong there is kept for the caller."""
 
-    def __init__(self, files):
-        self.thrown = None
+    def __init__(self, files: Files | None) -> None:
+        self.thrown: BaseException | None = None
         if files is None:
             self.callback = _native.ReadFileCallback()
             return
         if isinstance(files, (str, os.PathLike)):
             folder = os.fspath(files)
 
-            def read(name):
+            def read(name: str) -> bytes | None:
                 file = os.path.join(folder, name)
                 if not os.path.isfile(file):
                     return None
                 with open(file, "rb") as opened:
                     return opened.read()
         else:
-            read = files.get if isinstance(files, Mapping) else files
+            read = files.get if isinstance(files, Mapping) else files  # type: ignore[assignment]
 
-        def called(_, name, data, size):
+        def called(_: Any, name: bytes, data: int, size: Any) -> int:
             try:
                 found = read(name.decode("utf-8", "surrogateescape"))
                 if found is None:
@@ -95,13 +106,13 @@ class _Reader:
 
         self.callback = _native.ReadFileCallback(called)
 
-    def check(self, result):
+    def check(self, result: int) -> None:
         if self.thrown is not None:
             raise self.thrown
         check(result)
 
 
-def _settings_text(settings, what):
+def _settings_text(settings: object, what: str) -> str:
     if isinstance(settings, str):
         return settings
     if isinstance(settings, Mapping):
@@ -109,7 +120,8 @@ def _settings_text(settings, what):
     raise TypeError(f"{what}: a level is a text or a dict, not {type(settings).__name__}")
 
 
-def level_cost(level=None, *, text=None, files=None, **overrides):
+def level_cost(level: StrPath | None = None, *, text: str | Mapping[str, Any] | None = None, files: Files | None = None,
+               **overrides: Any) -> _native.Cost:
     """What a world of that level would cost, as wadi.Cost: nothing is drawn and no device is opened.
     Arguments as those of World of the same names, overrides included."""
     cost = _native.Cost()
@@ -154,10 +166,32 @@ class World(Outputs, Edits, Saves):
     do not fit together. A world is used by one thread at a time: another one meets BusyError.
     """
 
-    def __init__(self, level=None, *, text=None, files=None,
-                 terrain=None, sand=None, water=None, velocity=None, roughness=None, rain_map=None, dx=None, settings=None, name=None,
-                 nx=None, ny=None, dt=None, method=None, variant=None, accuracy=None, active_tiles=None, fused_stages=None, any_files=None,
-                 draws=None, backend="auto", device=-1, threads=0, validate=False, log=None, progress=None, most=None):
+    #: Of the library; null once the world is closed.
+    id: _native.WorldId
+    #: Cells along x (east) and y (north).
+    nx: int
+    ny: int
+    #: Width of a cell [m].
+    dx: float
+    #: Water time step [s].
+    dt: float
+    #: "cpu", "vulkan" or "cuda".
+    backend: str
+    #: Map coordinates of the grid's south-west corner [m]; (0, 0) without a map.
+    origin: tuple[float, float]
+    name: str
+
+    def __init__(self, level: StrPath | None = None, *, text: str | Mapping[str, Any] | None = None, files: Files | None = None,
+                 terrain: ArrayLike | None = None, sand: ArrayLike | None = None, water: ArrayLike | None = None,
+                 velocity: Sequence[ArrayLike] | NDArray[Any] | None = None, roughness: ArrayLike | None = None,
+                 rain_map: ArrayLike | None = None, dx: float | None = None, settings: str | Mapping[str, Any] | None = None,
+                 name: str | None = None, nx: int | None = None, ny: int | None = None, dt: float | None = None,
+                 method: Literal["robust", "published"] | None = None, variant: str | None = None, accuracy: str | None = None,
+                 active_tiles: Literal[False, "auto", "cheap", 8, 16, 32, 64] | ActiveTiles | None = None, fused_stages: bool | None = None,
+                 any_files: bool | None = None, draws: Output | str | Iterable[Output | str] | None = None, backend: str = "auto",
+                 device: int = -1, threads: int = 0, validate: bool = False,
+                 log: Callable[[LogLevel, str], object] | Literal[False] | None = None,
+                 progress: Callable[[float], bool | None] | None = None, most: _native.Cost | None = None) -> None:
         self.id = _native.WorldId()  # null, until there is one
         layers = {"terrain": terrain, "sand": sand, "water": water, "velocity": velocity, "roughness": roughness, "rain_map": rain_map}
         arrays = {key: value for key, value in layers.items() if value is not None}
@@ -172,7 +206,7 @@ class World(Outputs, Edits, Saves):
         if files is not None and text is None:
             raise TypeError("World: files= is for text=")
 
-        thrown = []
+        thrown: list[BaseException] = []
         options = _native.DeviceOptions(backend=backend, device=device, threads=threads, validate=validate)
         if log is not False:
             options.log = self._logger(log)
@@ -198,20 +232,18 @@ class World(Outputs, Edits, Saves):
             raise
         self.id = world
         self._handle = _Handle(world, (options.log, options.progress))
-        self._pinned = set()  # memory that the library writes
+        self._pinned = set()
         self._step = native.wadi_world_step
         info = self.info
-        #: Cells along x (east) and y (north); width of a cell [m]; water time step [s]; "cpu", "vulkan" or "cuda".
         self.nx, self.ny, self.dx, self.dt, self.backend = info.nx, info.ny, info.dx, info.dt, info.backend
-        #: Map coordinates of the grid's south-west corner [m]; (0, 0) without a map.
         self.origin = (info.origin_x, info.origin_y)
         self.name = info.name
         self._mask = self._host_mask = 0
         self._row = (self.ny, self.nx)
 
     @staticmethod
-    def _logger(log):
-        def told(_, level, message):
+    def _logger(log: Callable[[LogLevel, str], object] | None) -> Any:
+        def told(_: Any, level: int, message: bytes) -> None:
             try:
                 text = message.decode("utf-8", "replace")
                 if log is None:
@@ -224,8 +256,8 @@ class World(Outputs, Edits, Saves):
         return _native.LogCallback(told)
 
     @staticmethod
-    def _progress(progress, thrown):
-        def told(_, share):
+    def _progress(progress: Callable[[float], bool | None], thrown: list[BaseException]) -> Any:
+        def told(_: Any, share: float) -> int:
             try:
                 return 0 if progress(share) is False else 1
             except BaseException as failed:
@@ -235,7 +267,8 @@ class World(Outputs, Edits, Saves):
         return _native.ProgressCallback(told)
 
     @staticmethod
-    def _from_arrays(arrays, dx, dt, settings, name, options, world):
+    def _from_arrays(arrays: dict[str, Any], dx: float | None, dt: float | None, settings: str | Mapping[str, Any] | None, name: str | None,
+                     options: _native.DeviceOptions, world: _native.WorldId) -> None:
         if dx is None:
             raise TypeError("World: arrays need dx=, the width of a cell [m]")
         planes = {key: value for key, value in arrays.items() if key != "velocity"}
@@ -244,7 +277,7 @@ class World(Outputs, Edits, Saves):
             if len(pair) != 2:
                 raise ValueError("velocity: must be a pair of arrays, east and north")
             planes["velocity_x"], planes["velocity_y"] = pair
-        shape = None
+        shape: Any = None
         for key, value in planes.items():
             plane = np.ascontiguousarray(value, dtype=np.float32)
             if plane.ndim != 2 or plane.size == 0:
@@ -272,23 +305,23 @@ class World(Outputs, Edits, Saves):
 
     # ---- Life ----
 
-    def close(self):
+    def close(self) -> None:
         """Frees the world. Views of its outputs keep their memory: it goes with the last of them. Calls of a closed world are errors."""
         self.id = _native.WorldId()
         self._handle = None
 
     @property
-    def closed(self):
+    def closed(self) -> bool:
         """Whether `close` was called."""
         return self._handle is None
 
-    def __enter__(self):
+    def __enter__(self) -> World:
         return self
 
-    def __exit__(self, *_):
+    def __exit__(self, *_: object) -> None:
         self.close()
 
-    def __repr__(self):
+    def __repr__(self) -> str:
         if self._handle is None:
             return "<wadi.World, closed>"
         return f"<wadi.World {self.name!r}: {self.nx} x {self.ny} cells of {self.dx:g} m, {self.backend}, t = {self.time:g} s>"
@@ -296,30 +329,30 @@ class World(Outputs, Edits, Saves):
     # ---- What it is ----
 
     @property
-    def info(self):
+    def info(self) -> _native.WorldInfo:
         """What the world is, as wadi.WorldInfo: grid, dt, backend, device, bytes, number of sources ..."""
         info = _native.WorldInfo()
         check(native.wadi_world_get_info(self.id, byref(info)))
         return info
 
     @property
-    def warnings(self):
+    def warnings(self) -> list[str]:
         """Advice on the level, a list of texts."""
         return [native.wadi_world_get_warning(self.id, n).decode("utf-8", "replace") for n in range(self.info.warning_count)]
 
     @property
-    def x(self):
+    def x(self) -> NDArray[np.floating[Any]]:
         """x of the cells' centres, east of the grid's corner [m], shape (nx,). Add origin[0] for map coordinates."""
         return (np.arange(self.nx) + 0.5) * self.dx
 
     @property
-    def y(self):
+    def y(self) -> NDArray[np.floating[Any]]:
         """y of the cells' centres, north of the grid's corner [m], shape (ny,)."""
         return (np.arange(self.ny) + 0.5) * self.dx
 
     # ---- Steps ----
 
-    def step(self, steps=1):
+    def step(self, steps: int = 1) -> None:
         """Advances by whole water steps of dt each, 0 ... 4294967295. Returns before the device has finished; reads wait for it.
         Errors: OutOfMemoryError (an edit's new material)."""
         if steps.__class__ is not int or steps < 0 or steps > 4294967295:
@@ -328,12 +361,12 @@ class World(Outputs, Edits, Saves):
         if result:
             raise error(result)
 
-    def wait(self):
+    def wait(self) -> None:
         """Waits until the steps asked for so far are done."""
         value = ctypes.c_float()
         check(native.wadi_world_read_region(self.id, Field.TERRAIN, byref(Region(nx=1, ny=1)), byref(value), 1))
 
-    def run(self, seconds, progress=None):
+    def run(self, seconds: float, progress: Bar = None) -> float:
         """Advances by at least `seconds` of simulated time [s], in whole steps, and waits for them. Returns the simulated time [s].
         progress: True = a bar (needs tqdm: wadi[progress]), False = none, None = a bar where tqdm is there and somebody can see it.
         Ctrl-C ends it between steps; the world stays good."""
@@ -353,13 +386,14 @@ class World(Outputs, Edits, Saves):
                     chunk = min(2 * chunk, 65536)
         return self.time
 
-    def record(self, seconds, every, fields=("free_surface",), gauges=None, progress=None):
+    def record(self, seconds: float, every: float, fields: str | Iterable[Field | str] = ("free_surface",),
+               gauges: Mapping[str, Pair] | None = None, progress: Bar = None) -> Recording:
         """Runs for `seconds` [s] and keeps fields, and values at points, every `every` seconds [s], that of now included. Both are rounded
         to whole steps. Returns a wadi.Recording.
         fields: names as `read` takes. gauges: points by name {"bridge": (x, y)} [m from the grid's corner], answered as by `query`."""
         return Recording.of(self, seconds, every, fields, gauges or {}, progress)
 
-    def update(self, seconds):
+    def update(self, seconds: float) -> _native.Frame:
         """Advances by host time [s] as a game's frame does, and publishes the outputs. Returns wadi.Frame.
         Steps are fixed: the same total gives the same bits in frames of any length. Time that the device cannot follow is dropped
         (wadi.Frame.dropped_nanoseconds, set_update_settings)."""
@@ -369,7 +403,7 @@ class World(Outputs, Edits, Saves):
         check(native.wadi_world_update(self.id, round(seconds * 1e9), byref(frame)))
         return frame
 
-    def set_update_settings(self, **settings):
+    def set_update_settings(self, **settings: int) -> None:
         """Sets how `update` takes steps: fields of wadi.UpdateSettings (max_steps_per_update 1 ... 1024, max_steps_in_flight 0 ... 64,
         spread, interpolate_outputs); those not named get the header's defaults."""
         raw = _native.UpdateSettings(**settings)
@@ -377,14 +411,14 @@ class World(Outputs, Edits, Saves):
         check(native.wadi_world_set_update_settings(self.id, byref(raw)))
 
     @property
-    def time(self):
+    def time(self) -> float:
         """Simulated time [s]."""
         seconds = c_double()
         check(native.wadi_world_get_time(self.id, byref(seconds), None))
         return seconds.value
 
     @property
-    def steps(self):
+    def steps(self) -> int:
         """Water steps so far."""
         steps = c_uint64()
         check(native.wadi_world_get_time(self.id, None, byref(steps)))
