@@ -14,9 +14,14 @@ ATTRIBUTES = {"depth": "water_depth", "flow": "flow", "foam": "foam", "wetness":
 _readers, _newest, _told = {}, [None, None, None], set()
 
 
+def linked_from(thing):
+    """The other .blend file that an object is linked from; None = it is this file's own."""
+    return getattr(thing, "library", None)
+
+
 def folder_of(thing):
-    """The cache of an object, as a path of this machine; "//" is the folder of the .blend file that the object is from."""
-    return bpy.path.abspath(thing[FOLDER], library=thing.library)
+    """The cache of an object as a whole path; "//" is the folder of the .blend file that the object is from."""
+    return bpy.path.abspath(thing[FOLDER], library=linked_from(thing))
 
 
 def reader(folder, afresh=False):
@@ -130,7 +135,7 @@ def build(scene, folder, path, start):
     for part in (GROUND, WATER):
         name = f"Wadi {part}"
         mesh = _grid(name, about["nx"], about["ny"], about["dx"])
-        there = [thing for thing in shown(scene) if thing.library is None and folder_of(thing) == folder and thing[PART] == part]
+        there = [thing for thing in shown(scene) if linked_from(thing) is None and folder_of(thing) == folder and thing[PART] == part]
         thing = there[0] if there else None
         if thing is None:
             thing = bpy.data.objects.new(name, mesh)
